@@ -1,0 +1,48 @@
+"""thermicon.circuit: corner points and a rig → drive current → a trace of temperatures and heat flow."""
+
+from thermicon.circuit.door import InputError
+from thermicon.circuit.records import Record, RecordError, Table, load_records
+from thermicon.circuit.module import Peltier
+from thermicon.circuit.skin import Layer, Skin
+from thermicon.circuit.rigfile import RigError
+from thermicon.circuit.rig import Rig, rig_names
+from thermicon.circuit.drive import Drive, DriveError, read_drive
+from thermicon.circuit.steady import hold, steady_state
+from thermicon.circuit.static import check_static
+from thermicon.circuit.trace import Outcome, Trace, write_trace
+from thermicon.circuit.simulate import simulate, simulate_current
+from thermicon.circuit.many import TRACKINGS, Batch, simulate_many, usual_tracking
+from thermicon.circuit.limits import SafetyVerdict, judge_safety
+from thermicon.circuit.netlist import netlist
+
+__all__ = [
+    "InputError",
+    "Record",
+    "RecordError",
+    "Table",
+    "load_records",
+    "Peltier",
+    "Layer",
+    "Skin",
+    "RigError",
+    "Rig",
+    "rig_names",
+    "Drive",
+    "DriveError",
+    "read_drive",
+    "hold",
+    "steady_state",
+    "check_static",
+    "Outcome",
+    "Trace",
+    "write_trace",
+    "simulate",
+    "simulate_current",
+    "TRACKINGS",
+    "Batch",
+    "simulate_many",
+    "usual_tracking",
+    "SafetyVerdict",
+    "judge_safety",
+    "netlist",
+]

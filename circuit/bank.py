@@ -1,0 +1,142 @@
+"""Rigs stacked for the kernel, and the kernel run over many lanes (a lane is one cue on one rig) on all cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from thermicon.circuit.network import PROBES, Network
+from thermicon.circuit.skin import Array
+
+Index = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Bank:
+    """Networks of r rigs, padded to the most lumps n: `count` (r,), the rest (r, …) as in Network."""
+
+    count: Index
+    plates: Array
+    capacity: Array
+    conductance: Array
+    perfusion: Array
+    probe_start: Index
+    probe_weight: Array
+    face_share: Array
+
+    @staticmethod
+    def of(networks: Sequence[Network]) -> Bank:
+        """Stack networks."""
+        count = np.array([len(network.capacity_J_per_K) for network in networks], dtype=np.int64)
+        most = int(count.max())
+
+        def padded(name: str, extra: int) -> Array:
+            rows = np.ones((len(networks), most + extra))
+            for row, network in zip(rows, networks, strict=True):
+                values = getattr(network, name)
+                row[: len(values)] = values
+            return rows
+
+        return Bank(
+            count,
+            np.array([network.plates for network in networks]),
+            padded("capacity_J_per_K", 0),
+            padded("conductance_W_per_K", 1),
+            padded("perfusion_W_per_K", 0),
+            np.array([network.probe_start for network in networks]),
+            np.array([network.probe_weight for network in networks]),
+            np.array([network.face_share for network in networks]),
+        )
+
+    def states(self, states: Sequence[Array]) -> Array:
+        """Stack starting states, one a lane, padded to (lanes, n + 3)."""
+        rows = np.zeros((len(states), self.capacity.shape[1] + 3))
+        for row, state in zip(rows, states, strict=True):
+            row[: len(state)] = state
+        return rows
+
+
+@dataclass(frozen=True, slots=True)
+class Intervals:
+    """Time cut at every instant where a current changes or a row is written.
+
+    `edges_s` (e,); `row_of` (e,): the row written at an edge, or −1; `start_A`, `end_A` (cues, e − 1).
+    """
+
+    edges_s: Array
+    row_of: Index
+    start_A: Array
+    end_A: Array
+
+
+def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Intervals:
+    """Cut time for currents (cues, k) given at times (k,), held or linear between, ending at the last row."""
+    end = rows_s[-1]
+    edges = np.union1d(rows_s, times_s[times_s < end])
+    keep = np.concatenate([[True], np.diff(edges) > 1e-9])  # a row and a change a rounding error apart are one
+    edges = edges[keep]
+    place = np.searchsorted(edges, rows_s + 1e-9, side="right") - 1
+    row_of = np.full(len(edges), -1, dtype=np.int64)
+    row_of[place] = np.arange(len(rows_s))
+    if held:
+        now = np.clip(np.searchsorted(times_s, edges[:-1] + 1e-9, side="right") - 1, 0, len(times_s) - 1)
+        start = end_ = currents_A[:, now]
+    else:
+        at = np.array([np.interp(edges, times_s, row) for row in currents_A])
+        start, end_ = at[:, :-1], at[:, 1:]
+    return Intervals(edges, row_of, np.ascontiguousarray(start), np.ascontiguousarray(end_))
+
+
+def run_forward(
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES
+) -> Array:
+    """Return the probes (probes, lanes, rows) of every lane; `state` (lanes, n + 3) is left at the end of the run."""
+    from thermicon.circuit import kernel
+
+    which = [PROBES.index(probe) for probe in probes]
+    places = np.ascontiguousarray(bank.probe_start[:, which])
+    weights = np.ascontiguousarray(bank.probe_weight[:, which])
+    out = np.empty((len(which), len(rig_of), int(intervals.row_of.max()) + 1))
+
+    def work(lanes: Index) -> None:
+        kernel.forward(
+            lanes, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
+            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state, out,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return out
+
+
+def run_follow(
+    bank: Bank, rig_of: Index, cue_of: Index, period_s: float, target_C: Array, skin_control: bool, state: Array
+) -> tuple[Array, Array, Index]:
+    """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
+    from thermicon.circuit import kernel
+
+    shape = (len(rig_of), target_C.shape[1])
+    current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+
+    def work(lanes: Index) -> None:
+        kernel.follow(
+            lanes, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
+            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return current, reached, why
+
+
+def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
+    cores = min(os.cpu_count() or 1, lanes)
+    parts = np.array_split(np.arange(lanes, dtype=np.int64), cores)
+    if cores == 1:
+        work(parts[0])
+        return
+    with ThreadPoolExecutor(cores) as pool:
+        list(pool.map(work, parts))

@@ -1,0 +1,61 @@
+"""The Peltier module: heat pumped, heat rejected, voltage, and the currents that closed forms give.
+
+Equations: Lineykin & Ben-Yaakov, IEEE Trans. Ind. Appl. 43 (2007) 505. Current is positive when it cools the skin side.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+ZERO_C_IN_K = 273.15
+"""0 °C in kelvin; the only place where this number stands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Peltier:
+    """A module with its two plates.
+
+    `seebeck_V_per_K` α, `resistance_ohm` R, `thermal_resistance_K_per_W` Θ between the plates; plate capacities in J/K.
+
+    >>> module = Peltier(0.0521, 6.35, 6.56, 2.6, 2.6)
+    >>> round(module.greatest_heat_W(300 - ZERO_C_IN_K, 313.15 - ZERO_C_IN_K), 2)
+    17.23
+    """
+
+    seebeck_V_per_K: float
+    resistance_ohm: float
+    thermal_resistance_K_per_W: float
+    hot_plate_J_per_K: float
+    cold_plate_J_per_K: float
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0):
+                raise ValueError(f"module.{name} = {value}: must be a positive number")
+
+    def heat_absorbed_W(self, current_A: float, cold_C: float, hot_C: float) -> float:
+        """Heat taken from the skin side in W: αTcI − I²R/2 − (Th − Tc)/Θ."""
+        pumped = self.seebeck_V_per_K * (cold_C + ZERO_C_IN_K) * current_A
+        return pumped - current_A**2 * self.resistance_ohm / 2 - (hot_C - cold_C) / self.thermal_resistance_K_per_W
+
+    def heat_rejected_W(self, current_A: float, cold_C: float, hot_C: float) -> float:
+        """Heat given to the hot plate in W: αThI + I²R/2 − (Th − Tc)/Θ."""
+        pumped = self.seebeck_V_per_K * (hot_C + ZERO_C_IN_K) * current_A
+        return pumped + current_A**2 * self.resistance_ohm / 2 - (hot_C - cold_C) / self.thermal_resistance_K_per_W
+
+    def voltage_V(self, current_A: float, cold_C: float, hot_C: float) -> float:
+        """Voltage at the module in V: α(Th − Tc) + IR."""
+        return self.seebeck_V_per_K * (hot_C - cold_C) + current_A * self.resistance_ohm
+
+    def greatest_heat_W(self, cold_C: float, hot_C: float) -> float:
+        """Most heat the module can absorb in W at fixed plate temperatures, at I = αTc/R."""
+        cold_K = cold_C + ZERO_C_IN_K
+        return (self.seebeck_V_per_K * cold_K) ** 2 / (2 * self.resistance_ohm) - (
+            hot_C - cold_C
+        ) / self.thermal_resistance_K_per_W
+
+    def figure_of_merit_per_K(self) -> float:
+        """Z = α²Θ/R in 1/K."""
+        return self.seebeck_V_per_K**2 * self.thermal_resistance_K_per_W / self.resistance_ohm

@@ -1,0 +1,285 @@
+"""Sourced numbers: a number that has no source does not load.
+
+A table is a TOML file with one `[[record]]` block for each number. Every block states a
+quantity, a unit, a source and a value (or an interval), and the conditions it holds under.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Protocol
+
+Plain = str | float
+USES = ("calibrate", "predict", "assumed", "reference")
+CONFIDENCES = ("high", "medium", "low")
+_NUMBERS = ("value", "low", "high")
+
+
+class Readable(Protocol):
+    """A file to read: a `Path`, or a resource inside a package."""
+
+    @property
+    def name(self) -> str:
+        """File name, for messages."""
+
+    def read_text(self, encoding: str | None = None) -> str:
+        """Whole text."""
+
+
+class RecordError(ValueError):
+    """A table or a look-up in it is wrong; the message names file, entry and cure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One sourced number.
+
+    `value` is the central figure and `low`, `high` its interval, in `unit`; at least one of the
+    three, or a numeric entry of `extra`, is there. `extra` holds the further columns of a table.
+
+    >>> r = Record("threshold", "K", "Stevens & Choo 1998", value=0.20, low=0.17, high=0.29)
+    >>> r.central, r.interval
+    (0.2, (0.17, 0.29))
+    """
+
+    quantity: str
+    unit: str
+    source: str
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    channel: str = ""
+    site: str = ""
+    method: str = ""
+    conditions: str = ""
+    confidence: str = ""
+    use: str = ""
+    extra: tuple[tuple[str, Plain], ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.quantity.strip():
+            raise RecordError('the record has no quantity: add quantity = "what the number is"')
+        if not self.source.strip():
+            raise RecordError('the record has no source: add source = "author year, place"')
+        numbers = [n for n in (self.value, self.low, self.high) if n is not None]
+        if not numbers and not any(isinstance(v, float) for _, v in self.extra):
+            raise RecordError("the record has no number: add value, or low and high")
+        if not all(math.isfinite(n) for n in numbers):
+            raise RecordError("value, low and high must be finite numbers: leave out what is not known")
+        known = [n for n in (self.low, self.value, self.high) if n is not None]
+        if known != sorted(known):
+            raise RecordError(f"low, value, high must be in this order, not {self.low}, {self.value}, {self.high}")
+        if self.use and self.use not in USES:
+            raise RecordError(f"use = {self.use!r} is not one of {', '.join(USES)}")
+        if self.confidence and self.confidence not in CONFIDENCES:
+            raise RecordError(f"confidence = {self.confidence!r} is not one of {', '.join(CONFIDENCES)}")
+
+    @property
+    def central(self) -> float:
+        """`value`, or the middle of the interval, or its only end."""
+        if self.value is not None:
+            return self.value
+        ends = [n for n in (self.low, self.high) if n is not None]
+        if not ends:
+            raise RecordError(f"{self.quantity}: only its further columns have numbers, read them with get()")
+        return sum(ends) / len(ends)
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """(low, high); an end that is not stated is the central value."""
+        middle = self.central
+        return (middle if self.low is None else self.low, middle if self.high is None else self.high)
+
+    def get(self, key: str) -> Plain:
+        """Value of a further column of this table."""
+        known = dict(self.extra)
+        if key not in known:
+            raise RecordError(f"{self.quantity}: no column {key!r}{_nearest(key, known)}")
+        return known[key]
+
+    def __repr__(self) -> str:
+        span = "" if self.low is None and self.high is None else f" [{_short(self.low)}, {_short(self.high)}]"
+        where = ", ".join(w for w in (self.channel, self.site, self.method) if w)
+        label = f"{self.quantity} ({where})" if where else self.quantity
+        return f"Record({label}: {_short(self.value)}{span} {self.unit}; {self.source})"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Records of one file, in its order.
+
+    >>> t = Table("demo", (Record("velocity", "m/s", "Fowler 1988", value=0.5, channel="warm"),))
+    >>> t.one("velocity", channel="warm").central
+    0.5
+    """
+
+    name: str
+    records: tuple[Record, ...]
+
+    def __iter__(self) -> Iterator[Record]:
+        return iter(self.records)
+
+    def __len__(self) -> int:
+        return len(self.records)
+
+    def __repr__(self) -> str:
+        return f"Table({self.name}: {len(self.records)} records)"
+
+    def select(
+        self,
+        quantity: str,
+        *,
+        channel: str = "",
+        site: str = "",
+        method: str = "",
+        use: str = "",
+        where: Mapping[str, Plain] | None = None,
+    ) -> tuple[Record, ...]:
+        """All records that match every key given; a channel also matches records for both channels."""
+        found = [r for r in self.records if r.quantity == quantity]
+        if not found:
+            known = {r.quantity for r in self.records}
+            raise RecordError(f"{self.name}: no quantity {quantity!r}{_nearest(quantity, known)}")
+        keys = {"channel": channel, "site": site, "method": method, "use": use, **(where or {})}
+        for key, wanted in keys.items():
+            if wanted == "":
+                continue
+            known_values = {str(_field(r, key)) for r in found}
+            matching = [r for r in found if _matches(_field(r, key), wanted, key)]
+            if not matching:
+                hint = _nearest(str(wanted), known_values)
+                raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {wanted!r}{hint}")
+            found = matching
+        return tuple(found)
+
+    def one(
+        self,
+        quantity: str,
+        *,
+        channel: str = "",
+        site: str = "",
+        method: str = "",
+        use: str = "",
+        where: Mapping[str, Plain] | None = None,
+    ) -> Record:
+        """The only record that matches the keys; an error when there are several or none."""
+        found = self.select(quantity, channel=channel, site=site, method=method, use=use, where=where)
+        if len(found) > 1:
+            exact = [r for r in found if r.channel == channel]
+            if channel and len(exact) == 1:
+                return exact[0]
+            choices = "; ".join(f"{r.channel or '-'}, {r.site or '-'}, {r.method or '-'}" for r in found)
+            raise RecordError(
+                f"{self.name}: {len(found)} records match {quantity!r}: say which channel, site or method ({choices})"
+            )
+        return found[0]
+
+
+def load_records(path: Readable | str, *, extra: Iterable[str] = ()) -> Table:
+    """Read a TOML table of records.
+
+    `extra` names the further columns this table may have (strings or numbers); any other key is
+    an error that shows the nearest one. Raises `RecordError` naming file, entry and cure.
+    """
+    file: Readable = Path(path) if isinstance(path, str) else path
+    try:
+        tree = tomllib.loads(file.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise RecordError(f"{file.name}: cannot be read ({problem.strerror}): check the path") from problem
+    except tomllib.TOMLDecodeError as problem:
+        raise RecordError(f"{file.name}: is not TOML: {problem}") from problem
+    if set(tree) != {"record"} or not isinstance(tree["record"], list):
+        raise RecordError(f"{file.name}: a table of records has [[record]] blocks and nothing else")
+    declared = tuple(extra)
+    return Table(file.name, tuple(_record(file.name, i, entry, declared) for i, entry in enumerate(tree["record"], 1)))
+
+
+def dump_records(table: Table, *, comment: str = "") -> str:
+    """TOML text that `load_records` reads back; `comment` heads the file."""
+    lines = [f"# {line}".rstrip() for line in comment.splitlines()]
+    for record in table:
+        lines += ["", "[[record]]"]
+        for field in fields(record):
+            held = getattr(record, field.name)
+            if field.name != "extra" and held not in (None, ""):
+                lines.append(f"{field.name} = {_toml(held)}")
+        lines += [f"{key} = {_toml(held)}" for key, held in record.extra]
+    return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> Record:
+    if not isinstance(entry, dict):
+        raise RecordError(f"{file}: record {index} is not a block of key = value lines")
+    place = f"{file}, record {index} ({entry.get('quantity', 'no quantity')})"
+    own = [f.name for f in fields(Record) if f.name != "extra"]
+    plain: dict[str, str] = {}
+    numbers: dict[str, float] = {}
+    further: list[tuple[str, Plain]] = []
+    for key, held in entry.items():
+        if key not in own and key not in declared:
+            raise RecordError(f"{place}: unknown key {key!r}{_nearest(key, [*own, *declared])}")
+        if isinstance(held, bool) or not isinstance(held, str | int | float):
+            raise RecordError(f"{place}: {key} must be a number or a text")
+        checked: Plain = held if isinstance(held, str) else float(held)
+        if key in _NUMBERS:
+            if isinstance(checked, str):
+                raise RecordError(f"{place}: {key} = {checked!r} must be a number without quotes or unit")
+            numbers[key] = checked
+        elif key in own:
+            if not isinstance(checked, str):
+                raise RecordError(f"{place}: {key} = {checked!r} must be a text in quotes")
+            plain[key] = checked
+        else:
+            further.append((key, checked))
+    try:
+        return Record(
+            quantity=plain.get("quantity", ""),
+            unit=plain.get("unit", ""),
+            source=plain.get("source", ""),
+            value=numbers.get("value"),
+            low=numbers.get("low"),
+            high=numbers.get("high"),
+            channel=plain.get("channel", ""),
+            site=plain.get("site", ""),
+            method=plain.get("method", ""),
+            conditions=plain.get("conditions", ""),
+            confidence=plain.get("confidence", ""),
+            use=plain.get("use", ""),
+            extra=tuple(further),
+        )
+    except RecordError as problem:
+        raise RecordError(f"{place}: {problem}") from None
+
+
+def _field(record: Record, key: str) -> Plain:
+    if key in ("channel", "site", "method", "use"):
+        return str(getattr(record, key))
+    return dict(record.extra).get(key, "")
+
+
+def _matches(held: Plain, wanted: Plain, key: str) -> bool:
+    return held == wanted or (key == "channel" and held == "both")
+
+
+def _nearest(word: str, known: Iterable[str]) -> str:
+    choices = sorted(k for k in known if k)
+    close = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
+    if close:
+        return f": did you mean {close[0]!r}?"
+    return f": there is {', '.join(map(repr, choices[:12]))}" if choices else ""
+
+
+def _toml(held: Plain) -> str:
+    if isinstance(held, str):
+        escaped = held.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+        return f'"{escaped}"'
+    return repr(held)
+
+
+def _short(number: float | None) -> str:
+    return "–" if number is None else f"{number:.4g}"

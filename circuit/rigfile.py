@@ -1,0 +1,217 @@
+"""The rig file at the door: which keys there are, in which units, within which limits."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from thermicon.circuit.door import InputError, nearest
+
+
+class RigError(InputError):
+    """A rig that cannot be: every finding on a line of its own, with key, value, limit, unit and cure."""
+
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+Celsius = Annotated[float, Field(ge=-20, le=120)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class ModuleTable(_Table):
+    """The Peltier module and its two plates."""
+
+    seebeck_V_per_K: Positive
+    resistance_ohm: Positive
+    thermal_resistance_K_per_W: Positive
+    hot_plate_J_per_K: Positive
+    cold_plate_J_per_K: Positive
+
+
+class HeatSinkTable(_Table):
+    """What the hot plate sits on."""
+
+    temperature_C: Celsius
+    resistance_K_per_W: Positive
+
+
+class DriverTable(_Table):
+    """The current source and its limits."""
+
+    transconductance_A_per_V: Positive = 0.1
+    current_limit_A: Positive
+    current_min_A: float | None = None
+    voltage_limit_V: Positive
+    update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
+
+
+class ContactTable(_Table):
+    """Where display and skin meet."""
+
+    area_cm2: Positive
+    resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
+
+
+class AmbientTable(_Table):
+    """The air that bare skin rests in."""
+
+    temperature_C: Celsius
+    film_W_per_m2K: Positive
+
+
+class LayerTable(_Table):
+    """One layer of tissue."""
+
+    name: Annotated[str, Field(min_length=1)]
+    thickness_mm: Annotated[float, Field(gt=0, le=200)]
+    conductivity_W_per_mK: Positive
+    density_kg_per_m3: Positive
+    heat_capacity_J_per_kgK: Positive
+    perfusion_per_s: NotNegative = 0.0
+
+
+class SkinTable(_Table):
+    """The skin under the display, surface first."""
+
+    site: str
+    rest_C: Celsius
+    cold_receptor_mm: Positive
+    warm_receptor_mm: Positive
+    deep_C: Celsius | None = None
+    elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
+    layer: Annotated[list[LayerTable], Field(min_length=1)]
+
+
+class BloodTable(_Table):
+    """Blood that perfuses the layers."""
+
+    density_kg_per_m3: Positive
+    heat_capacity_J_per_kgK: Positive
+
+
+class RigTable(_Table):
+    """A whole rig file."""
+
+    format: Literal[1]
+    name: Annotated[str, Field(min_length=1)]
+    title: str = ""
+    module: ModuleTable
+    heat_sink: HeatSinkTable
+    driver: DriverTable
+    contact: ContactTable
+    ambient: AmbientTable
+    skin: SkinTable
+    blood: BloodTable
+    source: dict[str, str] = Field(default_factory=dict)
+
+
+_LATER = {
+    "module.datasheet": "module data sheets are not read yet; give seebeck_V_per_K, resistance_ohm and "
+    "thermal_resistance_K_per_W",
+    "heat_sink.capacity_J_per_K": "a hot plate under its own controller is not simulated yet",
+    "heat_sink.kp_W_per_K": "a hot plate under its own controller is not simulated yet",
+    "heat_sink.ki_W_per_Ks": "a hot plate under its own controller is not simulated yet",
+    "heat_sink.power_limit_W": "a hot plate under its own controller is not simulated yet",
+    "controller": "closed-loop control is not simulated yet; the display is tracked ideally within the driver's limits",
+    "probe": "extra probes are not simulated yet",
+    "uncertainty": "uncertainty is not used yet",
+    "safety": "the shipped safety limits cannot be changed yet",
+}
+
+_UNITS = ("V_per_K", "A_per_V", "K_per_W", "m2K_per_W", "W_per_m2K", "W_per_mK", "kg_per_m3", "J_per_kgK", "J_per_K")
+_UNITS_SHORT = {"C": "°C", "ohm": "Ω", "per_s": "1/s", "cm2": "cm²", "mm": "mm", "A": "A", "V": "V", "Hz": "Hz"}
+
+
+def unit_of(key: str) -> str:
+    """Return the unit that ends a key's name, written as people write it.
+
+    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("contact.area_cm2"), unit_of("skin.site")
+    ('m²·K/W', 'cm²', '')
+    """
+    for unit in sorted(_UNITS, key=len, reverse=True):
+        if key.endswith("_" + unit):
+            over, under = unit.split("_per_")
+            pretty = [part.replace("m2K", "m²·K").replace("mK", "m·K").replace("kgK", "kg·K") for part in (over, under)]
+            top, bottom = (part.replace("m3", "m³").replace("m2", "m²") for part in pretty)
+            return f"{top}/({bottom})" if "·" in bottom else f"{top}/{bottom}"
+    for unit, written in _UNITS_SHORT.items():
+        if key.endswith("_" + unit):
+            return written
+    return ""
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Return the TOML text as a dictionary, or raise RigError that says which line is wrong."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise RigError(f"{where}: not a valid TOML file: {problem}") from None
+
+
+def read_table(document: Mapping[str, Any], where: str) -> RigTable:
+    """Return the checked table of a rig document, or raise RigError with all its faults at once."""
+    try:
+        return RigTable.model_validate(dict(document))
+    except ValidationError as problem:
+        findings = [_in_words(error, document) for error in problem.errors(include_url=False)]
+        raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+
+
+def rig_keys() -> tuple[str, ...]:
+    """All dotted keys of a rig file; those of a layer carry a 0 for its place."""
+    return tuple(_keys(RigTable, ""))
+
+
+def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
+    for name, field in table.model_fields.items():
+        if name == "layer":
+            yield from _keys(LayerTable, f"{prefix}layer.0.")
+        elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
+            yield from _keys(field.annotation, f"{prefix}{name}.")
+        elif name != "source":
+            yield prefix + name
+
+
+def unknown_key(key: str) -> str:
+    """Return what to say of a key that no rig has."""
+    for later, words in _LATER.items():
+        if key == later or key.startswith(later + "."):
+            return f"{key}: {words}; remove the key"
+    known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
+    place, dot, name = key.rpartition(".")
+    beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
+    close = difflib.get_close_matches(name, beside, n=2, cutoff=0.6)
+    if close:
+        return f"{key}: unknown key; did you mean {' or '.join(place + dot + other for other in close)}?"
+    return f"{key}: unknown key; {nearest(key, known if dot and place not in known else beside)}"
+
+
+def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
+    key = ".".join(str(part) for part in error["loc"])
+    unit = unit_of(key)
+    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
+    said = f"{key} = {value!r}" if isinstance(value, (int, float, str, bool)) else key
+    if kind == "extra_forbidden":
+        plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
+        return unknown_key(plain).replace(plain + ":", key + ":", 1)
+    if kind == "missing":
+        return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
+    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
+        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
+        words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
+        return f"{said}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
+    if kind == "finite_number":
+        return f"{said}: must be a finite number{f' in {unit}' if unit else ''}"
+    if kind in ("float_type", "int_type", "float_parsing"):
+        return f"{said}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
+    if kind == "literal_error":
+        return f"{said}: must be {context.get('expected')}"
+    return f"{said}: {error['msg'][:1].lower()}{error['msg'][1:]}"

@@ -1,0 +1,129 @@
+"""The circuit run: a cue or a drive on a rig gives a Trace."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from thermicon.circuit.bank import Bank, cut, run_forward
+from thermicon.circuit.drive import Drive
+from thermicon.circuit.inverse import baseline_C, design, target_at
+from thermicon.circuit.module import Peltier
+from thermicon.circuit.network import PROBES, network_of
+from thermicon.circuit.rig import Rig
+from thermicon.circuit.rigfile import RigError
+from thermicon.circuit.skin import Array
+from thermicon.circuit.steady import steady_state
+from thermicon.circuit.trace import Outcome, Trace
+from thermicon.icons import Icon
+
+MOST_ROWS = 20_000_000
+
+
+def rows_until(end_s: float, rate_Hz: float) -> Array:
+    """Times in s of the rows of a run: a whole number of them a second, and the end.
+
+    >>> rows_until(0.25, 10)
+    array([0.  , 0.1 , 0.2 , 0.25])
+    """
+    if not (0 < rate_Hz < np.inf):
+        raise RigError(f"a rate of {rate_Hz:g} Hz is not possible; it must be above 0")
+    if end_s * rate_Hz > MOST_ROWS:
+        raise RigError(
+            f"{end_s:g} s at {rate_Hz:g} Hz are {end_s * rate_Hz:.0f} rows; the limit is {MOST_ROWS}: lower the rate"
+        )
+    rows = np.arange(int(end_s * rate_Hz + 1e-9) + 1) / rate_Hz
+    return rows if end_s - rows[-1] < 1e-9 else np.append(rows, end_s)
+
+
+def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
+    """Play a cue on a rig: find the current that makes it, then run the circuit with that current.
+
+    The trace has `rate_Hz` rows a second and ends `tail_s` seconds after the cue's last corner. Its `outcome` says
+    whether the target was reached. Raises RigError when no current holds the baseline.
+
+    >>> from thermicon.icons import load_library
+    >>> step = load_library("six-icons")["cooling-step"]
+    >>> simulate(step, Rig.load("thenar"))
+    Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.15 … 32.27 °C, -0.48 … 1.11 A)
+    """
+    if not (0 <= tail_s < np.inf):
+        raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
+    base = baseline_C(icon, rig)
+    end = icon.lower(base).duration_s if icon.frame.control != "current" else icon.lower(0.0).duration_s
+    plan = design(icon, rig, end + tail_s)
+    if icon.frame.control == "current":
+        end = float(icon.lower(float(plan.drive.current_A[0])).duration_s)
+        plan = design(icon, rig, end + tail_s)
+    rows = rows_until(end + tail_s, rate_Hz)
+    target = np.full(len(rows), np.nan)
+    if icon.frame.control != "current":
+        target = target_at(icon, base, rows)
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, target, icon.frame.control, plan.outcome)
+
+
+def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0) -> Trace:
+    """Run the circuit with a given drive, from the steady state of its first current to its last row.
+
+    The driver's limits only warn. Raises RigError when the first current has no steady state.
+    """
+    first = float(drive.current_A[0])
+    try:
+        state = steady_state(network_of(rig), first)
+    except ArithmeticError as problem:
+        raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
+    rows = rows_until(float(drive.time_s[-1]), rate_Hz)
+    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None)
+
+
+def _run(
+    rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
+    outcome: Outcome | None,
+) -> Trace:  # fmt: skip
+    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
+    probes = run_forward(bank, one, one, intervals, bank.states([state]))[:, 0]
+    finite = np.isfinite(probes).all(axis=0)
+    if not finite.all():
+        raise RigError(f"rig {rig.name}: the run leaves all bounds at {rows[int(np.argmin(finite))]:g} s")
+    current = drive.at(rows)
+    values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
+    voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
+    limits = (rig.driver.current_min_A, rig.driver.current_max_A)
+    return Trace(
+        icon=icon,
+        rig_name=rig.name,
+        site=rig.site,
+        area_m2=rig.contact.area_m2,
+        driver_limits_A=limits,
+        control=control,
+        outcome=outcome,
+        warnings=(*rig.warnings, *_over(rig, rows, current, voltage)),
+        time_s=rows,
+        current_A=current,
+        voltage_V=voltage,
+        target_C=target,
+        **values,
+    )
+
+
+def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
+    return module.seebeck_V_per_K * (hot - cold) + current * module.resistance_ohm
+
+
+def _over(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
+    """Sentences for a drive that asks more of the driver than it has."""
+    driver, found = rig.driver, []
+    outside = (current > driver.current_max_A + 1e-9) | (current < driver.current_min_A - 1e-9)
+    if outside.any():
+        at = int(np.argmax(outside))
+        found.append(
+            f"the drive asks for {current[at]:.3g} A at {rows[at]:.2f} s; this driver gives "
+            f"{driver.current_min_A:g} … {driver.current_max_A:g} A"
+        )
+    beyond = np.abs(voltage) > driver.voltage_limit_V + 1e-6
+    if beyond.any():
+        at = int(np.argmax(beyond))
+        found.append(
+            f"the drive needs {voltage[at]:.3g} V at {rows[at]:.2f} s; this driver gives {driver.voltage_limit_V:g} V"
+        )
+    return tuple(found)

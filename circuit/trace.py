@@ -1,0 +1,149 @@
+"""A trace: what one run did, row by row, and whether it reached its target."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermicon.circuit.skin import Array
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+COLUMNS = (
+    "icon",
+    "time_s",
+    "current_A",
+    "voltage_V",
+    "target_C",
+    "hot_plate_C",
+    "display_C",
+    "skin_C",
+    "cold_receptor_C",
+    "warm_receptor_C",
+    "heat_flow_skin_W_per_m2",
+    "heat_flow_cold_receptor_W_per_m2",
+    "heat_flow_warm_receptor_W_per_m2",
+)
+"""Columns of a trace file, in order."""
+
+CLOSE_K = 0.1
+BRIEF_K = 0.25
+BRIEF_S = 0.2
+"""A cue is reached within 0.1 K, or within 0.25 K for at most 0.2 s: a corner in a skin ramp saturates any driver."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Whether the controlled temperature reached its target, judged at the end of every driver period.
+
+    Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits met with
+    the times in s at which each was first met.
+    """
+
+    reached: bool
+    largest_miss_K: float
+    largest_miss_s: float
+    rms_miss_K: float
+    limits: tuple[tuple[str, float], ...]
+
+    @property
+    def reason(self) -> str | None:
+        """Why the target was missed, in one sentence; None where it was reached."""
+        if self.reached:
+            return None
+        held = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
+        return (
+            f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s"
+            f"{f', held back by the {held}' if held else ''}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
+
+    `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
+    """
+
+    icon: str | None
+    rig_name: str
+    site: str
+    area_m2: float
+    driver_limits_A: tuple[float, float]
+    control: str
+    outcome: Outcome | None
+    warnings: tuple[str, ...]
+    time_s: Array
+    current_A: Array
+    voltage_V: Array
+    target_C: Array
+    hot_plate_C: Array
+    display_C: Array
+    skin_C: Array
+    cold_receptor_C: Array
+    warm_receptor_C: Array
+    heat_flow_skin_W_per_m2: Array
+    heat_flow_cold_receptor_W_per_m2: Array
+    heat_flow_warm_receptor_W_per_m2: Array
+
+    def __post_init__(self) -> None:
+        for name in COLUMNS[1:]:
+            array = getattr(self, name)
+            if array.shape != self.time_s.shape:
+                raise ValueError(f"trace: {name} has {array.shape} values for {self.time_s.shape} times")
+            array.setflags(write=False)
+
+    def __repr__(self) -> str:
+        said = "" if self.outcome is None or self.outcome.reached else ", target missed"
+        return (
+            f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
+            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, "
+            f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A{said})"
+        )
+
+    def _repr_html_(self) -> str:
+        from thermicon.circuit.draw import svg_of
+
+        return svg_of(self)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the trace as a table with the columns of a trace file."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"icon": pd.Series([self.icon] * len(self.time_s), dtype="string")}
+        columns.update({name: getattr(self, name) for name in COLUMNS[1:]})
+        return pd.DataFrame(columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw target, display, skin and receptor temperatures against time; returns the Axes."""
+        from thermicon.circuit.draw import plot_temperatures
+
+        return plot_temperatures(self, ax)
+
+
+def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
+    """Write traces one after the other as `.csv` or `.parquet`; NaN becomes an empty cell."""
+    import pandas as pd
+
+    frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
+    table = pd.concat(frames, ignore_index=True)
+    if str(path).endswith(".parquet"):
+        table.to_parquet(path, index=False)
+    else:
+        table.to_csv(path, index=False, float_format="%.9g")
+
+
+def judge(target_C: Array, reached_C: Array, period_s: float, limits: tuple[tuple[str, float], ...]) -> Outcome:
+    """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period."""
+    miss = reached_C - target_C
+    worst = int(np.argmax(np.abs(miss)))
+    over = np.abs(miss) > CLOSE_K
+    largest = float(miss[worst])
+    close = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
+    rms = float(np.sqrt(np.mean(miss**2)))
+    return Outcome(bool(close), largest, (worst + 1) * period_s, rms, limits)

@@ -1,0 +1,77 @@
+"""Drives and their files."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, DriveError, Rig, RigError, read_drive, simulate_current
+
+
+def test_a_drive_reads_between_its_rows() -> None:
+    times = np.array([0.0, 0.5, 1.0, 1.5, 2.0])
+    assert Drive([0, 1, 2], [0, 1, 0]).at(times).tolist() == [0, 0.5, 1, 0.5, 0]
+    assert Drive([0, 1, 2], [0, 1, 0], held=True).at(times).tolist() == [0, 0, 1, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("times", "currents", "words"),
+    [
+        ([0, 1], [0.0], "one current for each time"),
+        ([0], [0.0], "at least two rows, a start and an end; got 1"),
+        ([0, float("nan")], [0, 0], r"row 2: time nan s, current 0 A; both must be finite"),
+        ([0, 1], [0, float("inf")], r"row 2: time 1 s, current inf A; both must be finite"),
+        ([0.5, 1], [0, 0], "row 1: time 0.5 s; a drive starts at 0 s"),
+        ([0, 2, 1], [0, 0, 0], "row 3: time 1 s does not come after 2 s; times must increase"),
+        ([0, 1, 1], [0, 0, 0], "row 3: time 1 s does not come after 1 s"),
+    ],
+)
+def test_an_impossible_drive_is_refused(times: list[float], currents: list[float], words: str) -> None:
+    with pytest.raises(DriveError, match=words):
+        Drive(times, currents)
+
+
+def test_a_drive_file(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("note,time_s,current_A\nstart,0,0.1\n\nend,4,0.5\n")
+    assert repr(read_drive(path)) == "Drive(2 rows, 4 s, 0.1 … 0.5 A, linear)"
+    assert read_drive(path, hold=True).held
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("time_s,amps\n0,1\n", r"drive\.csv:1: column current_A is missing; the first line must be time_s,current_A"),
+        ("time_s,current_A\n0,1\n1,x\n", r"drive\.csv:3: current_A is 'x', not a number"),
+        ("time_s,current_A\n0,1\n1,nan\n", r"drive\.csv:3: current_A is nan; it must be a finite number"),
+        ("time_s,current_A\n0,1\n1\n", r"drive\.csv:3: current_A is '', not a number"),
+        ("time_s,current_A\n0,1\n", r"drive\.csv: a drive needs at least two rows"),
+        ("time_s,current_A\n0,1\n0,1\n", r"drive\.csv: row 2: time 0 s does not come after 0 s"),
+        ("", r"drive\.csv: the file is empty; a drive file was expected"),
+    ],
+)
+def test_a_bad_drive_file_says_where(tmp_path: Path, text: str, words: str) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(text)
+    with pytest.raises(DriveError, match=words):
+        read_drive(path)
+
+
+def test_a_drive_past_the_driver_only_warns() -> None:
+    trace = simulate_current(Drive([0, 1, 2, 3], [0, 0, 3, 3]), Rig.load("thenar"))
+    assert trace.warnings[0].startswith("the drive asks for 1.53 A at 1.51 s; this driver gives -1.5 … 1.5 A")
+    assert trace.current_A.max() == 3.0
+    assert "the drive needs 15" in trace.warnings[1]
+
+
+def test_a_first_current_without_a_steady_state_is_refused() -> None:
+    with pytest.raises(RigError, match=r"-5 A held for ever has no steady state on this rig.*begin the drive with"):
+        simulate_current(Drive([0, 1], [-5, 0]), Rig.load("thenar"))
+
+
+def test_a_jump_falls_on_its_own_instant_whatever_the_rows() -> None:
+    rig = Rig.load("thenar")
+    drive = Drive([0, 0.1234, 1], [0.1, 0.9, 0.9], held=True)
+    fine, coarse = (simulate_current(drive, rig, rate_Hz=rate) for rate in (1000, 10))
+    assert coarse.display_C == pytest.approx(fine.display_C[::100], abs=2e-5)
+    assert coarse.current_A.tolist() == [0.1, 0.1] + [0.9] * 9

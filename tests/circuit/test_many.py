@@ -1,0 +1,72 @@
+"""Many cues on many rigs give what one at a time gives."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many
+from thermicon.circuit.inverse import design
+from thermicon.icons import load_library
+
+THENAR = Rig.load("thenar")
+OTHERS = [
+    THENAR,
+    THENAR.with_(**{"contact.resistance_m2K_per_W": 9e-4}),
+    THENAR.with_(**{"skin.layer.0.thickness_mm": 0.26}),
+]
+SIX = tuple(load_library("six-icons"))[:2]
+SKIN = tuple(load_library("cooling-step-skin"))
+
+
+def test_shapes_and_reading() -> None:
+    batch = simulate_many(SIX, OTHERS, nominal=THENAR, end_s=12.0)
+    assert batch.values.shape == (3, 3, 2, 1201)
+    assert batch.cold_C.shape == (3, 2, 1201)
+    assert not batch.values.flags.writeable
+
+
+def test_display_tracking_is_each_rigs_own_run() -> None:
+    batch = simulate_many(SIX, OTHERS, nominal=THENAR, end_s=12.0, tracking="display", probes=("cold_receptor_C",))
+    for r, rig in enumerate(OTHERS):
+        for i, icon in enumerate(SIX):
+            alone = simulate(icon, rig, tail_s=12.0 - icon.lower(32.0).duration_s)
+            assert batch["cold_receptor_C"][r, i] == pytest.approx(alone.cold_receptor_C, abs=1e-9)
+
+
+def test_replay_plays_the_nominal_current_open_loop() -> None:
+    batch = simulate_many(SKIN, OTHERS, nominal=THENAR, end_s=12.0, probes=("skin_C",))
+    plan = design(SKIN[0], THENAR, 12.0)
+    lead = Drive([0, *(plan.drive.time_s + 0.5)], [plan.rest_A, *plan.drive.current_A], held=True)
+    for r, rig in enumerate(OTHERS):
+        alone = simulate_current(lead, rig).skin_C[50:]
+        assert batch["skin_C"][r, 0] == pytest.approx(alone, abs=1e-4), r
+    change = batch["skin_C"][:, 0].min(axis=1) - batch["skin_C"][:, 0, 0]
+    assert change[0] == pytest.approx(-6.0, abs=0.02)
+    assert -5.9 < change[1] < -5.5, "the same current cools skin less through a worse contact"
+
+
+def test_display_tracking_of_a_skin_cue_follows_the_nominal_display() -> None:
+    probes = ("display_C", "skin_C")
+    batch = simulate_many(SKIN, OTHERS, nominal=THENAR, end_s=12.0, tracking="display", probes=probes)
+    nominal = simulate(SKIN[0], THENAR, tail_s=4.0)
+    assert batch["display_C"][0, 0] == pytest.approx(nominal.display_C, abs=2e-3)
+    assert np.abs(batch["display_C"][1, 0] - nominal.display_C).max() < 0.2
+    assert np.abs(batch["skin_C"][1, 0] - nominal.skin_C).max() > 0.3
+
+
+def test_ideal_gives_every_skin_the_same() -> None:
+    batch = simulate_many(SKIN, OTHERS, nominal=THENAR, end_s=12.0, tracking="ideal", probes=("skin_C",))
+    held = (batch.time_s > 3) & (batch.time_s < 5.9)
+    assert batch["skin_C"][:, 0, held] == pytest.approx(26.0, abs=2e-3)
+
+
+def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    many = simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0)
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    assert simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
+
+
+def test_an_unknown_tracking_and_mixed_drivers_are_refused() -> None:
+    with pytest.raises(RigError, match="tracking 'replays' is not known; it is one of replay, display, ideal"):
+        simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0, tracking="replays")
+    with pytest.raises(RigError, match=r"rigs of one batch must share driver\.update_Hz"):
+        simulate_many(SIX, [THENAR.with_(**{"driver.update_Hz": 50})], nominal=THENAR, end_s=10.0)

@@ -1,0 +1,99 @@
+"""Steady states and rest against pencil and paper."""
+
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, RigError, hold, steady_state
+from thermicon.circuit.module import ZERO_C_IN_K
+from thermicon.circuit.network import PROBES, network_of
+from thermicon.circuit.skin import Layer, Skin, column_of
+
+THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
+
+
+def test_rest_is_the_layered_pennes_closed_form() -> None:
+    # Each layer passes temperature and flux on by a 2 × 2 matrix; the face loses 10 · (32 − 24) = 80 W/m².
+    blood = 1060 * 3770
+    chain = np.eye(2)
+    for layer in THENAR.skin.layers:
+        m = math.sqrt(layer.perfusion_per_s * blood / layer.conductivity_W_per_mK)
+        h, k = layer.thickness_m, layer.conductivity_W_per_mK
+        step = (
+            [[1, h / k], [0, 1]]
+            if m == 0
+            else [[math.cosh(m * h), math.sinh(m * h) / (k * m)], [k * m * math.sinh(m * h), math.cosh(m * h)]]
+        )
+        chain = np.array(step) @ chain
+    deep = 32.0 + chain[0, 1] * 80 / chain[0, 0]
+    assert deep == pytest.approx(34.58, abs=5e-3)
+    assert THENAR.blood_C == pytest.approx(deep, abs=2e-3)
+    assert THENAR.resting_flux_W_per_m2 == pytest.approx(-80.0, abs=1e-9)
+
+
+def test_the_printed_slab_loses_1046_watts() -> None:
+    resistance = 0.081e-3 / 0.24 + 2e-3 / 0.45
+    assert SHANI.resting_flux_W_per_m2 == pytest.approx(-5 / resistance)
+    assert SHANI.ambient.film_W_per_m2K * 8 == pytest.approx(5 / resistance, rel=1e-3)
+
+
+def test_pennes_slab_has_its_known_surface_temperature() -> None:
+    # 30 mm, core and blood 37 °C, film 10 W/(m²·K) to 25 °C, perfusion 1.25e-3 1/s: surface 34.916028 °C.
+    slab = Skin("test", 35, 5e-3, 6e-3, (Layer("dermis", 30e-3, 0.45, 1060, 3300, 1.25e-3),), elements=(400,))
+    column = column_of(slab, 1060 * 3770)
+    drop = column.steady_drop_K(1.0)  # K for 1 W/m² into the face
+    surface = (37 + 10 * 25 * drop) / (1 + 10 * drop)
+    assert surface == pytest.approx(34.916028, abs=2e-4)
+
+
+@pytest.mark.parametrize("current", [-0.4, 0.0, 0.13, 0.9])
+def test_steady_state_of_the_printed_model_by_series_resistances(current: float) -> None:
+    # Two unknowns, hot and cold plate; the slab and the contact are one resistance to 37 °C.
+    rig, module = SHANI, SHANI.module
+    a, r, theta = module.seebeck_V_per_K, module.resistance_ohm, module.thermal_resistance_K_per_W
+    skin = 9e-4 / (5.4e-4 + 0.081e-3 / 0.24 + 2e-3 / 0.45)
+    matrix = [[1 / 0.2 + 1 / theta - a * current, -1 / theta], [-1 / theta, 1 / theta + a * current + skin]]
+    joule, lift = r * current**2 / 2, a * current * ZERO_C_IN_K
+    hot, cold = np.linalg.solve(matrix, [40 / 0.2 + lift + joule, -lift + joule + skin * 37])
+    state = steady_state(network_of(rig), current)
+    assert state[:2] == pytest.approx([hot, cold], abs=1e-9)
+    flux = (cold - 37) * skin / 9e-4
+    network = network_of(rig)
+    for probe in PROBES[5:]:
+        assert network.read(state, probe) == pytest.approx(flux, abs=1e-6)
+    face = cold - flux * 5.4e-4
+    assert network.read(state, "skin_C") == pytest.approx(face, abs=1e-9)
+    depth = 0.081e-3 / 0.24 + (0.15e-3 - 0.081e-3) / 0.45
+    assert network.read(state, "cold_receptor_C") == pytest.approx(face - flux * depth, abs=1e-9)
+
+
+@pytest.mark.parametrize("control", ["skin", "display"])
+@pytest.mark.parametrize("rig", [THENAR, SHANI], ids=lambda rig: rig.name)
+def test_the_baseline_is_held(rig: Rig, control: str) -> None:
+    current, state = hold(rig, control, 31.0)
+    assert network_of(rig).read(state, f"{control}_C") == pytest.approx(31.0, abs=1e-9)
+    assert rig.driver.current_min_A < current < rig.driver.current_max_A
+
+
+def test_holding_currents_of_the_shipped_rigs() -> None:
+    assert hold(THENAR, "skin", 32.0)[0] == pytest.approx(0.083, abs=1e-3)
+    assert hold(SHANI, "skin", 32.0)[0] == pytest.approx(0.148, abs=1e-3)
+
+
+def test_current_that_holds_nothing() -> None:
+    # Zero current is not the baseline, and −0.5 A held burns: why safety never assumes 40 °C.
+    network = network_of(THENAR)
+    assert network.read(steady_state(network, 0.0), "skin_C") == pytest.approx(39.1, abs=0.1)
+    assert network.read(steady_state(network, -0.5), "skin_C") == pytest.approx(96.4, abs=0.1)
+    with pytest.raises(ArithmeticError, match=r"-4 A held for ever has no steady state on this rig"):
+        steady_state(network, -4.0)
+
+
+def test_a_baseline_that_no_current_holds_is_refused() -> None:
+    with pytest.raises(RigError, match=r"a baseline of -60 °C on the skin cannot be held: the module cools it to"):
+        hold(THENAR, "skin", -60.0)
+    with pytest.raises(RigError, match=r"cannot be held: it needs 0\.083 A, the driver gives -0\.05 … 0\.05 A"):
+        hold(THENAR.with_(**{"driver.current_limit_A": 0.05}), "skin", 32.0)
+    with pytest.raises(RigError, match=r"it needs 0\.95 V, the driver gives at most 0\.5 V"):
+        hold(THENAR.with_(**{"driver.voltage_limit_V": 0.5}), "skin", 32.0)

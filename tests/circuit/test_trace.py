@@ -1,0 +1,131 @@
+"""Traces: columns, rows, files, pictures and safety."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thermicon.circuit import Drive, Rig, RigError, Trace, judge_safety, simulate, simulate_current, write_trace
+from thermicon.circuit.draw import plot_current, plot_heat_flow
+from thermicon.circuit.limits import limit_table
+from thermicon.circuit.trace import judge
+from thermicon.icons import load_library, parse
+
+THENAR = Rig.load("thenar")
+STEP = load_library("six-icons")["cooling-step"]
+COLUMNS = [
+    "icon", "time_s", "current_A", "voltage_V", "target_C", "hot_plate_C", "display_C", "skin_C", "cold_receptor_C",
+    "warm_receptor_C", "heat_flow_skin_W_per_m2", "heat_flow_cold_receptor_W_per_m2",
+    "heat_flow_warm_receptor_W_per_m2",
+]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def trace() -> Trace:
+    return simulate(STEP, THENAR)
+
+
+def test_columns_and_rows(trace: Trace) -> None:
+    frame = trace.to_frame()
+    assert list(frame.columns) == COLUMNS
+    assert len(frame) == 801
+    assert frame["time_s"].iloc[-1] == 8.0
+    assert set(frame["icon"]) == {"cooling-step"}
+    assert trace.heat_flow_skin_W_per_m2[0] == pytest.approx(-78.7, abs=0.1)
+
+
+def test_a_tail_at_baseline_and_another_rate(trace: Trace) -> None:
+    longer = simulate(STEP, THENAR, rate_Hz=40, tail_s=10)
+    assert (len(longer.time_s), longer.time_s[-1]) == (721, 18.0)
+    assert longer.display_C[-1] == pytest.approx(32.0, abs=1e-3)
+    assert longer.display_C[:321:2] == pytest.approx(trace.display_C[::5], abs=2e-4)
+
+
+def test_the_last_row_is_the_end_even_off_the_grid() -> None:
+    run = simulate_current(Drive([0, 0.255], [0.1, 0.1]), THENAR)
+    assert run.time_s[-2:].tolist() == [0.25, 0.255]
+
+
+def test_icon_and_target_are_empty_for_a_drive(tmp_path: Path) -> None:
+    path = tmp_path / "drive.csv"
+    write_trace(simulate_current(Drive([0, 0.02], [0.1, 0.2]), THENAR), path)
+    lines = path.read_text().splitlines()
+    assert lines[0] == ",".join(COLUMNS)
+    assert [line.split(",")[0] for line in lines[1:]] == ["", "", ""]
+    assert [line.split(",")[4] for line in lines[1:]] == ["", "", ""]
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_files_read_back(trace: Trace, tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"trace{suffix}"
+    write_trace([trace, trace], path)
+    back = pd.read_csv(path) if suffix == ".csv" else pd.read_parquet(path)
+    assert list(back.columns) == COLUMNS
+    assert len(back) == 2 * 801
+    assert back["skin_C"].to_numpy()[:801] == pytest.approx(trace.skin_C, abs=1e-6)
+
+
+def test_a_trace_is_frozen_and_read_only(trace: Trace) -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        trace.skin_C[0] = 0.0
+    with pytest.raises(AttributeError, match="cannot assign"):
+        trace.icon = "other"  # type: ignore[misc]
+
+
+def test_repr_and_picture(trace: Trace) -> None:
+    assert repr(trace) == ("Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)")
+    assert trace._repr_html_().startswith("<svg")
+
+
+def test_plots_return_axes_with_units(trace: Trace) -> None:
+    axes = trace.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "temperature (°C)")
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == [  # type: ignore[union-attr]
+        "target (display)", "display", "skin surface", "cold receptors", "warm receptors",
+    ]  # fmt: skip
+    assert trace.plot(axes) is axes
+    assert "W/m²" in plot_heat_flow(trace).get_ylabel()
+    assert "(A)" in plot_current(trace).get_ylabel()
+
+
+@pytest.mark.parametrize(
+    ("rate", "tail", "words"), [(0, 0, "a rate of 0 Hz"), (1e9, 0, "rows; the limit is"), (100, -1, "a tail of -1 s")]
+)
+def test_impossible_rates_and_tails(rate: float, tail: float, words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        simulate(STEP, THENAR, rate_Hz=rate, tail_s=tail)
+
+
+def test_reached_has_a_stated_tolerance() -> None:
+    target = np.zeros(100)
+    brief, long_ = np.zeros(100), np.zeros(100)
+    brief[:20], long_[:21] = 0.24, 0.24
+    assert judge(target, brief, 0.01, ()).reached
+    assert not judge(target, long_, 0.01, ()).reached
+    assert judge(target, np.full(100, -0.1), 0.01, ()).reached
+    brief[0] = -0.26
+    outcome = judge(target, brief, 0.01, (("current limit", 0.0),))
+    assert outcome.reason == "misses its target by 0.26 K at 0.01 s, held back by the current limit from 0.00 s"
+
+
+def test_every_limit_has_a_source() -> None:
+    assert {record.quantity for record in limit_table()} == {
+        "skin surface", "display", "rate of skin temperature", "cold-receptor depth", "hot plate",
+    }  # fmt: skip
+    assert all(record.source for record in limit_table())
+
+
+def test_safety_is_judged_from_the_simulated_skin(trace: Trace) -> None:
+    assert judge_safety(trace).colour == "green"
+    assert judge_safety(trace).reason is None
+    cold = simulate(parse("cue 1\nicon cold {\n cool to 20 °C at 2 °C/s\n}").icons[0], THENAR)
+    verdict = judge_safety(cold)
+    assert (verdict.colour, verdict.safe, verdict.reason) == ("amber", True, None)
+    assert "skin surface reaches 20 °C at" in str(verdict.findings[0])
+    burn = simulate_current(Drive([0, 30], [-0.2, -0.2]), THENAR)
+    verdict = judge_safety(burn)
+    assert (verdict.colour, verdict.safe) == ("red", False)
+    assert verdict.reason is not None
+    assert verdict.reason.startswith("skin surface reaches 58")
+    assert "above the hard limit of 42 °C" in verdict.reason
