@@ -95,17 +95,18 @@ def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Interva
 def run_forward(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES
 ) -> Array:
-    """Return the probes (probes, lanes, rows) of every lane; `state` (lanes, n + 3) is left at the end of the run."""
-    from thermicon.circuit import kernel
+    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3)."""
+    from thermicon.circuit import kernel, lanes
 
     which = [PROBES.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
     weights = np.ascontiguousarray(bank.probe_weight[:, which])
     out = np.empty((len(which), len(rig_of), int(intervals.row_of.max()) + 1))
 
-    def work(lanes: Index) -> None:
-        kernel.forward(
-            lanes, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
+    def work(part: Index) -> None:
+        run = kernel.forward if part.ndim == 1 else lanes.forward
+        run(
+            part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
             bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state, out,
         )  # fmt: skip
 
@@ -117,14 +118,15 @@ def run_follow(
     bank: Bank, rig_of: Index, cue_of: Index, period_s: float, target_C: Array, skin_control: bool, state: Array
 ) -> tuple[Array, Array, Index]:
     """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
-    from thermicon.circuit import kernel
+    from thermicon.circuit import kernel, lanes
 
     shape = (len(rig_of), target_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
 
-    def work(lanes: Index) -> None:
-        kernel.follow(
-            lanes, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
+    def work(part: Index) -> None:
+        run = kernel.follow if part.ndim == 1 else lanes.follow
+        run(
+            part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
             bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
         )  # fmt: skip
 
@@ -132,11 +134,22 @@ def run_follow(
     return current, reached, why
 
 
+FEWEST = 4
+"""Below this many lanes one at a time is quicker than a padded block."""
+
+
 def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
-    cores = min(os.cpu_count() or 1, lanes)
-    parts = np.array_split(np.arange(lanes, dtype=np.int64), cores)
+    """Share lanes out: a few one by one, many in blocks that do not depend on the number of cores."""
+    if lanes < FEWEST:
+        work(np.arange(lanes, dtype=np.int64))
+        return
+    from thermicon.circuit.lanes import LANES
+
+    count = -(-lanes // LANES)
+    blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)
+    cores = min(os.cpu_count() or 1, count)
     if cores == 1:
-        work(parts[0])
+        work(blocks)
         return
     with ThreadPoolExecutor(cores) as pool:
-        list(pool.map(work, parts))
+        list(pool.map(work, np.array_split(blocks, cores)))

@@ -76,7 +76,7 @@ def forward(
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
     `start_A`, `end_A` (cue, interval): current at both ends of an interval; `row_of` (interval + 1,): row to write at
-    an edge, or −1; `state` (lane, n + 3) is left at its end; `out` (probe, lane, row).
+    an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row).
     """
     most = cap.shape[1]
     work = np.empty((5, most))
@@ -117,6 +117,36 @@ def forward(
 
 
 @njit(cache=True, nogil=True)
+def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, p):
+    """Current for the next period and the code of what limits it, from one implicit step over the period.
+
+    After that step the first lump is z0 + elim0 · (cold plate), which makes the target one of the cold plate, and the
+    cold plate's balance one equation for the current. The smallest of all limits is taken.
+    """
+    alpha, ohm, leak = p[0], p[1], p[2]
+    aim = target
+    if skin_control:
+        aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
+    heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[4] / period * (aim - cold)
+    base, total = p[3] / period * hot + p[6] * p[5] + leak * aim, p[3] / period + p[6] + leak
+    amperes, code = current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9), 0
+    if amperes > p[9]:
+        amperes, code = p[9], 1
+    if amperes < p[8]:
+        amperes, code = p[8], 2
+    seebeck = alpha * (hot - cold)
+    if amperes > (p[10] - seebeck) / ohm:
+        amperes, code = (p[10] - seebeck) / ohm, 3
+    if amperes < (-p[10] - seebeck) / ohm:
+        amperes, code = (-p[10] - seebeck) / ohm, 3
+    if amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # below half of αTc/R the optimum is never near
+        most = greatest_cooling(cold, p[6] * p[5] + leak * cold, p[6] + leak, alpha, ohm, leak)
+        if amperes > most:
+            amperes, code = most, 4
+    return amperes, code
+
+
+@njit(cache=True, nogil=True)
 def follow(
     lanes,
     rig_of,
@@ -137,7 +167,7 @@ def follow(
 ):
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
-    `target` (cue, period); `state` (lane, n + 3) starts steady and is left at its end; `current`, `reached`, `why`
+    `target` (cue, period); `state` (lane, n + 3) starts steady; `current`, `reached`, `why`
     (lane, period) get the current A, the controlled temperature °C at the end and the limit that held it back.
     The current comes from a damped prediction (one implicit step over the period); the state moves by
     the accurate rule.
@@ -152,31 +182,11 @@ def follow(
         r, c = rig_of[lane], cue_of[lane]
         n, p, x = count[r], plates[r], state[lane]
         share = face_share[r]
-        alpha, ohm, leak = p[0], p[1], p[2]
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p[7], inv, elim, keep, gain)
         factor(n, period, cap[r], g[r], perf[r], p[7], inv_p, elim_p, keep_p, gain_p)
         for k in range(target.shape[1]):
             sweep(n, x, inv_p, keep_p, gain_p, z)
-            cold = target[c, k]
-            if skin_control:
-                cold = (cold - (1.0 - share) * z[0]) / (share + (1.0 - share) * elim_p[0])
-            heat = g[r, 0] * (z[0] + (elim_p[0] - 1.0) * cold) - p[4] / period * (cold - x[1])
-            at_rest = p[6] * p[5] + leak * x[1]
-            most_A = greatest_cooling(x[1], at_rest, p[6] + leak, alpha, ohm, leak)
-            base, total = p[3] / period * x[0] + p[6] * p[5] + leak * cold, p[3] / period + p[6] + leak
-            wanted = current_for_heat(heat, cold, base, total, alpha, ohm, leak, 1e9)
-            seebeck = alpha * (x[0] - x[1])
-            amperes, code = wanted, 0
-            if amperes > p[9]:
-                amperes, code = p[9], 1
-            if amperes < p[8]:
-                amperes, code = p[8], 2
-            if amperes > (p[10] - seebeck) / ohm:
-                amperes, code = (p[10] - seebeck) / ohm, 3
-            if amperes < (-p[10] - seebeck) / ohm:
-                amperes, code = (-p[10] - seebeck) / ohm, 3
-            if amperes > most_A:
-                amperes, code = most_A, 4
+            amperes, code = wanted(target[c, k], skin_control, share, z[0], elim_p[0], g[r, 0], period, x[0], x[1], p)
             for _ in range(pieces):
                 advance(n, step, amperes, amperes * amperes, p, g[r, 0], x, inv, elim, keep, gain, z)
             current[lane, k] = amperes

@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many
 from thermicon.circuit.inverse import design
-from thermicon.icons import load_library
+from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")
 OTHERS = [
@@ -13,6 +13,8 @@ OTHERS = [
     THENAR.with_(**{"contact.resistance_m2K_per_W": 9e-4}),
     THENAR.with_(**{"skin.layer.0.thickness_mm": 0.26}),
 ]
+BLOCK = [*OTHERS, Rig.load("shani2021"), *(THENAR.with_(**{"contact.area_cm2": 5 + k}) for k in range(15))]
+"""More rigs than one block holds, with different numbers of lumps."""
 SIX = tuple(load_library("six-icons"))[:2]
 SKIN = tuple(load_library("cooling-step-skin"))
 
@@ -30,6 +32,18 @@ def test_display_tracking_is_each_rigs_own_run() -> None:
         for i, icon in enumerate(SIX):
             alone = simulate(icon, rig, tail_s=12.0 - icon.lower(32.0).duration_s)
             assert batch["cold_receptor_C"][r, i] == pytest.approx(alone.cold_receptor_C, abs=1e-9)
+
+
+@pytest.mark.parametrize("tracking", ["replay", "display", "ideal"])
+@pytest.mark.parametrize("icons", [SIX[:1], SKIN], ids=["display cue", "skin cue"])
+def test_blocks_of_lanes_give_what_one_lane_gives(
+    tracking: str, icons: tuple[Icon, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    blocks = simulate_many(icons, BLOCK, nominal=THENAR, end_s=9.0, tracking=tracking)
+    monkeypatch.setattr("thermicon.circuit.bank.FEWEST", 1000)
+    single = simulate_many(icons, BLOCK, nominal=THENAR, end_s=9.0, tracking=tracking)
+    # A block shares its step lengths, so a lane may take shorter steps than it would alone.
+    assert np.abs(blocks.values - single.values).max() < 1e-4
 
 
 def test_replay_plays_the_nominal_current_open_loop() -> None:
@@ -60,9 +74,9 @@ def test_ideal_gives_every_skin_the_same() -> None:
 
 
 def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    many = simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0)
+    many = simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0)
     monkeypatch.setattr("os.cpu_count", lambda: 1)
-    assert simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
+    assert simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
 
 
 def test_an_unknown_tracking_and_mixed_drivers_are_refused() -> None:
