@@ -1,0 +1,176 @@
+"""Virtual people: what differs between persons, each number from a record or said to be assumed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from statistics import NormalDist
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.records import Record
+from thermicon.perception.observer import Observer, load_thresholds
+from thermicon.perception.receptors import Array
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+STANDARD = NormalDist()
+VELOCITY_SPAN = 1.5
+"""Conduction velocities are cut off at this many SD: slower fibres would not reach the cord in a trial."""
+
+
+@dataclass(frozen=True, slots=True)
+class People:
+    """Persons as columns of shape (n,); multipliers are relative to the nominal observer or rig.
+
+    Multipliers of thresholds (median 1), of memory noise, of contact resistance, of the thickness
+    of the outermost layer and of the path to the cord; conduction velocities in m/s, decision time
+    in s, lapse 0–1.
+    """
+
+    threshold_cold: Array
+    threshold_warm: Array
+    memory: Array
+    contact_resistance: Array
+    outer_layer: Array
+    velocity_cold_m_per_s: Array
+    velocity_warm_m_per_s: Array
+    path: Array
+    decision_s: Array
+    lapse: Array
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            own = np.array(getattr(self, field.name), dtype=np.float64)
+            if own.ndim != 1 or own.shape != self.threshold_cold.shape or not np.isfinite(own).all():
+                raise ValueError(f"people: {field.name} must be one finite number for each person")
+            own.setflags(write=False)
+            object.__setattr__(self, field.name, own)
+
+    def __len__(self) -> int:
+        return int(self.threshold_cold.size)
+
+    def rigs(self, rig: Rig) -> list[Rig]:
+        """The rig as each person meets it: own contact resistance and own outermost layer."""
+        contact = rig.contact.resistance_m2K_per_W
+        outer_mm = rig.skin.layers[0].thickness_m * 1e3
+        return [
+            rig.with_(
+                **{
+                    "contact.resistance_m2K_per_W": contact * float(own_contact),
+                    "skin.layer.0.thickness_mm": outer_mm * float(own_layer),
+                }
+            )
+            for own_contact, own_layer in zip(self.contact_resistance, self.outer_layer, strict=True)
+        ]
+
+    def __repr__(self) -> str:
+        return (
+            f"People({len(self)}: threshold multipliers cold {_span(self.threshold_cold)}, "
+            f"warm {_span(self.threshold_warm)}, memory noise {_span(self.memory)} of nominal, "
+            f"velocity warm {_span(self.velocity_warm_m_per_s)} m/s)"
+        )
+
+
+def draw_people(n: int, seed: int = 0) -> People:
+    """Draw n virtual people; person i is the same whatever n is, and channels are independent.
+
+    >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
+    >>> bool((a.memory == b.memory[:3]).all())
+    True
+    """
+    if n < 1:
+        raise ValueError(f"at least one person is needed, not {n}")
+    record = people_records()
+    streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
+    column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
+
+    def lognormal(name: str, sd: float) -> Array:
+        return np.exp(sd * _normal(column[name]))
+
+    def velocity(name: str) -> Array:
+        spread = record[name].interval[1] - record[name].central
+        return record[name].central + spread * _normal_within(column[name], VELOCITY_SPAN)
+
+    def triangular(name: str) -> Array:
+        low, high = record[name].interval
+        return _triangular(column[name], low, record[name].central, high)
+
+    return People(
+        threshold_cold=lognormal("threshold_cold", math.log(10.0) * record["threshold_cold"].central),
+        threshold_warm=lognormal("threshold_warm", math.log(10.0) * record["threshold_warm"].central),
+        memory=_uniform(column["memory"], *record["memory"].interval) / record["memory"].central,
+        contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
+        outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
+        velocity_cold_m_per_s=velocity("velocity_cold_m_per_s"),
+        velocity_warm_m_per_s=velocity("velocity_warm_m_per_s"),
+        path=triangular("path") / record["path"].central,
+        decision_s=triangular("decision_s"),
+        lapse=triangular("lapse"),
+    )
+
+
+def people_records() -> dict[str, Record]:
+    """The record behind every field of `People`; `use` says whether it is data or assumed.
+
+    >>> people_records()["memory"].use
+    'assumed'
+    """
+    table = load_thresholds()
+    spread = table.one("between-person spread")
+    return {
+        "threshold_cold": spread,
+        "threshold_warm": spread,
+        "memory": table.one("spread of memory noise between people"),
+        "contact_resistance": table.one("contact resistance spread"),
+        "outer_layer": table.one("horny layer thickness spread"),
+        "velocity_cold_m_per_s": table.one("conduction velocity", channel="cold", site="leg"),
+        "velocity_warm_m_per_s": table.one("conduction velocity", channel="warm", site="leg"),
+        "path": table.one("path length to the cord", site="hand"),
+        "decision_s": table.one("decision and motor time"),
+        "lapse": table.one("lapse rate"),
+    }
+
+
+def nominal_people(observer: Observer) -> People:
+    """One person without any deviation."""
+    one = np.ones(1)
+    return People(
+        threshold_cold=one,
+        threshold_warm=one,
+        memory=one,
+        contact_resistance=one,
+        outer_layer=one,
+        velocity_cold_m_per_s=one * observer.cold.velocity_m_per_s,
+        velocity_warm_m_per_s=one * observer.warm.velocity_m_per_s,
+        path=one,
+        decision_s=one * observer.decision_s,
+        lapse=one * observer.lapse,
+    )
+
+
+def _normal(uniform: Array) -> Array:
+    within = np.clip(uniform, 1e-12, 1.0 - 1e-12)
+    return np.array([STANDARD.inv_cdf(p) for p in within.tolist()], dtype=np.float64)
+
+
+def _normal_within(uniform: Array, span: float) -> Array:
+    tail = 0.5 * math.erfc(span / math.sqrt(2.0))
+    return _normal(tail + uniform * (1.0 - 2.0 * tail))
+
+
+def _uniform(uniform: Array, low: float, high: float) -> Array:
+    return low + (high - low) * uniform
+
+
+def _triangular(uniform: Array, low: float, mode: float, high: float) -> Array:
+    split = (mode - low) / (high - low)
+    left = low + np.sqrt(uniform * (high - low) * (mode - low))
+    right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
+    return np.where(uniform < split, left, right)
+
+
+def _span(column: Array) -> str:
+    return f"{column.min():.2g}–{column.max():.2g}"

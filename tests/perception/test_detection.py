@@ -1,0 +1,76 @@
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from thermicon.perception import Observer, criterion_of, detect, false_alarms, forced_choice_dprime
+from thermicon.perception.detection import channel_name
+
+
+def test_criterion_keeps_its_false_alarms() -> None:
+    for rate in (0.01, 0.02, 0.05):
+        assert false_alarms(criterion_of(rate, 0.3, 5.0), 0.3, 5.0) == pytest.approx(rate, rel=1e-9)
+    assert criterion_of(0.02, 0.3, 5.0) == pytest.approx(3.35, abs=0.01)
+    with pytest.raises(ValueError, match=r"false-alarm rate must lie between 0 and 1, not 2"):
+        criterion_of(2.0, 0.3, 5.0)
+
+
+def test_false_alarms_agree_with_simulated_noise() -> None:
+    rng = np.random.default_rng(5)
+    dt, tau, trials = 0.02, 0.3, 20_000
+    # white noise through a Gaussian of SD τ/√2 has the autocorrelation e^(−t²/2τ²)
+    lag = np.arange(-60, 61) * dt
+    window = np.exp(-((lag / tau) ** 2))
+    window /= math.sqrt(float((window**2).sum()))
+    passed = 0
+    for _ in range(20):
+        white = rng.normal(size=(2 * trials // 20, 250 + 120))
+        spectrum = np.fft.rfft(white, 512) * np.fft.rfft(window, 512)
+        noise = np.fft.irfft(spectrum, 512)[:, 120:370]
+        passed += int((noise.max(axis=1) > 2.5).reshape(2, -1).any(axis=0).sum())
+    assert false_alarms(2.5, tau, 250 * dt) == pytest.approx(passed / trials, rel=0.06)
+
+
+def test_nothing_is_not_detected_and_much_is(observer: Observer) -> None:
+    flat, strong = np.zeros(1000), np.minimum(np.arange(1000) * 0.1, 20.0)
+    found = detect(np.stack([flat, strong]), np.stack([flat, flat]), 0.01, observer)
+    assert found.probability[0] == pytest.approx(0.0, abs=1e-6)
+    assert found.probability[1] == pytest.approx(1.0, abs=1e-9)
+    assert list(found.channel) == [-1, 0]
+    assert math.isnan(found.onset_s[0])
+    assert channel_name(-1) is None
+    assert channel_name(1) == "warm"
+
+
+def test_probability_of_a_brief_step_is_that_of_one_look(observer: Observer) -> None:
+    """A rise within far less than the noise correlation time is one look: 1 − Φ(criterion − ψ)."""
+    psi = np.concatenate([[0.0, 0.0], np.linspace(0.0, 3.0, 2000)])
+    found = detect(psi, np.zeros_like(psi), 1e-6, observer)
+    looked = NormalDist().cdf(3.0 - observer.criterion)
+    assert float(found.probability) == pytest.approx(looked, rel=0.01)
+
+
+def test_onset_is_crossing_conduction_and_decision(observer: Observer) -> None:
+    t = np.arange(500) * 0.01
+    cold, warm = 10.0 * t, 40.0 * t
+    found = detect(np.stack([cold, 0 * cold]), np.stack([warm, warm]), 0.01, observer, path_m=[0.7, 0.7])
+    assert found.crossing_s[0] == pytest.approx([3.34 / 10, 3.34 / 40], abs=1e-9)
+    assert found.onset_s[0] == pytest.approx(3.34 / 10 + 0.7 / 2.0 + 0.2, abs=1e-9)
+    assert found.onset_s[1] == pytest.approx(3.34 / 40 + 0.7 / 0.5 + 0.2, abs=1e-9)
+    assert list(found.channel) == [0, 1]
+
+
+def test_only_change_from_the_start_is_detected(observer: Observer) -> None:
+    found = detect(np.full(500, 30.0), np.zeros(500), 0.01, observer)
+    assert float(found.probability) == pytest.approx(0.0, abs=1e-6)
+    assert int(found.channel) == -1
+
+
+def test_forced_choice_takes_the_peak() -> None:
+    assert forced_choice_dprime([[0.0, 2.0], [1.0, 0.0]], [[0.0, 1.0], [0.0, 3.0]]) == pytest.approx([2.0, 3.0])
+
+
+def test_shapes_must_agree(observer: Observer) -> None:
+    with pytest.raises(ValueError, match=r"cold and warm sensation differ in shape: \(5,\) and \(6,\)"):
+        detect(np.zeros(5), np.zeros(6), 0.01, observer)

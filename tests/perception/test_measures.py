@@ -1,0 +1,47 @@
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.perception import information_bits, percent_correct, plugin_bits
+
+
+def spread(correct: float, icons: int = 6) -> np.ndarray:
+    wrong = (1 - correct) / (icons - 1)
+    return np.full((icons, icons), wrong) + (correct - wrong) * np.eye(icons)
+
+
+def paired(correct: float, icons: int = 6) -> np.ndarray:
+    matrix = correct * np.eye(icons)
+    for k in range(icons):
+        matrix[k, k ^ 1] = 1 - correct
+    return matrix
+
+
+def test_known_information() -> None:
+    assert information_bits(np.eye(6)) == pytest.approx(math.log2(6), abs=1e-12)
+    assert information_bits(np.full((6, 6), 1 / 6)) == pytest.approx(0.0, abs=1e-12)
+    assert information_bits(spread(0.91)) == pytest.approx(1.94, abs=0.005)
+    assert information_bits(paired(0.91)) == pytest.approx(2.15, abs=0.005)
+    assert information_bits(np.stack([np.eye(4), np.full((4, 4), 0.25)])) == pytest.approx([2.0, 0.0], abs=1e-12)
+
+
+def test_plugin_of_forty_eight_trials_is_biased_as_known() -> None:
+    even, pairs = plugin_bits(spread(0.91), 48, seed=1), plugin_bits(paired(0.91), 48, seed=1)
+    assert even.mean == pytest.approx(2.20, abs=0.015)
+    assert 2.20 < pairs.mean < 2.26
+    assert even.low < even.mean < even.high
+
+
+def test_plugin_loses_its_bias_and_repeats() -> None:
+    assert plugin_bits(spread(0.91), 60_000, experiments=20).mean == pytest.approx(1.94, abs=0.01)
+    assert plugin_bits(spread(0.8), 50, seed=3) == plugin_bits(spread(0.8), 50, seed=3)
+
+
+def test_percent_correct_is_the_mean_of_the_diagonal() -> None:
+    assert percent_correct(np.stack([spread(0.8), np.eye(6)])) == pytest.approx([0.8, 1.0])
+
+
+def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"at least one trial, not 0"):
+        plugin_bits(np.eye(2), 0)

@@ -1,0 +1,50 @@
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.perception import People, draw_people, people_records
+
+
+def test_the_first_people_are_the_same_whatever_the_number() -> None:
+    few, many = draw_people(5, seed=3), draw_people(300, seed=3)
+    for field in fields(People):
+        assert np.array_equal(getattr(few, field.name), getattr(many, field.name)[:5]), field.name
+    assert not np.array_equal(draw_people(5, seed=4).memory, few.memory)
+
+
+def test_spreads_are_those_of_the_records() -> None:
+    crowd = draw_people(20_000, seed=0)
+    assert np.log10(crowd.threshold_cold).std() == pytest.approx(0.23, rel=0.02)
+    assert np.log10(crowd.threshold_warm).mean() == pytest.approx(0.0, abs=0.01)
+    assert (crowd.memory.min(), crowd.memory.max()) == pytest.approx((0.5, 1.5), abs=0.01)
+    assert np.log(crowd.contact_resistance).std() == pytest.approx(np.log(1.3), rel=0.02)
+    assert crowd.velocity_warm_m_per_s.min() == pytest.approx(0.2, abs=0.01)
+    assert crowd.velocity_cold_m_per_s.mean() == pytest.approx(2.1, abs=0.02)
+    assert crowd.decision_s.min() >= 0.15
+    assert crowd.lapse.max() <= 0.03
+
+
+def test_every_field_names_its_record() -> None:
+    records = people_records()
+    assert set(records) == {field.name for field in fields(People)}
+    assert {record.use for record in records.values()} <= {"calibrate", "assumed"}
+    assert records["threshold_cold"].use == "calibrate"
+
+
+def test_people_change_the_rig() -> None:
+    rig, crowd = Rig.load("thenar"), draw_people(3, seed=1)
+    for person, own in enumerate(crowd.rigs(rig)):
+        assert own.contact.resistance_m2K_per_W == pytest.approx(5.4e-4 * crowd.contact_resistance[person])
+        assert own.skin.layers[0].thickness_m == pytest.approx(0.17e-3 * crowd.outer_layer[person])
+        assert own.module == rig.module
+
+
+def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"at least one person is needed, not 0"):
+        draw_people(0)
+    columns: dict[str, Any] = {field.name: np.ones(2) for field in fields(People)}
+    with pytest.raises(ValueError, match=r"people: lapse must be one finite number for each person"):
+        People(**{**columns, "lapse": np.ones(3)})

@@ -1,0 +1,63 @@
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.perception import Observer, Percept, perceive
+from thermicon.perception.percept import uniform_clock
+
+
+def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
+    percept = perceive(cue(change=-4.0, name="dip"), observer)
+    assert (percept.channel, percept.clock, percept.icon) == ("cold", "receptor", "dip")
+    assert percept.detected_probability == pytest.approx(1.0)
+    assert percept.onset_s is not None
+    assert 0.55 < percept.onset_s < 0.8
+    assert repr(percept).startswith("Percept(dip: felt at 0.")
+    assert " d′, 18 s, receptor clock)" in repr(percept)
+    assert not percept.psi_cold.flags.writeable
+
+
+def test_nothing_is_not_felt(cue: Any, observer: Observer) -> None:
+    percept = perceive(cue(change=0.0), observer)
+    assert (percept.onset_s, percept.channel) == (None, None)
+    assert percept.detected_probability == pytest.approx(0.0, abs=1e-6)
+    assert "not felt" in repr(percept)
+
+
+def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Observer) -> None:
+    trace = cue(change=1.0)
+    hand, forearm = perceive(trace, observer).onset_s, perceive(_at(trace, "forearm"), observer).onset_s
+    large = perceive(trace, observer, area_m2=36e-4).onset_s
+    assert hand is not None
+    assert forearm is not None
+    assert large is not None
+    assert hand - forearm == pytest.approx(0.15 / 0.5)
+    assert large < hand
+
+
+def _at(trace: Any, site: str) -> Any:
+    from dataclasses import replace
+
+    return replace(trace, site=site)
+
+
+def test_plot_returns_axes(cue: Any, observer: Observer) -> None:
+    percept = perceive(cue(change=-4.0, name="dip"), observer)
+    axes = percept.plot()
+    assert axes.get_ylabel() == "sensation, d′"
+    assert axes.get_title() == "dip"
+    assert percept._repr_html_().startswith("<svg")
+
+
+def test_clock_and_shape_messages() -> None:
+    with pytest.raises(ValueError, match=r"needs a uniform clock: simulate at one rate"):
+        uniform_clock([0.0, 0.1, 0.3, 0.4])
+    with pytest.raises(ValueError, match=r"a trace of at least two rows"):
+        uniform_clock([0.0])
+    with pytest.raises(ValueError, match=r"psi_cold has 3 samples and psi_warm 4"):
+        Percept(np.zeros(3), np.zeros(4), 0.01, None, None, 0.0)
+    with pytest.raises(ValueError, match=r"psi_warm must be one trace of finite numbers"):
+        Percept(np.zeros(3), np.full(3, np.nan), 0.01, None, None, 0.0)
+    with pytest.raises(ValueError, match=r"dt_s = 0 s must be above 0"):
+        Percept(np.zeros(3), np.zeros(3), 0.0, None, None, 0.0)

@@ -1,0 +1,142 @@
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library, parse
+from thermicon.perception import Ranking, perceive, rank
+
+TOP = "thermicon rig seed people tracking by norm content_hash icons pairs confusion set chosen"
+ICON = (
+    "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s percent_correct reachable safe "
+    "reason rules"
+)
+PAIR = "a b d_prime confused_probability why rules edit"
+SET = (
+    "percent_correct percent_correct_interval information_bits information_bits_interval bits_per_s "
+    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity"
+)
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def ranking(rig: Rig) -> Ranking:
+    return rank(load_library("six-icons"), rig, people=12, seed=7)
+
+
+@pytest.fixture(scope="module")
+def held(ranking: Ranking) -> Any:
+    return json.loads(ranking.to_json())
+
+
+def test_keys_are_those_of_the_contract(held: Any) -> None:
+    assert list(held) == TOP.split()
+    assert list(held["set"]) == SET.split()
+    assert list(held["confusion"]) == ["labels", "probability"]
+    for icon in held["icons"]:
+        assert list(icon) == ICON.split()
+        assert list(icon["peak_change_K"]) == ["cold_receptor", "warm_receptor"]
+        assert {"rule", "pass", "value", "threshold", "unit", "source"} <= set(icon["rules"][0])
+    for pair in held["pairs"]:
+        assert list(pair) == PAIR.split()
+        assert pair["edit"] is None
+    assert held["chosen"] is None
+    assert held["by"] == "model"
+
+
+def test_numbers_hang_together(held: Any) -> None:
+    matrix = np.array(held["confusion"]["probability"])
+    assert matrix.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert [icon["name"] for icon in held["icons"]] == held["confusion"]["labels"]
+    assert [icon["percent_correct"] for icon in held["icons"]] == pytest.approx(np.diag(matrix))
+    whole = held["set"]
+    assert whole["percent_correct"] == pytest.approx(np.trace(matrix) / 6)
+    low, high = whole["percent_correct_interval"]
+    assert low <= whole["percent_correct"] <= high
+    assert whole["bits_per_s"] == pytest.approx(whole["information_bits"] / 8.0, rel=0.01)
+    assert set(whole["norm_sensitivity"]) == {"rms", "integral"}
+    assert len(held["pairs"]) == 15
+    worst = max(held["pairs"], key=lambda pair: pair["confused_probability"])
+    assert whole["worst_pair"] == [worst["a"], worst["b"]]
+    for pair in held["pairs"]:
+        i, j = (held["confusion"]["labels"].index(pair[k]) for k in "ab")
+        assert pair["confused_probability"] == pytest.approx((matrix[i, j] + matrix[j, i]) / 2)
+
+
+def test_same_arguments_same_bytes(ranking: Ranking, rig: Rig) -> None:
+    calls: list[tuple[int, int]] = []
+    again = rank(
+        load_library("six-icons"), rig, people=12, seed=7, progress=lambda done, total: calls.append((done, total))
+    )
+    assert again.to_json() == ranking.to_json()
+    assert calls == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert "NaN" not in ranking.to_json()
+
+
+def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
+    rows = ranking.rows()
+    correct = [row["percent_correct"] for row in rows]
+    assert correct == sorted(correct, reverse=True)
+    assert ranking.to_frame().shape == (6, len(rows[0]))
+    assert repr(ranking).startswith("Ranking(predicted: 6 icons on thenar, 12 people, ")
+    axes = ranking.plot()
+    assert [t.get_text() for t in axes.get_xticklabels()] == list(ranking.labels)
+    assert axes.get_title().startswith("predicted confusions, %")
+    assert ranking._repr_html_().startswith("<svg")
+    from thermicon.perception.draw import plot_distance
+
+    assert plot_distance(ranking).get_title() == "predicted d′ between icons (max)"
+
+
+def test_what_does_not_exist_is_null(rig: Rig) -> None:
+    text = "cue 1\nset s { control skin; baseline 32 °C }\nicon faint { cool by 0.01 °C at 0.1 °C/s; hold for 1 s }"
+    held = json.loads(rank(parse(text), rig, people=2).to_json())
+    icon, whole = held["icons"][0], held["set"]
+    assert icon["onset_s"] is None
+    assert icon["channel"] is None
+    assert whole["information_bits"] is None
+    assert whole["worst_pair"] is None
+    assert held["pairs"] == []
+    assert held["confusion"]["probability"] == [[1.0]]
+    assert whole["rules_disagree"] == []
+
+
+def test_identical_icons_are_guessed(rig: Rig) -> None:
+    body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
+    text = f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon a {body}\nicon b {body}"
+    ranking = rank(parse(text), rig, people=3)
+    assert ranking.percent_correct == pytest.approx(0.5)
+    assert ranking.information_bits == pytest.approx(0.0, abs=1e-9)
+    assert ranking.pairs[0].d_prime == pytest.approx(0.0)
+    assert not ranking.pairs[0].rules_pass
+    assert ranking.tracking == "display"
+
+
+def test_ranking_by_rules_orders_by_rules(rig: Rig) -> None:
+    rows = rank(load_library("wave-shapes"), rig, people=2, by="rules").rows()
+    keys = [(row["pairs_apart_by_rules"], row["rules_passed"]) for row in rows]
+    assert keys == sorted(keys, reverse=True)
+
+
+def test_a_real_trace_is_perceived(rig: Rig) -> None:
+    from thermicon.circuit import simulate
+
+    percept = perceive(simulate(load_library("six-icons")["cooling-step"], rig, tail_s=10.0))
+    assert percept.channel == "cold"
+    assert percept.time_s[-1] == pytest.approx(18.0)
+
+
+def test_messages(rig: Rig) -> None:
+    icons = load_library("six-icons")
+    with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
+        rank(icons, rig, norm="mean")
+    with pytest.raises(ValueError, match=r"a ranking is by model or rules, not by 'luck'"):
+        rank(icons, rig, by="luck")
+    with pytest.raises(ValueError, match=r"at least one person"):
+        rank(icons, rig, people=0)
