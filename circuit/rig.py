@@ -12,53 +12,13 @@ from typing import Any
 
 from thermicon.circuit.door import nearest, read_text
 from thermicon.circuit.module import Peltier
-from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table, rig_keys, unknown_key
+from thermicon.circuit.parts import Ambient, Contact, Driver, HeatSink
+from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table
+from thermicon.circuit.settings import put, read_settings
 from thermicon.circuit.skin import Column, Layer, Skin, column_of
 
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 """Bare skin in still air loses 40 to 120 W/m²; a rig that rests above this is told so."""
-
-
-@dataclass(frozen=True, slots=True)
-class HeatSink:
-    """What the hot plate sits on: temperature °C, resistance from the hot plate K/W."""
-
-    temperature_C: float
-    resistance_K_per_W: float
-
-
-@dataclass(frozen=True, slots=True)
-class Driver:
-    """The current source: gain A/V, current limits A, compliance voltage V, update rate Hz."""
-
-    transconductance_A_per_V: float
-    current_min_A: float
-    current_max_A: float
-    voltage_limit_V: float
-    update_Hz: float
-
-    def __post_init__(self) -> None:
-        if not self.current_min_A <= 0 < self.current_max_A:
-            raise ValueError(
-                f"driver.current_min_A = {self.current_min_A:g} A: must be 0 (a drive that only cools) or below, "
-                f"and current_limit_A ({self.current_max_A:g} A) above 0"
-            )
-
-
-@dataclass(frozen=True, slots=True)
-class Contact:
-    """Where display and skin meet: area m², resistance m²·K/W."""
-
-    area_m2: float
-    resistance_m2K_per_W: float
-
-
-@dataclass(frozen=True, slots=True)
-class Ambient:
-    """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
-
-    temperature_C: float
-    film_W_per_m2K: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +27,7 @@ class Rig:
 
     >>> rig = Rig.load("thenar")
     >>> rig
-    Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.58 °C, driver -1.5 … 1.5 A)
+    Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.57 °C, driver -1.5 … 1.5 A)
     >>> round(rig.resting_flux_W_per_m2, 1)
     -80.0
     >>> rig.with_(**{"contact.area_cm2": 4}).contact.area_m2
@@ -146,20 +106,12 @@ class Rig:
         """
         document = json.loads(self.document)
         for key, value in changes.items():
-            _put(document, key, value)
+            put(document, key, value)
         return _build(document, f"rig {self.name}")
 
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig changed by texts of the form `key=value`, as given on the command line."""
-        changes: dict[str, object] = {}
-        for setting in settings:
-            key, equals, value = setting.partition("=")
-            if not equals or not key.strip() or not value.strip():
-                raise RigError(f"{setting!r}: a setting has the form KEY=VALUE, such as contact.area_cm2=4")
-            try:
-                changes[key.strip()] = parse_toml(f"value = {value.strip()}", key)["value"]
-            except RigError:
-                changes[key.strip()] = value.strip()
+        changes = read_settings(settings)
         return self.with_(**changes) if changes else self
 
 
@@ -176,36 +128,6 @@ def _rig_folder() -> Any:
 @cache
 def _shipped(name: str) -> Rig:
     return _build(parse_toml((_rig_folder() / f"{name}.toml").read_text("utf-8"), f"rig {name}"), f"rig {name}")
-
-
-def _put(document: dict[str, Any], key: str, value: object) -> None:
-    """Set a dotted key in the document; an unknown key or layer is an error with the nearest."""
-    parts, place, plain = key.split("."), document, []
-    for position, part in enumerate(parts[:-1]):
-        if isinstance(place, list):
-            index = _layer_index(place, part, key)
-            place, part_of_key = place[index], "0"
-        else:
-            if not isinstance(place.get(part), (dict, list)):
-                raise RigError(unknown_key(key))
-            place, part_of_key = place[part], part
-        plain.append(part_of_key)
-        if position == 0 and part == "source":
-            raise RigError(f"{key}: a source cannot be changed here")
-    if (".".join([*plain, parts[-1]]) not in rig_keys() and key != "skin.layer") or isinstance(place, list):
-        raise RigError(
-            unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
-        )
-    place[parts[-1]] = value
-
-
-def _layer_index(layers: list[dict[str, Any]], part: str, key: str) -> int:
-    names = [str(layer.get("name")) for layer in layers]
-    if part.isdigit() and int(part) < len(layers):
-        return int(part)
-    if part in names:
-        return names.index(part)
-    raise RigError(f"{key}: no such layer; there are {', '.join(f'{i} ({name})' for i, name in enumerate(names))}")
 
 
 def _build(document: Mapping[str, Any], where: str) -> Rig:

@@ -82,7 +82,7 @@ class SkinTable(_Table):
     """The skin under the display, surface first."""
 
     site: str
-    rest_C: Celsius
+    rest_C: Annotated[float, Field(ge=10, le=45)]
     cold_receptor_mm: Positive
     warm_receptor_mm: Positive
     deep_C: Celsius | None = None

@@ -44,10 +44,12 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     >>> from thermicon.icons import load_library
     >>> step = load_library("six-icons")["cooling-step"]
     >>> simulate(step, Rig.load("thenar"))
-    Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.15 … 32.27 °C, -0.48 … 1.11 A)
+    Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
     """
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
+    if tail_s * rate_Hz > MOST_ROWS:
+        raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
     base = baseline_C(icon, rig)
     end = icon.lower(base).duration_s if icon.frame.control != "current" else icon.lower(0.0).duration_s
     plan = design(icon, rig, end + tail_s)

@@ -96,4 +96,4 @@ def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
             f"{what}: it needs {voltage:.2f} V, the driver gives at most {driver.voltage_limit_V:g} V; "
             f"choose a baseline nearer to rest or a higher driver.voltage_limit_V"
         )
-    return current, state
+    return float(current), state

@@ -1,0 +1,56 @@
+"""Changing one number of a rig: dotted keys of the rig file, and texts of the form `key=value`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from thermicon.circuit.rigfile import RigError, parse_toml, rig_keys, unknown_key
+
+
+def read_settings(settings: Iterable[str]) -> dict[str, object]:
+    """Return dotted keys with values from texts such as `contact.area_cm2=4`; a value is TOML, or else plain text.
+
+    >>> read_settings(["contact.area_cm2=4", "skin.site=forearm"])
+    {'contact.area_cm2': 4, 'skin.site': 'forearm'}
+    """
+    changes: dict[str, object] = {}
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not equals or not key.strip() or not value.strip():
+            raise RigError(f"{setting!r}: a setting has the form KEY=VALUE, such as contact.area_cm2=4")
+        try:
+            changes[key.strip()] = parse_toml(f"value = {value.strip()}", key)["value"]
+        except RigError:
+            changes[key.strip()] = value.strip()
+    return changes
+
+
+def put(document: dict[str, Any], key: str, value: object) -> None:
+    """Set a dotted key in the document; an unknown key or layer is an error with the nearest."""
+    parts, place, plain = key.split("."), document, []
+    for position, part in enumerate(parts[:-1]):
+        if isinstance(place, list):
+            index = _layer(place, part, key)
+            place, part_of_key = place[index], "0"
+        else:
+            if not isinstance(place.get(part), (dict, list)):
+                raise RigError(unknown_key(key))
+            place, part_of_key = place[part], part
+        plain.append(part_of_key)
+        if position == 0 and part == "source":
+            raise RigError(f"{key}: a source cannot be changed here")
+    if (".".join([*plain, parts[-1]]) not in rig_keys() and key != "skin.layer") or isinstance(place, list):
+        raise RigError(
+            unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
+        )
+    place[parts[-1]] = value
+
+
+def _layer(layers: list[dict[str, Any]], part: str, key: str) -> int:
+    names = [str(layer.get("name")) for layer in layers]
+    if part.isdigit() and int(part) < len(layers):
+        return int(part)
+    if part in names:
+        return names.index(part)
+    raise RigError(f"{key}: no such layer; there are {', '.join(f'{i} ({name})' for i, name in enumerate(names))}")
