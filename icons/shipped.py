@@ -1,0 +1,71 @@
+"""Read cue files and the icon sets that ship with the package."""
+
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from thermicon.icons.errors import whole_file
+from thermicon.icons.icon import IconSet
+from thermicon.icons.parse import parse
+from thermicon.icons.source import MOST_BYTES
+from thermicon.icons.words import nearest
+
+
+def library_names() -> tuple[str, ...]:
+    """Return the names of the shipped sets, sorted.
+
+    >>> library_names()
+    ('cooling-step-skin', 'six-icons', 'wave-shapes')
+    """
+    return tuple(
+        sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
+    )
+
+
+def load_library(name: str) -> IconSet:
+    """Return a shipped set by its name; CueErrors, with the nearest names, when there is none.
+
+    >>> len(load_library("six-icons"))
+    6
+    """
+    names = library_names()
+    if name not in names:
+        close = nearest(name, names)
+        hint = f"did you mean {close}? " if close else ""
+        help = f"{hint}shipped sets are: {', '.join(names)}"
+        raise whole_file(
+            "E001", name if name.isprintable() else repr(name), "neither a file nor a shipped set has this name", help
+        )
+    return parse(_folder().joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
+
+
+def read_cue(source: str | Path) -> IconSet:
+    """Return the set in a ``.cue`` file, or the shipped set of this name; an existing path wins.
+
+    Raises CueErrors when the file is missing, a folder, unreadable, too large or not a sound cue text.
+
+    >>> read_cue("six-icons").frame.control
+    'display'
+    """
+    name = str(source)
+    path = Path(source)
+    try:
+        if path.is_dir() and name not in library_names():
+            raise whole_file(
+                "E002", name, "a set is one file", f"name a .cue file in it, such as {path / 'my-set.cue'}"
+            )
+        if not path.is_file():
+            return load_library(name)
+        size = path.stat().st_size
+        if size > MOST_BYTES:
+            help = f"a cue file has at most {MOST_BYTES:,} bytes; split the set"
+            raise whole_file("E004", name, f"{size:,} bytes", help)
+        data = path.read_bytes()
+    except OSError as error:
+        help = "check that it is there and that you may read it"
+        raise whole_file("E003", name, f"the system says: {error.strerror or error}", help) from None
+    return parse(data, name)
+
+
+def _folder() -> Traversable:
+    return resources.files("thermicon.icons").joinpath("library")

@@ -1,0 +1,119 @@
+"""Units at the door: number and unit of the text to SI floats and back, without losing a digit."""
+
+import math
+from fractions import Fraction
+from functools import lru_cache
+from typing import Literal
+
+Kind = Literal["absolute", "difference", "rate", "time", "current", "current_rate"]
+
+# Per kind, every spelling and its factor to SI; the first is the one that help and canonical text prefer.
+UNITS: dict[Kind, dict[str, Fraction]] = {
+    "absolute": {"°C": Fraction(1), "degC": Fraction(1)},
+    "difference": {"°C": Fraction(1), "degC": Fraction(1), "K": Fraction(1)},
+    "rate": {
+        "°C/s": Fraction(1),
+        "degC/s": Fraction(1),
+        "K/s": Fraction(1),
+        "°C/min": Fraction(1, 60),
+        "degC/min": Fraction(1, 60),
+        "K/min": Fraction(1, 60),
+    },
+    "time": {"s": Fraction(1), "ms": Fraction(1, 1000), "min": Fraction(60)},
+    "current": {"A": Fraction(1), "mA": Fraction(1, 1000)},
+    "current_rate": {"A/s": Fraction(1), "mA/s": Fraction(1, 1000)},
+}
+
+KIND_WORDS: dict[Kind, str] = {
+    "absolute": "a temperature",
+    "difference": "a temperature difference",
+    "rate": "a rate of temperature",
+    "time": "a time",
+    "current": "a current",
+    "current_rate": "a rate of current",
+}
+
+# The range of sizes that a number other than zero may have: wide for any skin, narrow enough for exact sums.
+SMALLEST, LARGEST = 1e-9, 1e9
+LONGEST_NUMBER = 40
+
+
+def to_si(number: str, unit: str, kind: Kind) -> float:
+    """Return the SI value of a number as written, for example 0.05 for ``50`` and ``ms``.
+
+    Raises ValueError when the number is not finite, too large, too small or too long, KeyError for a unit of another
+    kind.
+
+    >>> to_si("1", "°C/min", "rate")
+    0.016666666666666666
+    """
+    factor = UNITS[kind][unit]
+    return float(exact_number(number) * factor)
+
+
+def exact_number(text: str) -> Fraction:
+    """Return the exact value of a decimal number as written; ValueError when it is outside what the language takes.
+
+    >>> exact_number("0.1")
+    Fraction(1, 10)
+    """
+    if len(text) > LONGEST_NUMBER:
+        raise ValueError(f"a number has at most {LONGEST_NUMBER} characters")
+    plain = text.replace("−", "-")
+    rough = float(plain)
+    if not math.isfinite(rough) or abs(rough) > LARGEST:
+        raise ValueError(f"a number is at most {LARGEST:.0e} in size")
+    if 0 < abs(rough) < SMALLEST or (rough == 0 and any(digit in "123456789" for digit in plain.lower().split("e")[0])):
+        raise ValueError(f"a number other than 0 is at least {SMALLEST:.0e} in size")
+    return Fraction(plain) if rough else Fraction(0)
+
+
+def decimal_text(value: float) -> str:
+    """Return the shortest decimal text of a float, without a trailing ``.0``: ``32``, ``0.5``, ``1e-5``."""
+    mantissa, mark, exponent = repr(float(value)).partition("e")
+    mantissa = mantissa.removesuffix(".0")
+    return mantissa + (f"e{int(exponent)}" if mark else "")
+
+
+@lru_cache(maxsize=4096)
+def written(value: float, kind: Kind) -> tuple[str, str]:
+    """Return number and unit that read back to exactly this SI value, in the shortest sensible unit.
+
+    The SI unit is kept unless another one saves more than two characters.
+
+    >>> written(0.05, "time"), written(0.001, "time"), written(1 / 60, "rate")
+    (('0.05', 's'), ('1', 'ms'), ('1', '°C/min'))
+    """
+    best: tuple[str, str] | None = None
+    for unit, factor in UNITS[kind].items():
+        if "K" in unit or "degC" in unit:
+            continue
+        number = decimal_text(float(Fraction(decimal_text(value)) / factor))
+        try:
+            if to_si(number, unit, kind) != value:
+                number = decimal_text(value / float(factor))
+                if to_si(number, unit, kind) != value:
+                    continue
+        except ValueError:
+            continue
+        if best is None or len(number) + len(unit) < len(best[0]) + len(best[1]) - 2:
+            best = (number, unit)
+    if best is None:
+        raise ValueError(f"{value!r} cannot be written as {KIND_WORDS[kind]}")
+    return best
+
+
+def quantity(value: float, kind: Kind) -> str:
+    """Return an SI value as canonical text with its unit, such as ``6 °C`` or ``50 ms``."""
+    return " ".join(written(value, kind))
+
+
+@lru_cache(maxsize=4096)
+def exact(value: float, kind: Kind) -> Fraction:
+    """Return the exact SI value that the canonical text of this float states: one sixtieth for ``1 °C/min``.
+
+    >>> exact(0.1, "time") * 30
+    Fraction(3, 1)
+    """
+    number, unit = written(value, kind)
+    return exact_number(number) * UNITS[kind][unit]

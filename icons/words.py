@@ -1,0 +1,146 @@
+"""The words of the language for messages: what stands where, what is not there yet, what people write instead."""
+
+from collections.abc import Iterable
+
+from thermicon.icons.units import UNITS, Kind
+
+_KEYS = ("means", "by", "doi", "licence", "tags")
+_STATEMENTS = ("cool", "warm", "hold", "rest", "return", "repeat", "to")
+VOCABULARY: dict[str, tuple[str, ...]] = {
+    "file": ("cue", "set", "icon"),
+    "set": ("site", "control", "baseline", *_KEYS),
+    "icon": _STATEMENTS,
+    "repeat": _STATEMENTS,
+    "header": _KEYS,
+}
+CONTROLS = ("skin", "display", "current")
+
+_WAVE = "write its corners with warm, hold and cool; the shipped set wave-shapes shows how"
+NOT_YET: dict[str, str] = {
+    "sine": _WAVE,
+    "square": _WAVE,
+    "triangle": _WAVE,
+    "sawtooth": _WAVE,
+    "step": 'write a steep change, such as "cool by 6 °C over 100 ms"',
+    "pulse": "write three lines: cool by ... over 100 ms, hold for ..., return over 100 ms",
+    "play": "write the statements of the other icon out",
+    "change": 'write the direction: "cool by 6 °C at 3 °C/s" or "warm by ..."',
+    "total": 'fill up with a line such as "rest for 2 s"; the repr of an icon shows its length',
+    "on": "a display with several elements cannot be addressed; write one icon for the one element",
+}
+
+EXAMPLES: dict[str, str] = {
+    "absolute": 'a temperature such as "26 °C", or a change such as "by 6 °C"',
+    "difference": 'a difference such as "6 °C" or "6 K"',
+    "rate": 'a rate such as "3 °C/s" or "1 °C/min"',
+    "time": 'a time such as "4 s", "200 ms" or "1 min"',
+    "current": 'a current such as "0.5 A" or "500 mA"',
+    "current_rate": 'a rate such as "1 A/s" or "100 mA/s"',
+    "cool": 'for example: "cool by 6 °C at 3 °C/s"',
+    "warm": 'for example: "warm by 4 °C at 3 °C/s"',
+    "hold": 'for example: "hold for 4 s"',
+    "rest": 'for example: "rest for 1 s"',
+    "return": 'for example: "return at 3 °C/s"',
+}
+
+WORD_ALIASES: dict[str, str] = {
+    "heat": "warm",
+    "warming": "warm",
+    "raise": "warm",
+    "chill": "cool",
+    "cooling": "cool",
+    "lower": "cool",
+    "stay": "hold",
+    "keep": "hold",
+    "wait": "hold",
+    "pause": "rest",
+    "loop": "repeat",
+    "back": "return",
+    "meaning": "means",
+    "author": "by",
+    "license": "licence",
+    "tag": "tags",
+    "version": "cue",
+    "pattern": "icon",
+}
+_UNIT_ALIASES: dict[str, str] = {
+    "c": "°C",
+    "°c": "°C",
+    "celsius": "°C",
+    "deg": "°C",
+    "°": "°C",
+    "degree": "°C",
+    "degrees": "°C",
+    "kelvin": "K",
+    "k": "K",
+    "c/s": "°C/s",
+    "°c/s": "°C/s",
+    "°c/sec": "°C/s",
+    "deg/s": "°C/s",
+    "degrees/s": "°C/s",
+    "c/min": "°C/min",
+    "°c/min": "°C/min",
+    "k/sec": "K/s",
+    "k/s": "K/s",
+    "sec": "s",
+    "secs": "s",
+    "second": "s",
+    "seconds": "s",
+    "msec": "ms",
+    "millisecond": "ms",
+    "milliseconds": "ms",
+    "m": "min",
+    "mins": "min",
+    "minute": "min",
+    "minutes": "min",
+    "a": "A",
+    "amp": "A",
+    "amps": "A",
+    "ampere": "A",
+    "amperes": "A",
+    "ma": "mA",
+    "a/s": "A/s",
+    "ma/s": "mA/s",
+}
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that was most likely meant, or None.
+
+    >>> nearest("coool", ["warm", "cool"]), nearest("heat", ["warm", "cool"]), nearest("x", ["warm"])
+    ('cool', 'warm', None)
+    """
+    from difflib import get_close_matches
+
+    plain = word[:40].casefold()
+    options = list(known)
+    alias = WORD_ALIASES.get(plain)
+    if alias in options:
+        return alias
+    matches = get_close_matches(plain, options, n=1, cutoff=0.6)
+    return matches[0] if matches else None
+
+
+def nearest_unit(word: str, kind: Kind) -> str | None:
+    """Return the unit of this kind that was most likely meant, or None.
+
+    >>> nearest_unit("seconds", "time"), nearest_unit("℃", "absolute"), nearest_unit("watt", "time")
+    ('s', '°C', None)
+    """
+    from difflib import get_close_matches
+
+    plain = word[:40].replace("℃", "°C").replace("º", "°").replace("˚", "°")
+    for spelling in (plain, _UNIT_ALIASES.get(plain.casefold(), "")):
+        if spelling in UNITS[kind]:
+            return spelling
+    matches = get_close_matches(plain, list(UNITS[kind]), n=1, cutoff=0.6)
+    return matches[0] if matches else None
+
+
+def unit_kinds(unit: str) -> list[Kind]:
+    """Return the kinds of quantity that a unit can measure: none for an unknown unit.
+
+    >>> unit_kinds("K"), unit_kinds("ms")
+    (['difference'], ['time'])
+    """
+    return [kind for kind, units in UNITS.items() if unit in units]

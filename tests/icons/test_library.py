@@ -1,0 +1,114 @@
+"""Shipped sets are what they say; files are found, or it is said why not."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from thermicon.icons import CueErrors, library_names, load_library, parse, read_cue
+
+SIX = load_library("six-icons")
+
+
+def test_the_shipped_sets() -> None:
+    assert library_names() == ("cooling-step-skin", "six-icons", "wave-shapes")
+    for name in library_names():
+        icons = load_library(name)
+        assert icons.name == name
+        assert icons.title
+        assert icons.frame.baseline_C == 32.0
+        assert all(icon.metadata.means and icon.metadata.by for icon in icons)
+        assert parse(str(icons)) == icons
+
+
+def test_what_is_not_published_is_marked_as_reconstruction() -> None:
+    assert "reconstruction" not in SIX["cooling-step"].metadata.tags
+    assert sum("reconstruction" in icon.metadata.tags for icon in SIX) == 5
+
+
+@pytest.mark.parametrize("icon", SIX, ids=lambda icon: icon.name)
+def test_the_six_icons_are_comparable(icon: object) -> None:
+    corners = icon.lower()  # type: ignore[attr-defined]
+    assert 8 <= corners.duration_s <= 10
+    assert corners.value[0] == corners.value[-1] == 32.0
+    assert corners.lowest >= 20
+    assert corners.highest < 38
+
+
+def test_no_two_of_the_six_are_one_shape_scaled() -> None:
+    shapes = []
+    for icon in SIX:
+        corners = icon.lower()
+        changes = [corners.at(0.1 * n) - 32 for n in range(80)]
+        norm = math.sqrt(sum(c * c for c in changes))
+        shapes.append([c / norm for c in changes])
+    for i, a in enumerate(shapes):
+        for b in shapes[:i]:
+            # 1 would be the same shape at another size, -1 its exact mirror image.
+            assert -0.995 < sum(x * y for x, y in zip(a, b, strict=True)) < 0.97
+
+
+def test_the_published_steps() -> None:
+    for icons in (SIX, load_library("cooling-step-skin")):
+        corners = icons["cooling-step"].lower()
+        assert (corners.time_s, corners.value) == ((0.0, 2.0, 6.0, 8.0), (32.0, 26.0, 26.0, 32.0))
+    assert (SIX.frame.control, load_library("cooling-step-skin").frame.control) == ("display", "skin")
+
+
+def test_the_waves() -> None:
+    waves = load_library("wave-shapes")
+    for icon in waves:
+        corners = icon.lower()
+        assert (corners.duration_s, corners.lowest, corners.highest) == (8.0, 29.0, 35.0)
+    sine = waves["sine"].lower()
+    # 2 x 16 pieces; at three crossings of baseline two of them lie on one straight line.
+    assert len(sine) == 32 - 3 + 1
+    for time, value in zip(sine.time_s, sine.value, strict=True):
+        assert value == pytest.approx(32 + 3 * math.sin(2 * math.pi * time / 4), abs=0.0006)
+
+
+def test_files_are_read_and_an_existing_path_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "cue 1\nicon mine { hold for 1 s }\n"
+    (tmp_path / "my.cue").write_text(text, encoding="utf-8")
+    (tmp_path / "six-icons").write_text(text, encoding="utf-8")
+    assert read_cue(tmp_path / "my.cue").icons[0].name == "mine"
+    assert len(read_cue("six-icons")) == 6
+    monkeypatch.chdir(tmp_path)
+    assert read_cue("my.cue").icons[0].name == "mine"
+    assert len(read_cue("six-icons")) == 1
+
+
+def test_errors_name_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "my.cue"
+    path.write_bytes(b"cue 1\nicon mine { hold for 1 }\n")
+    with pytest.raises(CueErrors, match=r"my\.cue:2:22  E102 missing unit"):
+        read_cue(path)
+
+
+def test_what_cannot_be_read_is_told(tmp_path: Path) -> None:
+    with pytest.raises(CueErrors, match=r"E002 a folder(?s:.)*my-set\.cue"):
+        read_cue(tmp_path)
+    with pytest.raises(CueErrors, match=r"six-icon  E001 no such file(?s:.)*did you mean six-icons\?"):
+        read_cue("six-icon")
+    with pytest.raises(CueErrors, match="shipped sets are: cooling-step-skin, six-icons, wave-shapes"):
+        load_library("nothing")
+    with pytest.raises(CueErrors, match=r"'a\\x00b'  E001 no such file"):
+        read_cue("a\0b")
+    with pytest.raises(CueErrors, match=r"E00[13]"):
+        read_cue("x" * 5000)
+    big = tmp_path / "big.cue"
+    big.write_bytes(b"#" * 300_000)
+    with pytest.raises(CueErrors, match="E004 file too large\n  300,000 bytes"):
+        read_cue(big)
+
+
+def test_an_unreadable_file_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "locked.cue"
+    path.write_text("cue 1", encoding="utf-8")
+
+    def refuse(self: Path) -> bytes:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "read_bytes", refuse)
+    with pytest.raises(CueErrors, match="E003 unreadable file\n  the system says: Permission denied"):
+        read_cue(path)

@@ -1,0 +1,81 @@
+"""The package as a whole: what it names, what it imports, what its examples say, and what it draws."""
+
+import doctest
+import importlib
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+
+import thermicon.icons
+from thermicon.icons import Frame, Hold, Icon, load_library, plot_icon
+from thermicon.icons.draw import COOL, STAY, WARM
+
+MODULES = [
+    "thermicon.icons",
+    *(f"thermicon.icons.{info.name}" for info in pkgutil.iter_modules(thermicon.icons.__path__)),
+]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_run(name: str) -> None:
+    failed, _ = doctest.testmod(importlib.import_module(name))
+    assert failed == 0
+
+
+def test_all_names_exist() -> None:
+    assert all(hasattr(thermicon.icons, name) for name in thermicon.icons.__all__)
+
+
+def test_parsing_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from thermicon.icons import read_cue; repr(read_cue('six-icons').icons[0].lower()); "
+        "print([name for name in ('numpy', 'pandas', 'numba', 'matplotlib', 'pydantic') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_importing_alone_does_not_load_the_parser() -> None:
+    code = "import sys, thermicon.icons; print('lark' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
+
+
+def test_a_plot_shows_levels_times_and_directions() -> None:
+    icon = load_library("six-icons")["cooling-step"]
+    ax = icon.plot()
+    (lines,) = ax.collections
+    assert [segment.tolist() for segment in lines.get_segments()] == [
+        [[0.0, 32.0], [2.0, 26.0]],
+        [[2.0, 26.0], [6.0, 26.0]],
+        [[6.0, 26.0], [8.0, 32.0]],
+    ]
+    assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM)]
+    assert (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()) == (
+        "cooling-step",
+        "Time (s)",
+        "Display temperature (°C)",
+    )
+
+
+def test_cool_and_warm_differ_in_grey() -> None:
+    grey = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in map(to_rgb, (COOL, WARM, STAY))]
+    assert grey[1] - grey[0] > 0.25
+    assert grey[1] - grey[2] > 0.25
+
+
+def test_a_plot_draws_on_the_axes_it_is_given() -> None:
+    ax = Figure().add_subplot()
+    assert plot_icon(load_library("wave-shapes")["sine"], ax) is ax
+    assert Icon("x", (Hold(1),), Frame("current")).plot().get_ylabel() == "Current (A)"
+
+
+def test_pictures_for_notebooks() -> None:
+    icons = load_library("cooling-step-skin")
+    for picture in (icons._repr_html_(), icons.icons[0]._repr_html_()):
+        assert picture.startswith("<svg")
+        assert picture.rstrip().endswith("</svg>")

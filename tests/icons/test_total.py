@@ -1,0 +1,97 @@
+"""Parsing is total: whatever the text, there is a set or there are CueErrors, soon, and nothing else."""
+
+import re
+import time
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
+
+TEXT = """cue 1 icon set { } ; " cool warm by to 6 °C K s ms at over return hold for repeat rest 3 -1 1e999 0 @ # means
+tags site control baseline skin current A A/s on sine ( a-b a_b \\ BROKEN é"""
+WORDS = [*re.findall(r"\S+", TEXT), "\n", "\u2028", "\t"]
+SOUND = [str(load_library(name)) for name in library_names()] + [
+    'cue 1\nset a "x" { control current; site wrist }\n'
+    'icon k means "a" tags "b, c" { to 0.5 A at 1 A/s; repeat 2 { to 100 mA over 20 ms; to 0.5 A over 1 s }\n'
+    " return at 500 mA/s }"
+]
+
+
+def parsed(text: str | bytes) -> IconSet | None:
+    try:
+        icons = parse(text)
+    except CueErrors as found:
+        assert found.errors
+        assert str(found)
+        assert all(1 <= e.column <= len(e.source) + 1 for e in found.errors if e.line)
+        assert list(found.errors) == sorted(found.errors, key=lambda e: (e.line, e.column))
+        return None
+    assert parse(str(icons)) == icons
+    return icons
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.text())
+def test_any_text(text: str) -> None:
+    parsed(text)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.binary())
+def test_any_bytes(data: bytes) -> None:
+    parsed(data)
+
+
+@settings(max_examples=250, deadline=None)
+@given(st.lists(st.sampled_from(WORDS), max_size=40), st.sampled_from(["", " "]), st.booleans())
+def test_any_words(words: list[str], between: str, inside: bool) -> None:
+    text = between.join(words)
+    parsed(f"cue 1\nicon x {{ {text} }}" if inside else text)
+
+
+@settings(max_examples=250, deadline=None)
+@given(st.sampled_from(SOUND), st.data())
+def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
+    for _ in range(data.draw(st.integers(1, 4))):
+        start = data.draw(st.integers(0, len(text)))
+        length = data.draw(st.integers(0, 5))
+        text = text[:start] + data.draw(st.sampled_from(["", *WORDS])) + text[start + length :]
+    parsed(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "cue 1\nicon x { " + "repeat 2 { " * 20_000,
+        "cue 1\n" + "icon a {" * 20_000,
+        "cue 1\nicon x { " + "hold for 1 s " * 15_000,
+        "cue 1\nicon x { hold for " + "1" * 200_000 + " s }",
+        "cue 1\nicon x { hold for 1e" + "9" * 200_000 + " s }",
+        "{" * 200_000,
+        "}" * 200_000,
+        '"' * 200_000,
+        "@;" * 100_000,
+        "cue 1\nicon x { " + "repeat 1000000000 { " * 19 + "hold for 1 s" + " }" * 20,
+        "cue 1\nicon x { " + "repeat 3 { " * 9 + "warm by 1e-6 K at 1 K/s" + " }" * 10,
+    ],
+    ids=lambda text: text[:24],
+)
+def test_hostile_texts_are_refused_soon(text: str) -> None:
+    begin = time.perf_counter()
+    parsed(text)
+    assert time.perf_counter() - begin < 5
+
+
+def test_a_large_file_is_refused_before_it_is_read() -> None:
+    with pytest.raises(CueErrors, match=r"E004 file too large\n  5,000,000 bytes\n  a cue file has at most 250,000"):
+        parse(b"icon " * 1_000_000)
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
+def test_any_newline_and_a_byte_order_mark(newline: str) -> None:
+    text = str(load_library("six-icons")).replace("\n", newline)
+    assert parse("\ufeff" + text) == load_library("six-icons")
+    with pytest.raises(CueErrors, match=r"a\.cue:2:19  E102"):
+        parse(newline.join(["cue 1", "icon x { hold for 4 }"]), "a.cue")
