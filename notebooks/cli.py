@@ -1,0 +1,187 @@
+"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``.
+
+Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
+command, beside this one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import math
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from thermicon.notebooks.door import INTERRUPTED, Commands, check_changes, load_rig, usage
+
+TRACKING = ("replay", "display", "ideal")
+
+app = typer.Typer(
+    name="thermicon",
+    cls=Commands,
+    help="Write thermal icons, see what they do to display, skin and receptors, predict which ones people confuse.",
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    no_args_is_help=True,
+)
+
+Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
+RigName = Annotated[
+    str | None, typer.Option("--rig", metavar="RIG", help="A shipped rig or a .toml file.  [default: thenar]")
+]
+Changes = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be repeated.")
+]
+Output = Annotated[
+    Path | None, typer.Option("-o", "--output", metavar="OUT", help="Write the trace: .csv, .parquet, or - for stdout.")
+]
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"thermicon {version('thermicon')}")
+        raise typer.Exit
+
+
+@app.callback()
+def thermicon(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Write thermal icons, see what they do to display, skin and receptors, predict which ones people confuse."""
+
+
+@app.command("check")
+def check_command(
+    files: Files,
+    rig: Annotated[
+        str | None, typer.Option("--rig", metavar="RIG", help="Also hold the icons against this rig.")
+    ] = None,
+    changes: Changes = None,
+) -> None:
+    """Read cue files and report everything that is wrong with them, or one line a file when nothing is.
+
+    With --rig the icons are also held against what the rig can do.
+    """
+    check_changes(changes or [])
+    from thermicon.notebooks.check import check
+
+    check(files, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+@app.command("simulate")
+def simulate_command(
+    file: Annotated[
+        str | None, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")
+    ] = None,
+    icon: Annotated[str | None, typer.Option("--icon", metavar="NAME", help="Only this icon of the file.")] = None,
+    current: Annotated[
+        Path | None, typer.Option("--current", metavar="DRIVE.csv", help="Play this drive (time_s, current_A) instead.")
+    ] = None,
+    hold: Annotated[bool, typer.Option("--hold", help="With --current: hold each row until the next.")] = False,
+    output: Output = None,
+    rate: Annotated[float, typer.Option("--rate", metavar="HZ", help="Rows a second.")] = 100.0,
+    tail: Annotated[
+        float | None,
+        typer.Option("--tail", metavar="S", help="Time after the last corner.  [default: 0; 10 in figures]"),
+    ] = None,
+    figure: Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", help="Draw the overview.")] = None,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Find the current that plays an icon, then follow temperatures and heat flow down to the receptors.
+
+    With --current a given drive is played instead. Without -o a short summary is printed.
+    """
+    check_changes(changes or [])
+    if (file is None) == (current is None):
+        raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
+    if current is None and hold:
+        raise usage("belongs to --current, which plays a drive", "--hold")
+    if current is not None and icon is not None:
+        raise usage("belongs to a cue FILE; a drive has no icons", "--icon")
+    if current is not None and tail is not None:
+        raise usage("belongs to a cue FILE; a drive ends at its last row", "--tail")
+    if not (math.isfinite(rate) and rate > 0):
+        raise usage(f"{rate:g} is not a number of rows a second above 0", "--rate")
+    if tail is not None and not (math.isfinite(tail) and tail >= 0):
+        raise usage(f"{tail:g} is not a time in seconds of 0 or more", "--tail")
+    from thermicon.notebooks.simulate import simulate_drive, simulate_file
+
+    if current is not None:
+        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure)
+    elif file is not None:
+        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure)
+
+
+@app.command("rank")
+def rank_command(
+    files: Files,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people.")] = 200,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people.")] = 0,
+    tracking: Annotated[
+        str | None,
+        typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
+    ] = None,
+    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="How a difference over time counts.")] = "max",
+    trials: Annotated[int, typer.Option("--trials", metavar="N", help="Trials of the experiment foretold.")] = 48,
+    json: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write every number as JSON.")] = None,
+    figure: Annotated[Path | None, typer.Option("--figure", metavar="DIR", help="Write the figures into DIR.")] = None,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Predict what people detect, how soon, what they confuse, and how much information the set carries.
+
+    Several files are joined into one set.
+    """
+    check_changes(changes or [])
+    bounds = (("--people", people, 1, 100_000), ("--seed", seed, 0, 2**63 - 1), ("--trials", trials, 1, 1_000_000))
+    for option, value, least, most in bounds:
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+    if tracking is not None and tracking not in TRACKING:
+        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+    from thermicon.notebooks.ranking import Request, rank_files
+
+    request = Request(people=people, seed=seed, tracking=tracking, norm=norm, trials=trials)
+    rank_files(files, load_rig(rig, changes or []), request, json, figure)
+
+
+@app.command("rigs")
+def rigs_command() -> None:
+    """List the rigs that are shipped."""
+    from thermicon.notebooks.shipped import show_rigs
+
+    show_rigs()
+
+
+@app.command("library")
+def library_command() -> None:
+    """List the icon sets that are shipped, with what they are for and where they come from."""
+    from thermicon.notebooks.shipped import show_library
+
+    show_library()
+
+
+def main() -> None:
+    """Run the command line of the process; the entry point of the ``thermicon`` command."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    try:
+        app(prog_name="thermicon")
+    except KeyboardInterrupt:
+        with contextlib.suppress(OSError):
+            typer.echo("interrupted", err=True)
+        sys.exit(INTERRUPTED)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,75 @@
+"""Cue files at the door of a command: one set out of several files, one icon out of a set."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    from thermicon.icons import Icon, IconSet
+
+
+class JoinError(Exception):
+    """Files that cannot be one set, since an icon's name stands in two of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """Several sets taken as one. Unlike those of an ``IconSet``, its icons may prescribe different things."""
+
+    sets: tuple[IconSet, ...]
+
+    @property
+    def title(self) -> str:
+        """The titles of the sets, one after the other."""
+        return "; ".join(each.title for each in self.sets if each.title)
+
+    def __iter__(self) -> Iterator[Icon]:
+        return (icon for each in self.sets for icon in each)
+
+    def __len__(self) -> int:
+        return sum(map(len, self.sets))
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.sets))
+
+
+def read_all(files: Sequence[str]) -> list[IconSet]:
+    """Read every file; CueErrors carries what is wrong in all of them, not only in the first."""
+    from thermicon.icons import CueError, CueErrors, read_cue
+
+    sets: list[IconSet] = []
+    errors: list[CueError] = []
+    more = 0
+    for file in files:
+        try:
+            sets.append(read_cue(file))
+        except CueErrors as found:
+            errors += found.errors
+            more += found.more
+    if errors:
+        raise CueErrors(tuple(errors), more)
+    return sets
+
+
+def read_set(files: Sequence[str]) -> IconSet:
+    """Read files and join their icons into one set; JoinError when two icons share a name."""
+    sets = read_all(files)
+    if len(sets) == 1:
+        return sets[0]
+    owner: dict[str, str] = {}
+    for file, each in zip(files, sets, strict=True):
+        for icon in each:
+            if icon.name in owner:
+                raise JoinError(
+                    f"{file}: the icon {icon.name} is also in {owner[icon.name]}; "
+                    f"names must differ to be ranked together, so rename one of the two"
+                )
+            owner[icon.name] = file
+    return cast("IconSet", Joined(tuple(sets)))
+
+
+def pick(icons: IconSet, name: str | None) -> list[Icon]:
+    """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest."""
+    return list(icons) if name is None else [icons[name]]

@@ -1,0 +1,87 @@
+"""What every command shares: how errors, interrupts and closed pipes leave the program, and what comes in."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import typer
+from typer.core import TyperGroup
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+BAD_INPUT = 1
+INTERRUPTED = 130
+DEFAULT_RIG = "thenar"
+
+
+def is_ours(error: BaseException) -> bool:
+    """Whether the error is one that this project raises on purpose, with a text for people."""
+    return type(error).__module__.partition(".")[0] == "thermicon"
+
+
+class Commands(TyperGroup):
+    """A group of commands that ends with a message and an exit code, never with a traceback for a wrong input."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
+        try:
+            result = super().invoke(ctx)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            typer.echo("interrupted", err=True)
+            raise typer.Exit(INTERRUPTED) from None
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            raise typer.Exit(0) from None
+        except MemoryError:
+            fail("not enough memory for this; ask for fewer people, fewer rows a second or a shorter tail")
+        except OSError as error:
+            place = f"{error.filename}: " if error.filename else ""
+            fail(f"{place}{error.strerror or error}")
+        except Exception as error:
+            if not is_ours(error):
+                raise
+            fail(str(error))
+        else:
+            return result
+
+
+def fail(message: str) -> NoReturn:
+    """Say what is wrong on stderr and leave with the code for bad input."""
+    typer.echo(message, err=True)
+    raise typer.Exit(BAD_INPUT)
+
+
+def note(message: str) -> None:
+    """Tell the person something beside the result; stderr, so that results can be piped."""
+    typer.echo(message, err=True)
+
+
+def usage(message: str, option: str) -> typer.BadParameter:
+    """Build the error for a command line that makes no sense; raising it exits with 2."""
+    return typer.BadParameter(message, param_hint=f"'{option}'")
+
+
+def check_changes(changes: Sequence[str]) -> None:
+    """Fail with a usage error unless every ``--set`` has the form KEY=VALUE."""
+    for change in changes:
+        key, equals, value = change.partition("=")
+        if not (key.strip() and equals and value.strip()):
+            raise usage(f"{change!r} is not of the form KEY=VALUE, for example contact.area_cm2=4", "--set")
+
+
+def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
+    """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr."""
+    check_changes(changes)
+    from thermicon.circuit import Rig
+
+    rig = Rig.load(name or DEFAULT_RIG)
+    if changes:
+        rig = rig.with_set(list(changes))
+    for warning in rig.warnings:
+        note(f"warning: {warning}")
+    return rig

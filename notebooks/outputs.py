@@ -1,0 +1,78 @@
+"""Files that commands write: looked at before long work starts, complete or absent when it ends."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+STDOUT = Path("-")
+TRACE_SUFFIXES = (".csv", ".parquet")
+FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
+
+
+class OutputError(Exception):
+    """An output cannot be written where or as it was asked for; the text says what to change."""
+
+
+def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
+    """Fail now, with the reason, where writing ``path`` would fail later.
+
+    ``suffixes`` are the file types on offer (empty: any), ``what`` names the thing written. ``-`` is always fine.
+    """
+    if path == STDOUT:
+        return
+    if path.is_dir():
+        raise OutputError(f"cannot write {path}: it is a folder; give the name of a file")
+    if suffixes and path.suffix.lower() not in suffixes:
+        offer = " or ".join(suffixes)
+        found = f"not {path.suffix}" if path.suffix else "and this name has no ending"
+        raise OutputError(f"cannot write {path}: {what} is written as {offer}, {found}")
+    _check_folder(path, path.parent)
+    if path.exists() and not os.access(path, os.W_OK):
+        raise OutputError(f"cannot write {path}: the file is there already and is read-only")
+
+
+def check_folder(path: Path) -> None:
+    """Fail now where the folder ``path`` could neither be used nor be made."""
+    if path.is_dir():
+        _check_folder(path, path)
+    elif path.exists():
+        raise OutputError(f"cannot write into {path}: it is a file; give the name of a folder")
+    else:
+        _check_folder(path, path.parent)
+
+
+def _check_folder(path: Path, folder: Path) -> None:
+    if not folder.exists():
+        raise OutputError(f"cannot write {path}: the folder {folder} does not exist; make it first")
+    if not folder.is_dir():
+        raise OutputError(f"cannot write {path}: {folder} is a file, not a folder")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise OutputError(f"cannot write {path}: the folder {folder} is not writable for you")
+
+
+@contextmanager
+def complete_or_absent(path: Path) -> Iterator[Path]:
+    """A temporary name beside ``path`` to write to; it takes the place of ``path`` only when the block succeeds.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with complete_or_absent(Path(folder) / "a.txt") as draft:
+    ...         _ = draft.write_text("done")
+    ...     [found.name for found in Path(folder).iterdir()]
+    ['a.txt']
+    """
+    goal = path.resolve()
+    if goal.exists() and not goal.is_file():
+        yield goal  # a pipe or a device: nothing to replace
+        return
+    draft = goal.with_name(f".{goal.stem}.{os.getpid()}.part{goal.suffix.lower()}")
+    try:
+        yield draft
+        draft.replace(goal)
+    except OSError as error:
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        draft.unlink(missing_ok=True)

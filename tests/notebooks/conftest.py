@@ -1,0 +1,68 @@
+"""The command line in this process (quick) and in one of its own (true)."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from thermicon.notebooks.cli import app
+
+TWO_ICONS = """cue 1
+
+set two "Two for a test" {
+  site thenar
+  control display
+  baseline 32 °C
+}
+
+icon cool-step { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }
+icon warm-step { warm by 4 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+"""
+
+
+@dataclass(frozen=True)
+class Said:
+    """What a command left behind."""
+
+    exit_code: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def cli() -> Callable[..., Said]:
+    """``cli("check", "a.cue")`` runs a command in this process."""
+
+    def run(*arguments: object) -> Said:
+        result = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(app, [str(each) for each in arguments])
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        return Said(result.exit_code, result.stdout, result.stderr)
+
+    return run
+
+
+@pytest.fixture
+def process() -> Callable[..., Said]:
+    """``process("check", "a.cue")`` runs a command as a person would, in a process of its own."""
+
+    def run(*arguments: object, cwd: Path | None = None) -> Said:
+        command = [sys.executable, "-m", "thermicon.notebooks.cli", *(str(each) for each in arguments)]
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=120, check=False)
+        return Said(done.returncode, done.stdout, done.stderr)
+
+    return run
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Path:
+    """A file with two icons that the default rig plays with ease."""
+    path = tmp_path / "two.cue"
+    path.write_text(TWO_ICONS, encoding="utf-8")
+    return path

@@ -1,0 +1,165 @@
+"""Everything that can be wrong on the command line gets one clear message, exit 1 or 2, and no traceback."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Cli = Callable[..., Any]
+
+
+def refused(said: Any, *words: str, code: int = 1) -> None:
+    assert said.exit_code == code, said
+    assert said.stdout == ""
+    assert "Traceback" not in said.stderr
+    for word in words:
+        assert word in said.stderr, said.stderr
+
+
+def test_an_unknown_rig_lists_the_nearest(cli: Cli, two: Path) -> None:
+    refused(cli("simulate", two, "--rig", "thenr"), "thenr", "did you mean thenar?")
+
+
+def test_an_unknown_library_set_lists_the_nearest(cli: Cli) -> None:
+    refused(cli("check", "six-icon"), "six-icon", "six-icons")
+
+
+def test_an_unknown_key_of_set_lists_the_nearest(cli: Cli, two: Path) -> None:
+    refused(cli("simulate", two, "--set", "contact.area=4"), "contact.area", "contact.area_cm2")
+
+
+def test_an_unknown_icon_lists_the_nearest(cli: Cli, two: Path) -> None:
+    refused(cli("simulate", two, "--icon", "cool-stp"), "cool-stp", "did you mean cool-step?")
+
+
+def test_a_number_without_unit_is_shown_with_the_fix(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "alarm.cue"
+    path.write_text("cue 1\nicon a {\n  cool to 26 at 3 °C/s\n}\n", encoding="utf-8")
+    refused(cli("check", path), "alarm.cue:3:", "E102", "^^", "did you mean")
+
+
+def test_all_errors_of_all_files_come_at_once(cli: Cli, tmp_path: Path, two: Path) -> None:
+    first, second = tmp_path / "first.cue", tmp_path / "second.cue"
+    first.write_text("cue 1\nicon a {\n  cool to 26 at 3 °C/s\n  hold for 4\n}\n", encoding="utf-8")
+    second.write_text("cue 1\nicon b {\n  hold for 4\n}\n", encoding="utf-8")
+    refused(cli("check", first, two, second), "first.cue:3:", "first.cue:4:", "second.cue:3:")
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"", "empty"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR", "binary"),
+        (b"cue 1\n" + b"# filler\n" * 6_000_000, "54,000,006 bytes"),
+        (b"cue 1\nicon a { warm by 4 \xb0C at 1 \xb0C/s }\n", "UTF-8"),
+    ],
+    ids=["empty", "binary", "50 MB", "latin-1"],
+)
+def test_a_file_that_is_no_cue(cli: Cli, tmp_path: Path, content: bytes, words: str) -> None:
+    path = tmp_path / "odd.cue"
+    path.write_bytes(content)
+    refused(cli("check", path), "odd.cue", words)
+
+
+def test_a_folder_is_no_cue(cli: Cli, tmp_path: Path) -> None:
+    refused(cli("check", tmp_path), "folder")
+
+
+def test_a_missing_file(cli: Cli, tmp_path: Path) -> None:
+    refused(cli("rank", tmp_path / "absent.cue"), "absent.cue")
+
+
+RIG_CHANGES = [
+    ("thickness_mm = 0.17", "thickness_mm = -0.17", ("thickness_mm", "-0.17")),
+    ("rest_C = 32.0", "rest_C = nan", ("rest_C", "nan")),
+    ("area_cm2 = 9.0", "aera_cm2 = 9.0", ("aera_cm2", "area_cm2")),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), RIG_CHANGES, ids=["negative", "nan", "unknown key"])
+def test_a_rig_that_cannot_be(cli: Cli, two: Path, tmp_path: Path, old: str, new: str, words: tuple[str, ...]) -> None:
+    from importlib.resources import files
+
+    text = (files("thermicon.circuit") / "rigs" / "thenar.toml").read_text(encoding="utf-8")
+    assert old in text
+    rig = tmp_path / "odd.toml"
+    rig.write_text(text.replace(old, new), encoding="utf-8")
+    refused(cli("simulate", two, "--rig", rig), "odd.toml", *words)
+
+
+@pytest.mark.parametrize("value", ["-1", "nan", "wide"])
+def test_a_change_that_cannot_be(cli: Cli, two: Path, value: str) -> None:
+    refused(cli("check", two, "--set", f"contact.area_cm2={value}"), "area_cm2", value)
+
+
+def test_two_files_with_the_same_icon(cli: Cli, two: Path, tmp_path: Path) -> None:
+    again = tmp_path / "again.cue"
+    again.write_text(two.read_text(encoding="utf-8"), encoding="utf-8")
+    refused(cli("rank", two, again), "cool-step", "two.cue", "again.cue")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["-o", "out.txt"], [".csv or .parquet, not .txt"]),
+        (["-o", "absent/out.csv"], ["the folder absent does not exist"]),
+        (["--figure", "out.gif"], [".png", "not .gif"]),
+    ],
+)
+def test_an_output_that_cannot_be(cli: Cli, two: Path, arguments: list[str], words: list[str]) -> None:
+    refused(cli("simulate", two, *arguments), *words)
+
+
+def test_json_that_cannot_be_written_is_told_before_the_work(cli: Cli, two: Path) -> None:
+    refused(cli("rank", two, "--people", 100_000, "--json", "absent/out.json"), "the folder absent does not exist")
+
+
+def test_a_figure_folder_that_is_a_file(cli: Cli, two: Path) -> None:
+    refused(cli("rank", two, "--people", 100_000, "--figure", two), "it is a file")
+
+
+DRIVES = [
+    ("time_s,current_A\n0,0.1\n1,nan\n", ("drive.csv", "nan")),
+    ("time_s,amps\n0,0.1\n", ("drive.csv", "current_A")),
+    ("time_s,current_A\n0,0.1\n1,x\n", ("drive.csv:3", "'x'")),
+    ("", ("drive.csv", "empty")),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), DRIVES)
+def test_a_drive_that_cannot_be(cli: Cli, tmp_path: Path, text: str, words: tuple[str, ...]) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text(text)
+    refused(cli("simulate", "--current", path), *words)
+
+
+USAGE = [
+    ((), "Usage"),
+    (("chek",), "Did you mean 'check'"),
+    (("check",), "Missing argument"),
+    (("check", "two.cue", "--rgi", "x"), "--rgi"),
+    (("check", "two.cue", "--set", "contact.area_cm2"), "KEY=VALUE"),
+    (("simulate",), "either a cue FILE or --current"),
+    (("simulate", "a.cue", "--current", "b.csv"), "either a cue FILE or --current"),
+    (("simulate", "a.cue", "--hold"), "--hold"),
+    (("simulate", "--current", "b.csv", "--icon", "a"), "--icon"),
+    (("simulate", "--current", "b.csv", "--tail", "1"), "--tail"),
+    (("simulate", "a.cue", "--rate", "nan"), "--rate"),
+    (("simulate", "a.cue", "--tail", "-1"), "--tail"),
+    (("rank", "six-icons", "--people", "0"), "--people"),
+    (("rank", "six-icons", "--people", "100001"), "1 to 100000"),
+    (("rank", "six-icons", "--trials", "1000000000000"), "--trials"),
+    (("rank", "six-icons", "--tracking", "repaly"), "replay, display, ideal"),
+    (("rank", "six-icons", "--norm", "mx"), "max"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "words"), USAGE)
+def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...], words: str) -> None:
+    said = cli(*arguments)
+    assert said.exit_code == 2
+    assert words in said.stderr + (said.stdout if not arguments else "")
+    assert "Traceback" not in said.stderr

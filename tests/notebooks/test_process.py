@@ -1,0 +1,83 @@
+"""How the program starts, is interrupted, loses its reader, and what it lists."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from importlib.metadata import entry_points, version
+from typing import Any
+
+import pytest
+
+Cli = Callable[..., Any]
+
+
+def test_the_entry_point_is_the_command_line() -> None:
+    (found,) = entry_points(group="console_scripts", name="thermicon")
+    assert found.value == "thermicon.notebooks.cli:main"
+
+
+def test_the_version(process: Cli) -> None:
+    said = process("--version")
+    assert (said.exit_code, said.stdout, said.stderr) == (0, f"thermicon {version('thermicon')}\n", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
+def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
+    program = (
+        "import os, signal, thermicon.notebooks.check as c\n"
+        "c.check = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n"
+        "from thermicon.notebooks.cli import main\nmain()\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program, "check", "x"], capture_output=True, text=True, check=False)
+    assert run.returncode == 130
+    assert run.stderr == "interrupted\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")
+def test_a_reader_that_goes_away_is_no_error() -> None:
+    command = [sys.executable, "-m", "thermicon.notebooks.cli", "simulate", "six-icons", "-o", "-"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        assert run.stderr is not None
+        assert run.stdout.readline().startswith("icon,time_s,current_A")
+        run.stdout.close()
+        said = run.stderr.read()
+    assert run.returncode == 0, said
+    assert "Traceback" not in said
+    assert "Broken" not in said
+
+
+def test_an_error_of_the_program_itself_is_not_hidden(monkeypatch: pytest.MonkeyPatch, cli: Cli) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError
+
+    monkeypatch.setattr("thermicon.notebooks.check.check", broken)
+    with pytest.raises(ZeroDivisionError):
+        cli("check", "six-icons")
+
+
+def test_rigs_are_listed_with_what_they_rest_at(cli: Cli) -> None:
+    said = cli("rigs")
+    assert said.exit_code == 0
+    for word in ("thenar", "shani2021", "34.5", "−80"):
+        assert word in said.stdout
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+
+
+def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
+    said = cli("library")
+    assert said.exit_code == 0
+    assert "six-icons" in said.stdout
+    assert "cooling-step" in said.stdout
+
+
+def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
+    from thermicon.notebooks.tables import show, table
+
+    made = table("icon")
+    made.add_row("[red]loud[/red]")
+    show(made, "[b]plain[/b]")
+    assert "[b]plain[/b]" in (said := capsys.readouterr().out)
+    assert "[red]loud[/red]" in said
