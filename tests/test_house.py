@@ -1,0 +1,179 @@
+"""The house rules that a machine can check, so that nobody has to remember them in a review."""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import importlib
+import io
+import os
+import pkgutil
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+FLOW = ("icons", "circuit", "perception", "notebooks")
+MAY_IMPORT = {package: FLOW[: i + 1] for i, package in enumerate(FLOW)}
+LINES_AT_MOST = 400
+GENERATED = {"build", "dist", "__pycache__", "node_modules"}
+
+# Spelled in pieces so that this file does not find itself.
+UNWANTED = {
+    "a package registry's host": r"py" r"pi\.org|python" r"hosted\.org|registry\." r"npmjs|deb\." r"debian\.org",
+    "a path outside the project": r"/wo" r"rk/|\.\./sha" r"red\b|/fa" r"rm/",
+    "the number of an issue": r"(?i)\b(iss" r"ue|pull req" r"uest|tick" r"et)s?\s+#?\d+",
+}
+
+
+def module_names() -> list[str]:
+    """Every module of the four packages, by its import name, found without importing anything."""
+    found = []
+    for package in FLOW:
+        found.append(f"thermicon.{package}")
+        for path in sorted((ROOT / package).rglob("*.py")):
+            parts = path.relative_to(ROOT).with_suffix("").parts
+            if parts[-1] != "__init__":
+                found.append(".".join(("thermicon", *parts)))
+    return found
+
+
+def project_files() -> Iterator[Path]:
+    """Every file of the project: the tree without dot caches, environments and what builds leave behind."""
+    for folder, subfolders, names in os.walk(ROOT):
+        subfolders[:] = [
+            name
+            for name in subfolders
+            if name not in GENERATED
+            and not name.endswith(".egg-info")
+            and (not name.startswith(".") or name in {".github", ".ci"})
+            and not (Path(folder) / name / "pyvenv.cfg").exists()
+        ]
+        yield from (Path(folder) / name for name in names)
+
+
+def imported_names(path: Path) -> Iterator[tuple[int, str]]:
+    """Line and full name of everything a file imports, relative imports resolved."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    here = ("thermicon", *(parts[:-1]))
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), filename=str(path))):
+        if isinstance(node, ast.Import):
+            yield from ((node.lineno, alias.name) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level + 1] if node.level else ()
+            full = ".".join((*base, *filter(None, [node.module])))
+            yield node.lineno, full
+            if full == "thermicon":
+                yield from ((node.lineno, f"thermicon.{alias.name}") for alias in node.names)
+
+
+@pytest.mark.parametrize("package", FLOW)
+def test_imports_point_upstream(package: str) -> None:
+    wrong = []
+    for path in sorted((ROOT / package).rglob("*.py")):
+        for line, name in imported_names(path):
+            first, _, rest = name.partition(".")
+            bare = first in FLOW
+            downstream = first == "thermicon" and rest and rest.split(".")[0] not in MAY_IMPORT[package]
+            if bare or downstream:
+                wrong.append(f"{path.relative_to(ROOT)}:{line} imports {name}")
+    assert not wrong, f"{package} may import only {', '.join(MAY_IMPORT[package])} of ours:\n" + "\n".join(wrong)
+
+
+def test_no_bare_package_is_imported() -> None:
+    for name in module_names():
+        importlib.import_module(name)
+    assert not set(FLOW) & set(sys.modules), "a folder was imported a second time under its bare name"
+
+
+def test_walking_the_packages_finds_every_file() -> None:
+    walked = []
+    for package in FLOW:
+        module = importlib.import_module(f"thermicon.{package}")
+        walked.append(module.__name__)
+        walked += [info.name for info in pkgutil.walk_packages(module.__path__, f"{module.__name__}.")]
+    assert sorted(walked) == sorted(module_names())
+
+
+@pytest.mark.parametrize("name", module_names())
+def test_examples_in_docstrings_run(name: str) -> None:
+    module = importlib.import_module(name)
+    said = io.StringIO()
+    runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE)
+    for example in doctest.DocTestFinder(exclude_empty=True).find(module, name):
+        runner.run(example, out=said.write)
+    assert runner.failures == 0, said.getvalue()
+
+
+def test_no_module_is_too_long() -> None:
+    lengths = {
+        path.relative_to(ROOT): len(path.read_text(encoding="utf-8").splitlines())
+        for path in project_files()
+        if path.suffix == ".py"
+    }
+    long = {str(path): n for path, n in lengths.items() if n > LINES_AT_MOST}
+    assert not long, f"over {LINES_AT_MOST} lines, split where the idea splits: {long}"
+
+
+@pytest.mark.parametrize("what", UNWANTED)
+def test_no_file_mentions(what: str) -> None:
+    pattern = re.compile(UNWANTED[what])
+    found = []
+    for path in project_files():
+        try:
+            text = path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            if match := pattern.search(line):
+                found.append(f"{path.relative_to(ROOT)}:{number} {match[0]}")
+    assert not found, f"{what} does not belong in the project:\n" + "\n".join(found)
+
+
+@pytest.mark.parametrize("package", FLOW)
+def test_package_is_typed_and_lists_its_names(package: str) -> None:
+    module = importlib.import_module(f"thermicon.{package}")
+    assert (ROOT / package / "py.typed").is_file()
+    names = list(module.__all__)
+    assert names
+    assert len(names) == len(set(names)), f"a name stands twice in thermicon.{package}.__all__"
+    missing = [name for name in names if not hasattr(module, name)]
+    assert not missing, f"thermicon.{package}.__all__ names what is not there: {missing}"
+
+
+@pytest.mark.parametrize(
+    ("package", "order"),
+    [
+        ("icons", ("parse", "Icon")),
+        ("circuit", ("Rig", "read_drive", "simulate", "judge_safety")),
+        ("perception", ("perceive", "Ranking")),
+    ],
+)
+def test_names_are_listed_in_the_order_of_the_flow(package: str, order: tuple[str, ...]) -> None:
+    names = list(importlib.import_module(f"thermicon.{package}").__all__)
+    positions = [names.index(name) for name in order]
+    assert positions == sorted(positions)
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    cited = re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(encoding="utf-8"), re.MULTILINE)
+    assert cited is not None
+    assert cited[1].strip('"') == version
+    headings = re.findall(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)
+    released = [heading for heading in headings if heading != "Unreleased"]
+    assert "Unreleased" in headings or released
+    assert not released or released[0] == version
+
+
+@pytest.mark.parametrize("command", [["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"]])
+def test_tools_are_content(command: list[str]) -> None:
+    if command[0] == "mypy" and not (ROOT / ".types" / "thermicon" / "icons").is_dir():
+        pytest.skip("this checkout has no symbolic links, which mypy needs to see the namespace package")
+    run = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
