@@ -3,6 +3,9 @@
 from thermicon.circuit.door import InputError
 from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.circuit.module import Peltier
+from thermicon.circuit.datasheet import Datasheet, Extraction
+from thermicon.circuit.modules import load_module, module_names
+from thermicon.circuit.receptors import ReceptorDepths
 from thermicon.circuit.skin import Layer, Skin
 from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.rig import Rig, rig_names
@@ -11,8 +14,11 @@ from thermicon.circuit.steady import hold, steady_state
 from thermicon.circuit.static import check_static
 from thermicon.circuit.trace import Outcome, Trace, write_trace
 from thermicon.circuit.simulate import simulate, simulate_current
+from thermicon.circuit.depths import Depths, Likeness, probe_depths, resembles
+from thermicon.circuit.meshstudy import Mesh, MeshStudy, mesh_study
 from thermicon.circuit.many import TRACKINGS, Batch, simulate_many, usual_tracking
 from thermicon.circuit.limits import SafetyVerdict, judge_safety
+from thermicon.circuit.summary import Summary, summarise
 from thermicon.circuit.netlist import netlist
 
 __all__ = [
@@ -22,6 +28,11 @@ __all__ = [
     "Table",
     "load_records",
     "Peltier",
+    "Datasheet",
+    "Extraction",
+    "load_module",
+    "module_names",
+    "ReceptorDepths",
     "Layer",
     "Skin",
     "RigError",
@@ -38,11 +49,20 @@ __all__ = [
     "write_trace",
     "simulate",
     "simulate_current",
+    "Depths",
+    "Likeness",
+    "probe_depths",
+    "resembles",
+    "Mesh",
+    "MeshStudy",
+    "mesh_study",
     "TRACKINGS",
     "Batch",
     "simulate_many",
     "usual_tracking",
     "SafetyVerdict",
     "judge_safety",
+    "Summary",
+    "summarise",
     "netlist",
 ]

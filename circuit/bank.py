@@ -76,13 +76,12 @@ class Intervals:
 
 def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Intervals:
     """Cut time for currents (cues, k) given at times (k,), held or linear between, ending at the last row."""
-    end = rows_s[-1]
-    edges = np.union1d(rows_s, times_s[times_s < end])
-    keep = np.concatenate([[True], np.diff(edges) > 1e-9])  # a row and a change a rounding error apart are one
-    edges = edges[keep]
-    place = np.searchsorted(edges, rows_s + 1e-9, side="right") - 1
-    row_of = np.full(len(edges), -1, dtype=np.int64)
-    row_of[place] = np.arange(len(rows_s))
+    beside = np.searchsorted(rows_s, times_s)
+    after, before = np.minimum(beside, len(rows_s) - 1), np.maximum(beside - 1, 0)
+    near = np.minimum(np.abs(rows_s[after] - times_s), np.abs(times_s - rows_s[before]))
+    own = (near > 1e-9) & (times_s < rows_s[-1])  # a row and a change a rounding error apart are one
+    edges = np.insert(rows_s, beside[own], times_s[own])
+    row_of = np.insert(np.arange(len(rows_s)), beside[own], -1)
     if held:
         now = np.clip(np.searchsorted(times_s, edges[:-1] + 1e-9, side="right") - 1, 0, len(times_s) - 1)
         start = end_ = currents_A[:, now]
@@ -93,15 +92,23 @@ def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Interva
 
 
 def run_forward(
-    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES
-) -> Array:
-    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3)."""
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES,
+    extra: tuple[Index, Array] | None = None,
+) -> Array:  # fmt: skip
+    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3).
+
+    `extra` adds further readings after them, the same states and weights for every rig: starts (k,), weights (k, 3).
+    """
     from thermicon.circuit import kernel, lanes
 
     which = [PROBES.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
     weights = np.ascontiguousarray(bank.probe_weight[:, which])
-    out = np.empty((len(which), len(rig_of), int(intervals.row_of.max()) + 1))
+    if extra is not None:
+        rigs = len(places)
+        places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
+        weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
+    out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
 
     def work(part: Index) -> None:
         run = kernel.forward if part.ndim == 1 else lanes.forward
@@ -127,6 +134,32 @@ def run_follow(
         run = kernel.follow if part.ndim == 1 else lanes.follow
         run(
             part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
+            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return current, reached, why
+
+
+def run_regulate(
+    bank: Bank,
+    rig_of: Index,
+    cue_of: Index,
+    period_s: float,
+    setpoint_C: Array,
+    gains: Array,
+    bias_A: Array,
+    state: Array,
+) -> tuple[Array, Array, Index]:
+    """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
+    from thermicon.circuit import pid
+
+    shape = (len(rig_of), setpoint_C.shape[1])
+    current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+
+    def work(part: Index) -> None:
+        pid.regulate(
+            np.unique(part), rig_of, cue_of, period_s, setpoint_C, gains, bias_A, bank.count, bank.plates,
             bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
         )  # fmt: skip
 

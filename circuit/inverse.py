@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, Index, run_follow
+from thermicon.circuit.bank import Bank, Index, cut, run_follow, run_forward, run_regulate
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.network import network_of
 from thermicon.circuit.rig import Rig
@@ -61,15 +61,44 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
             times.append(end_s)
             values.append(values[-1])
         return Design(Drive(times, values), current, state, None)
-    ends = periods(rig, end_s)
-    target = target_at(icon, baseline_C(icon, rig), ends)
+    ends, base = periods(rig, end_s), baseline_C(icon, rig)
+    target = target_at(icon, base, ends)
     bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
     period = 1.0 / rig.driver.update_Hz
     currents, reached, why = run_follow(
         bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
     )
     outcome = judge(target, reached[0], period, _limits(why[0], period))
-    return Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
+    plan = Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
+    return plan if rig.controller is None else close_loop(rig, plan, control, base, target)
+
+
+def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array) -> Design:
+    """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
+
+    The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
+    the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
+    """
+    network, pid = network_of(rig), rig.controller
+    assert pid is not None
+    bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+    period = 1.0 / rig.driver.update_Hz
+    setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
+    gains = np.array([[pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K]])
+    currents, reached, why = run_regulate(
+        bank, one, one, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
+    )
+    drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
+    loop = Design(drive, plan.rest_A, plan.start_C, None)
+    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
+    return replace(loop, outcome=judge(target, controlled, period, _limits(why[0], period)))
+
+
+def _along(rig: Rig, plan: Design, probe: str) -> Array:
+    """A probe at the beginning of every driver period of a design, and at its end."""
+    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    intervals = cut(plan.drive.time_s, plan.drive.time_s, plan.drive.current_A[np.newaxis], held=True)
+    return np.asarray(run_forward(bank, one, one, intervals, bank.states([plan.start_C]), (probe,))[0, 0])
 
 
 def _limits(why: Index, period: float) -> tuple[tuple[str, float], ...]:

@@ -16,60 +16,127 @@ from numba import njit
 from thermicon.circuit import plate
 from thermicon.circuit.module import ZERO_C_IN_K
 
-greatest_cooling = njit(cache=True, nogil=True)(plate.greatest_cooling_A)
-current_for_heat = njit(cache=True, nogil=True)(plate.current_for_heat_A)
+compiled = njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
+greatest_cooling = compiled(plate.greatest_cooling_A)
+current_for_heat = compiled(plate.current_for_heat_A)
 
 LONGEST_STEP_S = 0.01
 SHORTEST_STEP_S = 0.25e-3
+CLOSE_A = 1e-10
+KEEP, LINK, BACK, SLOPE, WEIGHT = range(5)
 JUMP_A = 0.02
 """After a jump of the current, and at the start, steps begin at the shortest and grow with the time since."""
 
 
-@njit(cache=True, nogil=True)
-def factor(n, half, cap, g, perf, deep, inv, elim, keep, gain):
-    """Eliminate the skin for an implicit step of length `half`: what `sweep` multiplies with is filled, all (n,)."""
-    below, carried = 0.0, g[n] * deep
+@compiled
+def factor(n, half, cap, g, perf, p, f):
+    """Factor the skin for implicit steps of length `half`, into f (5, n + 1); temperatures are above the deep node's.
+
+    The upper half is eliminated downwards and the lower half upwards: two short chains instead of a long one. A lump
+    is KEEP of itself, LINK of the neighbour before it in its chain, BACK of the one after it and, in the upper half,
+    SLOPE of the cold plate. WEIGHT gives the first lump from all lumps. Column n holds the cold plate's share in the
+    first lump, the factor where the halves meet, and hot plate, cold plate and heat sink over the step.
+    """
+    middle = n // 2
+    share = 0.0
     for i in range(n - 1, -1, -1):
-        inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - below)
-        elim[i] = g[i] * inverse
-        below = g[i] * elim[i]
-        inv[i] = g[i + 1] * inverse if i < n - 1 else 0.0
-        keep[i] = cap[i] / half * inverse
-        gain[i] = (perf[i] * deep + carried) * inverse
-        carried = 0.0
-
-
-@njit(cache=True, nogil=True)
-def sweep(n, state, inv, keep, gain, z):
-    """Fill z (n,): lump i after the implicit step is z[i] + elim[i] · (the state above it)."""
-    below = 0.0
-    for i in range(n - 1, -1, -1):
-        below = keep[i] * state[i + 2] + gain[i] + inv[i] * below
-        z[i] = below
-
-
-@njit(cache=True, nogil=True)
-def advance(n, step, current, squared, p, g0, state, inv, elim, keep, gain, z):
-    """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2."""
-    half = 0.5 * step
-    sweep(n, state, inv, keep, gain, z)
-    hot0, cold0 = state[0], state[1]
-    pump, joule = p[0] * current, 0.5 * p[1] * squared
-    hot_store, cold_store = p[3] / half, p[4] / half
-    a11, a22 = hot_store + p[6] + p[2] - pump, cold_store + p[2] + pump + g0 * (1.0 - elim[0])
-    b1 = hot_store * hot0 + p[6] * p[5] + pump * ZERO_C_IN_K + joule
-    b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0 * z[0]
-    determinant = a11 * a22 - p[2] * p[2]
-    hot = (b1 * a22 + p[2] * b2) / determinant
-    cold = (a11 * b2 + p[2] * b1) / determinant
-    state[0], state[1] = 2.0 * hot - hot0, 2.0 * cold - cold0
-    above = cold
+        inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i + 1] * share)
+        share = g[i] * inverse
+        f[KEEP, i], f[LINK, i], f[BACK, i] = cap[i] / half * inverse, g[i + 1] * inverse, share
+    product = 1.0
     for i in range(n):
-        above = z[i] + elim[i] * above
-        state[i + 2] = 2.0 * above - state[i + 2]
+        f[WEIGHT, i] = product * f[KEEP, i]
+        product *= f[LINK, i]
+    f[KEEP, n] = share
+    share, product = 0.0, 1.0
+    for i in range(middle):
+        inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i] * share)
+        share = g[i + 1] * inverse
+        product *= g[i] * inverse
+        f[KEEP, i], f[LINK, i], f[BACK, i], f[SLOPE, i] = cap[i] / half * inverse, g[i] * inverse, share, product
+    f[LINK, n] = 1.0 / (1.0 - f[BACK, middle] * share)
+    f[BACK, n], f[SLOPE, n] = p[3] / half, p[4] / half
+    f[WEIGHT, n] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, fastmath={"contract", "reassoc"})
+def weighed(n, weight, lumps):
+    """Σ weight · lump over n lumps."""
+    total = 0.0
+    for i in range(n):
+        total += weight[i] * lumps[i]
+    return total
+
+
+@compiled
+def settle(hot, p, sink):
+    """Start the heat sink at its set-point: temperature °C, integral K·s, power W now and at rest."""
+    sink[0], sink[1] = p[5], 0.0
+    sink[2] = sink[3] = -p[6] * (hot - p[5]) if p[11] > 0.0 else 0.0
+
+
+@compiled
+def regulate_sink(step, p, sink):
+    """Power of a hot plate's own controller for the next step; the integral waits at limits."""
+    error = p[5] - sink[0]
+    power = sink[3] + p[12] * error + p[13] * sink[1]
+    sink[2] = min(max(power, -p[14]), p[14])
+    if power == sink[2] or power * error < 0.0:
+        sink[1] += error * step
+
+
+@compiled
+def advance(n, step, current, squared, p, g0, x, sink, f, y):
+    """One trapezoidal step in place, with the step's mean current and mean squared current; f is for step/2.
+
+    `x` (n + 2,) is hot plate, cold plate and lumps above the deep temperature p[7]; `y` (n,) is scratch.
+    """
+    middle, share = n // 2, f[WEIGHT, n]  # the heat sink's share in its own implicit step: 0 where it is ideal
+    if share > 0.0:
+        regulate_sink(step, p, sink)
+    first = weighed(n, f[WEIGHT], x[2:])
+    hot0, cold0, kelvin = x[0], x[1], ZERO_C_IN_K + p[7]
+    pump, joule = p[0] * current, 0.5 * p[1] * squared
+    hot_store, cold_store, out = f[BACK, n], f[SLOPE, n], p[6] * (1.0 - share)
+    a11, a22 = hot_store + out + p[2] - pump, cold_store + p[2] + pump + g0 * (1.0 - f[KEEP, n])
+    b1 = hot_store * hot0 + out * (sink[0] - p[7]) + share * sink[2] + pump * kelvin + joule
+    b2 = cold_store * cold0 - pump * kelvin + joule + g0 * first
+    inverse = 1.0 / (a11 * a22 - p[2] * p[2])
+    hot, cold = (b1 * a22 + p[2] * b2) * inverse, (a11 * b2 + p[2] * b1) * inverse
+    x[0], x[1] = 2.0 * hot - hot0, 2.0 * cold - cold0
+    if share > 0.0:
+        sink[0] += 2.0 * share * (sink[2] / p[6] + hot + p[7] - sink[0])
+    above, below = 0.0, 0.0
+    for j in range(middle):
+        i = n - 1 - j
+        above = f[KEEP, j] * x[j + 2] + f[LINK, j] * above
+        below = f[KEEP, i] * x[i + 2] + f[LINK, i] * below
+        y[j], y[i] = above, below
+    if n > 2 * middle:
+        below = f[KEEP, middle] * x[middle + 2] + f[LINK, middle] * below
+    above = above + f[SLOPE, middle - 1] * cold if middle > 0 else cold
+    above = below = (below + f[BACK, middle] * above) * f[LINK, n]
+    x[middle + 2] = 2.0 * above - x[middle + 2]
+    for j in range(1, n - middle):
+        i = middle + j
+        below = y[i] + f[BACK, i] * below
+        x[i + 2] = 2.0 * below - x[i + 2]
+        i = middle - j
+        above = y[i] + f[SLOPE, i] * cold + f[BACK, i] * above
+        x[i + 2] = 2.0 * above - x[i + 2]
+    if middle > 0 and n == 2 * middle:
+        above = y[0] + f[SLOPE, 0] * cold + f[BACK, 0] * above
+        x[2] = 2.0 * above - x[2]
+
+
+@compiled
+def load(state, p, x):
+    """Copy a lane's state (°C) into x, above the deep temperature."""
+    for i in range(state.size):
+        x[i] = state[i] - p[7]
+
+
+@compiled
 def forward(
     lanes, rig_of, cue_of, edges, start_A, end_A, row_of, count, plates, cap, g, perf, places, weights, state, out
 ):
@@ -79,20 +146,19 @@ def forward(
     an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row).
     """
     most = cap.shape[1]
-    work = np.empty((5, most))
-    inv, elim, keep, gain, z = work[0], work[1], work[2], work[3], work[4]
+    f, y, x, sink = np.empty((5, most + 1)), np.empty(most), np.empty(most + 3), np.zeros(4)
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
-        n, p, x = count[r], plates[r], state[lane]
+        n, p = count[r], plates[r]
+        load(state[lane], p, x)
+        settle(state[lane, 0], p, sink)
         factored, since, before = -1.0, 0.0, start_A[c, 0]
         for k in range(edges.size):
             row = row_of[k]
             if row >= 0:
                 for q in range(places.shape[1]):
-                    at = places[r, q]
-                    out[q, lane, row] = (
-                        weights[r, q, 0] * x[at] + weights[r, q, 1] * x[at + 1] + weights[r, q, 2] * x[at + 2]
-                    )
+                    at, w = places[r, q], weights[r, q]
+                    out[q, lane, row] = w[0] * x[at] + w[1] * x[at + 1] + w[2] * x[at + 2] + (w[0] + w[1] + w[2]) * p[7]
             if k == edges.size - 1:
                 break
             length = edges[k + 1] - edges[k]
@@ -101,23 +167,25 @@ def forward(
                 since = 0.0
             done = 0.0
             while done < length - 1e-12:
-                left = length - done
-                step = min(LONGEST_STEP_S, max(SHORTEST_STEP_S, 0.25 * since))
-                pieces = math.ceil(left / step - 1e-9)
-                step = left / pieces
-                a = first + (last - first) * (done / length)
-                b = first + (last - first) * ((done + step) / length)
+                step = length - done
+                longest = min(LONGEST_STEP_S, max(SHORTEST_STEP_S, 0.25 * since))
+                if step > longest * (1.0 + 1e-9):
+                    step /= math.ceil(step / longest - 1e-9)
                 if abs(step - factored) > 1e-12:
-                    factor(n, 0.5 * step, cap[r], g[r], perf[r], p[7], inv, elim, keep, gain)
+                    factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
                     factored = step
-                advance(n, step, 0.5 * (a + b), (a * a + a * b + b * b) / 3.0, p, g[r, 0], x, inv, elim, keep, gain, z)
+                mean, square = first, first * first
+                if first != last:
+                    a, b = first + (last - first) * (done / length), first + (last - first) * ((done + step) / length)
+                    mean, square = 0.5 * (a + b), (a * a + a * b + b * b) / 3.0
+                advance(n, step, mean, square, p, g[r, 0], x, sink, f, y)
                 done += step
                 since += step
             before = last
 
 
-@njit(cache=True, nogil=True)
-def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, p):
+@compiled
+def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
     """Current for the next period and the code of what limits it, from one implicit step over the period.
 
     After that step the first lump is z0 + elim0 · (cold plate), which makes the target one of the cold plate, and the
@@ -128,8 +196,14 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, p):
     if skin_control:
         aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
     heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[4] / period * (aim - cold)
-    base, total = p[3] / period * hot + p[6] * p[5] + leak * aim, p[3] / period + p[6] + leak
-    amperes, code = current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9), 0
+    base, total = p[3] / period * hot + p[6] * sink + leak * aim, p[3] / period + p[6] + leak
+    return limited(current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9, guess, CLOSE_A), hot, cold, sink, p)
+
+
+@compiled
+def limited(amperes, hot, cold, sink, p):
+    """The current that the driver and the module allow, and the code of what held it back (0: nothing)."""
+    alpha, ohm, leak, code = p[0], p[1], p[2], 0
     if amperes > p[9]:
         amperes, code = p[9], 1
     if amperes < p[8]:
@@ -140,13 +214,13 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, p):
     if amperes < (-p[10] - seebeck) / ohm:
         amperes, code = (-p[10] - seebeck) / ohm, 3
     if amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # below half of αTc/R the optimum is never near
-        most = greatest_cooling(cold, p[6] * p[5] + leak * cold, p[6] + leak, alpha, ohm, leak)
+        most = greatest_cooling(cold, p[6] * sink + leak * cold, p[6] + leak, alpha, ohm, leak)
         if amperes > most:
             amperes, code = most, 4
     return amperes, code
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def follow(
     lanes,
     rig_of,
@@ -173,22 +247,31 @@ def follow(
     the accurate rule.
     """
     most = cap.shape[1]
-    work, other = np.empty((5, most)), np.empty((4, most))
-    inv, elim, keep, gain, z = work[0], work[1], work[2], work[3], work[4]
-    inv_p, elim_p, keep_p, gain_p = other[0], other[1], other[2], other[3]
+    f, ahead, y, x, sink = (
+        np.empty((5, most + 1)),
+        np.empty((5, most + 1)),
+        np.empty(most),
+        np.empty(most + 3),
+        np.zeros(4),
+    )
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
-        n, p, x = count[r], plates[r], state[lane]
-        share = face_share[r]
-        factor(n, 0.5 * step, cap[r], g[r], perf[r], p[7], inv, elim, keep, gain)
-        factor(n, period, cap[r], g[r], perf[r], p[7], inv_p, elim_p, keep_p, gain_p)
+        n, p, share = count[r], plates[r], face_share[r]
+        load(state[lane], p, x)
+        factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
+        factor(n, period, cap[r], g[r], perf[r], p, ahead)
+        elim, amperes = ahead[KEEP, n], 0.0
+        settle(state[lane, 0], p, sink)
         for k in range(target.shape[1]):
-            sweep(n, x, inv_p, keep_p, gain_p, z)
-            amperes, code = wanted(target[c, k], skin_control, share, z[0], elim_p[0], g[r, 0], period, x[0], x[1], p)
+            z0 = weighed(n, ahead[WEIGHT], x[2:]) + p[7] * (1.0 - elim)
+            hot, cold = x[0] + p[7], x[1] + p[7]
+            amperes, code = wanted(
+                target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[0], amperes, p
+            )
             for _ in range(pieces):
-                advance(n, step, amperes, amperes * amperes, p, g[r, 0], x, inv, elim, keep, gain, z)
+                advance(n, step, amperes, amperes * amperes, p, g[r, 0], x, sink, f, y)
             current[lane, k] = amperes
-            reached[lane, k] = share * x[1] + (1.0 - share) * x[2] if skin_control else x[1]
+            reached[lane, k] = (share * x[1] + (1.0 - share) * x[2] if skin_control else x[1]) + p[7]
             why[lane, k] = code

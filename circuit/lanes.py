@@ -10,20 +10,22 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
 from thermicon.circuit.kernel import (
     JUMP_A,
     LONGEST_STEP_S,
     SHORTEST_STEP_S,
+    compiled,
+    regulate_sink,
+    settle,
     wanted,
 )
 from thermicon.circuit.module import ZERO_C_IN_K
 
-LANES = 16
+LANES = 32
 """Runs in a block: enough to fill the vectors, few enough for the first-level cache."""
 
-compiled = njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
+THIRD = 1.0 / 3.0
 
 
 @compiled
@@ -48,36 +50,68 @@ def sweep(n, keep, gain, inv, x, z):
     """Fill z (lumps + 1, lane): a lump after the implicit step is z + elim · (the state above it)."""
     for i in range(n - 1, -1, -1):
         for lane in range(LANES):
-            z[i, lane] = keep[i, lane] * x[i, lane] + gain[i, lane] + inv[i, lane] * z[i + 1, lane]
+            z[i, lane] = keep[i, lane] * x[i + 2, lane] + gain[i, lane] + inv[i, lane] * z[i + 1, lane]
 
 
 @compiled
-def advance(n, step, current, squared, p, g0, plates, x, m, z, above):
-    """One trapezoidal step of a block in place; `plates` (2, lane) hot and cold, `x` (lumps, lane) the skin."""
+def foresee(n, m, weight, constant):
+    """`kernel.foresee` for a block: weight (lumps, lane), constant (lane,)."""
+    for lane in range(LANES):
+        product, total = 1.0, 0.0
+        for i in range(n):
+            weight[i, lane] = product * m[0, i, lane]
+            total += product * m[1, i, lane]
+            product *= m[2, i, lane]
+        constant[lane] = total
+
+
+@compiled
+def weighed(n, weight, constant, x, z0):
+    """Fill z0 (lane,) with constant + Σ weight · lump."""
+    for lane in range(LANES):
+        z0[lane] = constant[lane]
+    for i in range(n):
+        for lane in range(LANES):
+            z0[lane] += weight[i, lane] * x[i + 2, lane]
+
+
+@compiled
+def advance(n, step, current, squared, p, g0, x, sink, m, z, above):
+    """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state from the hot plate to the deep node.
+
+    `sink` (5, lane) is each lane's heat sink as in `kernel.settle`, and its share in an implicit step.
+    """
     half = 0.5 * step
     sweep(n, m[0], m[1], m[2], x, z)
     elim = m[3]
     for lane in range(LANES):
-        hot0, cold0 = plates[0, lane], plates[1, lane]
+        if p[11, lane] > 0.0:
+            regulate_sink(step, p[:, lane], sink[:, lane])
+            sink[4, lane] = p[6, lane] / (p[11, lane] / half + p[6, lane])
+    for lane in range(LANES):
+        hot0, cold0 = x[0, lane], x[1, lane]
         pump, joule = p[0, lane] * current[lane], 0.5 * p[1, lane] * squared[lane]
         hot_store, cold_store = p[3, lane] / half, p[4, lane] / half
-        a11 = hot_store + p[6, lane] + p[2, lane] - pump
+        share = sink[4, lane]
+        out = p[6, lane] * (1.0 - share)
+        a11 = hot_store + out + p[2, lane] - pump
         a22 = cold_store + p[2, lane] + pump + g0[lane] * (1.0 - elim[0, lane])
-        b1 = hot_store * hot0 + p[6, lane] * p[5, lane] + pump * ZERO_C_IN_K + joule
+        b1 = hot_store * hot0 + out * sink[0, lane] + share * sink[2, lane] + pump * ZERO_C_IN_K + joule
         b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0[lane] * z[0, lane]
         determinant = 1.0 / (a11 * a22 - p[2, lane] * p[2, lane])
         hot, cold = (b1 * a22 + p[2, lane] * b2) * determinant, (a11 * b2 + p[2, lane] * b1) * determinant
-        plates[0, lane], plates[1, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
+        x[0, lane], x[1, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
+        sink[0, lane] += 2.0 * share * (sink[2, lane] / p[6, lane] + hot - sink[0, lane])
         above[lane] = cold
     for i in range(n):
         for lane in range(LANES):
             value = z[i, lane] + elim[i, lane] * above[lane]
             above[lane] = value
-            x[i, lane] = 2.0 * value - x[i, lane]
+            x[i + 2, lane] = 2.0 * value - x[i + 2, lane]
 
 
 @compiled
-def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, plates, x):
+def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink):
     """Load a block's rigs and states side by side; returns the most lumps. Short columns are padded at the deep end.
 
     The deep node joins the perfusion of the last lump (both are at one temperature), so padding is cut off by g = 0.
@@ -90,13 +124,15 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
         own = count[r]
         for k in range(p.shape[0]):
             p[k, lane] = bank_plates[r, k]
-        plates[0, lane], plates[1, lane] = state[block[lane], 0], state[block[lane], 1]
+        x[0, lane], x[1, lane], x[n + 2, lane] = state[block[lane], 0], state[block[lane], 1], bank_plates[r, 7]
+        settle(x[0, lane], p[:, lane], sink[:, lane])
+        sink[4, lane] = 0.0
         for i in range(n + 1):
             inside = i < own
             cap[i, lane] = bank_cap[r, i] if inside else 1.0
             perf[i, lane] = bank_perf[r, i] if inside else 1.0
             g[i, lane] = bank_g[r, i] if inside else 0.0
-            x[i, lane] = state[block[lane], i + 2] if inside else bank_plates[r, 7]
+            x[i + 2, lane] = state[block[lane], i + 2] if inside else bank_plates[r, 7]
         perf[own - 1, lane] += bank_g[r, own]
     return n
 
@@ -109,30 +145,31 @@ def forward(
     """`kernel.forward` for blocks (blocks, LANES) of lanes; a lane may stand in for padding more than once."""
     most = bank_cap.shape[1] + 1
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
-    x, z, m = np.empty((most, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
-    p, plates = np.empty((bank_plates.shape[1], LANES)), np.empty((2, LANES))
+    x, z, m = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
+    p, sink = np.empty((bank_plates.shape[1], LANES)), np.zeros((5, LANES))
+    probes = places.shape[1]
+    at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
     current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, plates, x)
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink)
+        for q in range(probes):
+            for lane in range(LANES):
+                at[q, lane] = places[rig_of[block[lane]], q]
+                for j in range(3):  # a probe near the deep node has no third state: its weight is 0, its place any
+                    weight[q, j, lane] = weights[rig_of[block[lane]], q, j]
         factored, since = -1.0, 0.0
         for k in range(edges.size):
             row = row_of[k]
             if row >= 0:
-                for q in range(places.shape[1]):
+                for q in range(probes):
                     for lane in range(LANES):
-                        r = rig_of[block[lane]]
-                        value = 0.0
-                        for j in range(3):
-                            at, weight = places[r, q] + j, weights[r, q, j]
-                            if weight != 0.0:
-                                if at < 2:
-                                    value += weight * plates[at, lane]
-                                elif at < count[r] + 2:
-                                    value += weight * x[at - 2, lane]
-                                else:
-                                    value += weight * p[7, lane]
-                        out[q, block[lane], row] = value
+                        i = at[q, lane]
+                        out[q, block[lane], row] = (
+                            weight[q, 0, lane] * x[i, lane]
+                            + weight[q, 1, lane] * x[i + 1, lane]
+                            + weight[q, 2, lane] * x[i + 2, lane]
+                        )
             if k == edges.size - 1:
                 break
             if k > 0:
@@ -144,15 +181,16 @@ def forward(
             while done < length - 1e-12:
                 left = length - done
                 step = left / math.ceil(left / min(LONGEST_STEP_S, max(SHORTEST_STEP_S, 0.25 * since)) - 1e-9)
+                early, late = done / length, (done + step) / length
                 for lane in range(LANES):
                     c = cue_of[block[lane]]
-                    first, rise = start_A[c, k], (end_A[c, k] - start_A[c, k]) / length
-                    a, e = first + rise * done, first + rise * (done + step)
-                    current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) / 3.0
+                    first, rise = start_A[c, k], end_A[c, k] - start_A[c, k]
+                    a, e = first + rise * early, first + rise * late
+                    current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap, g, perf, p[7], m)
                     factored = step
-                advance(n, step, current, squared, p, g[0], plates, x, m, z, above)
+                advance(n, step, current, squared, p, g[0], x, sink, m, z, above)
                 done += step
                 since += step
 
@@ -165,29 +203,35 @@ def follow(
     """`kernel.follow` for blocks (blocks, LANES) of lanes."""
     most = bank_cap.shape[1] + 1
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
-    x, z, zp = np.empty((most, LANES)), np.zeros((most, LANES)), np.zeros((most, LANES))
+    x, z, weight = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.empty((most, LANES))
     m, mp = np.zeros((4, most, LANES)), np.zeros((4, most, LANES))
-    p, plates = np.empty((bank_plates.shape[1], LANES)), np.empty((2, LANES))
+    p, sink, constant, z0 = (
+        np.empty((bank_plates.shape[1], LANES)),
+        np.zeros((5, LANES)),
+        np.empty(LANES),
+        np.empty(LANES),
+    )
     current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, plates, x)
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink)
         factor(n, 0.5 * step, cap, g, perf, p[7], m)
         factor(n, period, cap, g, perf, p[7], mp)
+        foresee(n, mp, weight, constant)
         for k in range(target.shape[1]):
-            sweep(n, mp[0], mp[1], mp[2], x, zp)
+            weighed(n, weight, constant, x, z0)
             for lane in range(LANES):
                 share, elim = face_share[rig_of[block[lane]]], mp[3, 0, lane]
                 amperes, code = wanted(
-                    target[cue_of[block[lane]], k], skin_control, share, zp[0, lane], elim, g[0, lane], period,
-                    plates[0, lane], plates[1, lane], p[:, lane],
+                    target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
+                    x[0, lane], x[1, lane], sink[0, lane], current[lane], p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code
             for _ in range(pieces):
-                advance(n, step, current, squared, p, g[0], plates, x, m, z, above)
+                advance(n, step, current, squared, p, g[0], x, sink, m, z, above)
             for lane in range(LANES):
                 share = face_share[rig_of[block[lane]]] if skin_control else 1.0
-                reached[block[lane], k] = share * plates[1, lane] + (1.0 - share) * x[0, lane]
+                reached[block[lane], k] = share * x[1, lane] + (1.0 - share) * x[2, lane]

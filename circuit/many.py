@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -69,52 +70,116 @@ def simulate_many(
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
-    rows = rows_until(end_s, rate_Hz)
-    bank = Bank.of([network_of(rig) for rig in rigs])
-    values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
-    every = np.arange(len(rigs), dtype=np.int64)
-    same_rate = len({rig.driver.update_Hz for rig in (*rigs, nominal)}) == 1
-    if not same_rate:
+    if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
+    rows = rows_until(end_s, rate_Hz)
+    values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
+    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
+    groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
-        way = tracking or usual_tracking(icon)
-        drives, states = _drives(icon, rigs, nominal, bank, way if icon.frame.control != "current" else "replay", end_s)
-        one = np.zeros(len(rigs), dtype=np.int64)
-        cue_of = one if len(drives.current_A) == 1 else every
-        intervals = cut(rows, drives.time_s, drives.current_A, drives.held)
-        values[:, :, place] = run_forward(bank, every, cue_of, intervals, bank.states(states), probes)
+        groups.setdefault((icon.frame.control, tracking or usual_tracking(icon)), []).append(place)
+    for (control, way), places in groups.items():
+        cues = [icons[place] for place in places]
+        if control == "current":
+            for place, cue in zip(places, cues, strict=True):
+                values[:, :, place] = stage.play_corners(cue)
+        elif way == "replay":
+            values[:, :, places] = stage.replay(cues, control == "skin")
+        else:
+            values[:, :, places] = stage.track(cues, control, way)
     values.setflags(write=False)
     return Batch(rows, tuple(probes), values)
 
 
+def simulate_stream(
+    icons: Iterable[Icon],
+    rig: Rig,
+    *,
+    end_s: float,
+    rate_Hz: float = 100.0,
+    probes: Sequence[str] = USUAL,
+    at_once: int = 256,
+) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
+    """Play any number of cues on one rig, `at_once` of them in memory: yields (cues, their batch) in their order.
+
+    >>> from thermicon.icons import load_library
+    >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
+    >>> [(len(cues), batch.values.shape) for cues, batch in parts]
+    [(4, (3, 1, 4, 901)), (2, (3, 1, 2, 901))]
+    """
+    waiting = iter(icons)
+    while cues := tuple(itertools.islice(waiting, at_once)):
+        yield (
+            cues,
+            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking="ideal", probes=probes),
+        )
+
+
 @dataclass(frozen=True, slots=True)
-class _Drives:
-    """Currents of one cue: one row for all rigs, or one row each, (1 or rigs, times)."""
+class _Stage:
+    """Where a batch is played: the rigs, the rig that cues are designed for, and what is written."""
 
-    time_s: Array
-    current_A: Array
-    held: bool
+    rigs: tuple[Rig, ...]
+    nominal: Rig
+    end_s: float
+    rows: Array
+    probes: tuple[str, ...]
 
+    def play_corners(self, icon: Icon) -> Array:
+        """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
+        plan = design(icon, self.nominal, self.end_s)
+        states = [steady_state(network_of(rig), plan.rest_A) for rig in self.rigs]
+        every = np.arange(len(self.rigs), dtype=np.int64)
+        intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
+        bank = Bank.of([network_of(rig) for rig in self.rigs])
+        return run_forward(bank, every, np.zeros_like(every), intervals, bank.states(states), self.probes)
 
-def _drives(
-    icon: Icon, rigs: Sequence[Rig], nominal: Rig, bank: Bank, way: str, end_s: float
-) -> tuple[_Drives, list[Array]]:
-    if way == "replay":
-        plan = design(icon, nominal, end_s)
-        drive, states = plan.drive, [steady_state(network_of(rig), plan.rest_A) for rig in rigs]
-        return _Drives(drive.time_s, drive.current_A[np.newaxis], drive.held), states
-    control, base = icon.frame.control, baseline_C(icon, nominal)
-    ends = periods(nominal, end_s)
-    if way == "display" and control == "skin":
-        display = simulate(icon, nominal, rate_Hz=nominal.driver.update_Hz, tail_s=end_s).display_C
-        target, base, control = display[1 : len(ends) + 1], float(display[0]), "display"
-    else:
-        target = target_at(icon, base, ends)
-    states = [hold(rig, control, base)[1] for rig in rigs]
-    lanes = np.arange(len(rigs), dtype=np.int64)
-    period = 1.0 / nominal.driver.update_Hz
-    currents, _, _ = run_follow(
-        bank, lanes, np.zeros_like(lanes), period, target[np.newaxis], control == "skin", bank.states(states)
-    )
-    times = np.concatenate([[0.0], ends])
-    return _Drives(times, np.concatenate([currents, currents[:, -1:]], axis=1), True), states
+    def replay(self, icons: Sequence[Icon], skin_control: bool) -> Array:
+        """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
+        control = "skin" if skin_control else "display"
+        bases = [baseline_C(icon, self.nominal) for icon in icons]
+        ends = periods(self.nominal, self.end_s)
+        targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
+        rest = {base: hold(self.nominal, control, base)[0] for base in set(bases)}
+        currents = self._find((self.nominal,), control, targets, bases)
+        states = {
+            (r, amperes): steady_state(network_of(rig), amperes)
+            for r, rig in enumerate(self.rigs)
+            for amperes in rest.values()
+        }
+        return self._play(currents, icons, [states[r, rest[base]] for r in range(len(self.rigs)) for base in bases])
+
+    def track(self, icons: Sequence[Icon], control: str, way: str) -> Array:
+        """Each rig's own current for the nominal display trajectory, or for the cue itself: as `replay`."""
+        bases = [baseline_C(icon, self.nominal) for icon in icons]
+        ends = periods(self.nominal, self.end_s)
+        if way == "display" and control == "skin":
+            rate = self.nominal.driver.update_Hz
+            shown = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
+            targets, control = np.array([display[1 : len(ends) + 1] for display in shown]), "display"
+            bases = [float(display[0]) for display in shown]
+        else:
+            targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
+        currents = self._find(self.rigs, control, targets, bases)
+        states = {(r, base): hold(rig, control, base)[1] for r, rig in enumerate(self.rigs) for base in set(bases)}
+        return self._play(currents, icons, [states[r, base] for r in range(len(self.rigs)) for base in bases])
+
+    def _find(self, rigs: Sequence[Rig], control: str, targets: Array, bases: Sequence[float]) -> Array:
+        """Currents (rigs · cues, periods) that make each rig follow each target from rest at its baseline."""
+        bank, period = Bank.of([network_of(rig) for rig in rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = (place.ravel() for place in np.indices((len(rigs), len(bases))))
+        held = {(r, base): hold(rig, control, base)[1] for r, rig in enumerate(rigs) for base in set(bases)}
+        start = bank.states([held[int(r), bases[int(c)]] for r, c in zip(rig_of, cue_of, strict=True)])
+        return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", start)[0]
+
+    def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
+        """Run held currents, a row a cue or a row a lane, on every rig and cue from given states."""
+        times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
+        held = np.concatenate([currents, currents[:, -1:]], axis=1)
+        bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
+        rig_of, cue_of = (place.ravel() for place in np.indices(shape))
+        if len(currents) == len(rig_of):
+            cue_of = np.arange(len(rig_of))
+        intervals = cut(self.rows, times, held, held=True)
+        out = run_forward(bank, rig_of, cue_of, intervals, bank.states(states), self.probes)
+        return out.reshape(len(self.probes), *shape, len(self.rows))

@@ -33,11 +33,23 @@ def greatest_cooling_A(cold: float, base: float, total: float, alpha: float, ohm
 
 
 def current_for_heat_A(
-    heat: float, cold: float, base: float, total: float, alpha: float, ohm: float, leak: float, greatest: float
+    heat: float,
+    cold: float,
+    base: float,
+    total: float,
+    alpha: float,
+    ohm: float,
+    leak: float,
+    greatest: float,
+    guess: float,
+    close: float,
 ) -> float:
-    """Low-current root in A of heat absorbed = `heat` (W); `greatest` where the module cannot absorb that much."""
+    """Low-current root in A of heat absorbed = `heat` (W); `greatest` where the module cannot absorb that much.
+
+    The search starts at `guess` (A) and ends when it moves by less than `close` (A).
+    """
     half = alpha * (cold + ZERO_C_IN_K)
-    current = 0.0
+    current = guess
     for _ in range(60):
         hot = (base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current) / (total - alpha * current)
         root = half * half - 2.0 * ohm * (heat + leak * (hot - cold))
@@ -46,7 +58,7 @@ def current_for_heat_A(
         better = (half - math.sqrt(root)) / ohm
         if better > greatest:
             return greatest
-        if abs(better - current) < 1e-13 + 1e-12 * abs(better):
+        if abs(better - current) < close:
             return better
         current = better
     return current

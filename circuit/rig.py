@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from thermicon.circuit.about import about
 from thermicon.circuit.door import nearest, read_text
 from thermicon.circuit.module import Peltier
-from thermicon.circuit.parts import Ambient, Contact, Driver, HeatSink
+from thermicon.circuit.modules import ModuleOrigin, module_of
+from thermicon.circuit.parts import Ambient, Contact, Controller, Driver, HeatSink, Probe, SinkController
+from thermicon.circuit.probefile import probes_of
+from thermicon.circuit.receptors import HORNY_LAYER, ReceptorDepths
 from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table
-from thermicon.circuit.settings import put, read_settings
+from thermicon.circuit.settings import put_all, read_settings
 from thermicon.circuit.skin import Column, Layer, Skin, column_of
 
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
@@ -27,7 +31,7 @@ class Rig:
 
     >>> rig = Rig.load("thenar")
     >>> rig
-    Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.57 °C, driver -1.5 … 1.5 A)
+    Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.58 °C, driver -1.5 … 1.5 A)
     >>> round(rig.resting_flux_W_per_m2, 1)
     -80.0
     >>> rig.with_(**{"contact.area_cm2": 4}).contact.area_m2
@@ -36,7 +40,9 @@ class Rig:
 
     name: str
     title: str
+    notes: tuple[str, ...]
     module: Peltier
+    module_origin: ModuleOrigin
     heat_sink: HeatSink
     driver: Driver
     contact: Contact
@@ -45,6 +51,8 @@ class Rig:
     column: Column
     deep_C: float
     document: str
+    probes: tuple[Probe, ...] = ()
+    controller: Controller | None = None
 
     def __repr__(self) -> str:
         return (
@@ -83,7 +91,7 @@ class Rig:
     @property
     def resting_flux_W_per_m2(self) -> float:
         """Heat flow into bare skin at rest, W/m²; negative, since skin loses heat."""
-        return (self.skin.rest_C - self.deep_C) / self.column.steady_drop_K(1.0)
+        return _resting_flux(self)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -97,7 +105,28 @@ class Rig:
             )
         if self.deep_C < self.skin.rest_C:
             found.append(f"blood at {self.deep_C:.2f} °C is colder than the resting surface at {self.skin.rest_C:g} °C")
-        return tuple(found)
+        return (*found, *self.module_origin.warnings)
+
+    @property
+    def module_source(self) -> str:
+        """Where the module's parameters come from, and how far they miss a printed Qmax; one sentence."""
+        return self.module_origin.sentence
+
+    def receptor_depths(self) -> ReceptorDepths:
+        """Depths of the receptors in mm, in both conventions.
+
+        >>> print(Rig.load("shani2021").receptor_depths())
+        cold 0.15 mm, warm 0.3 mm below the surface
+        """
+        return self.skin.receptor_depths()
+
+    def about(self) -> str:
+        """What there is to know of this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
+
+        >>> print(Rig.load("thenar").about().splitlines()[2])
+          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
+        """
+        return about(self)
 
     def with_(self, **changes: object) -> Rig:
         """Return a new rig with dotted keys of the rig file changed; a layer is named by its place or its name.
@@ -105,14 +134,18 @@ class Rig:
         Keys are those of the rig file, in its units: `rig.with_(**{"skin.layer.0.thickness_mm": 0.2})`.
         """
         document = json.loads(self.document)
-        for key, value in changes.items():
-            put(document, key, value)
+        put_all(document, changes)
         return _build(document, f"rig {self.name}")
 
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig changed by texts of the form `key=value`, as given on the command line."""
         changes = read_settings(settings)
         return self.with_(**changes) if changes else self
+
+
+@lru_cache(maxsize=512)
+def _resting_flux(rig: Rig) -> float:
+    return (rig.skin.rest_C - rig.deep_C) / rig.column.steady_drop_K(1.0)
 
 
 def rig_names() -> tuple[str, ...]:
@@ -138,6 +171,20 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
+def _heat_sink(table: RigTable) -> HeatSink:
+    sink = table.heat_sink
+    own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
+    missing = [name for name, value in own.items() if value is None]
+    if not missing:
+        return HeatSink(sink.temperature_C, sink.resistance_K_per_W, SinkController(**own))
+    if len(missing) < len(own):
+        raise ValueError(
+            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(own)}; "
+            f"without all four it is ideal"
+        )
+    return HeatSink(sink.temperature_C, sink.resistance_K_per_W)
+
+
 def _assemble(table: RigTable, document: str) -> Rig:
     driver, contact, skin = table.driver, table.contact, table.skin
     layers = tuple(
@@ -151,14 +198,21 @@ def _assemble(table: RigTable, document: str) -> Rig:
         )
         for layer in skin.layer
     )
+    if skin.depth_from == HORNY_LAYER and layers[0].name != HORNY_LAYER:
+        raise ValueError(
+            f'skin.depth_from = "{HORNY_LAYER}": needs a first layer of that name, not "{layers[0].name}"; '
+            f'rename the layer or use "surface"'
+        )
+    above = skin.layer[0].thickness_mm if skin.depth_from == HORNY_LAYER else 0.0
     body = Skin(
         skin.site,
         skin.rest_C,
-        skin.cold_receptor_mm * 1e-3,
-        skin.warm_receptor_mm * 1e-3,
+        (above + skin.cold_receptor_mm) * 1e-3,
+        (above + skin.warm_receptor_mm) * 1e-3,
         layers,
         skin.deep_C,
         None if skin.elements is None else tuple(skin.elements),
+        skin.depth_from,
     )
     column = column_of(body, table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK)
     loss = table.ambient.film_W_per_m2K * (skin.rest_C - table.ambient.temperature_C)
@@ -167,8 +221,9 @@ def _assemble(table: RigTable, document: str) -> Rig:
     return Rig(
         table.name,
         table.title,
-        Peltier(**table.module.model_dump()),
-        HeatSink(**table.heat_sink.model_dump()),
+        tuple(table.notes),
+        *module_of(table.module, (table.heat_sink.temperature_C + skin.rest_C) / 2, table.source.get("module")),
+        _heat_sink(table),
         Driver(
             driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
         ),
@@ -178,4 +233,6 @@ def _assemble(table: RigTable, document: str) -> Rig:
         column,
         float(deep),
         document,
+        probes_of(table.probe, body.thickness_m),
+        None if table.controller is None else Controller(**table.controller.model_dump()),
     )

@@ -7,10 +7,11 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from thermicon.circuit.door import InputError, nearest
+from thermicon.circuit.modules import module_faults
 
 
 class RigError(InputError):
@@ -26,14 +27,33 @@ class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
 
-class ModuleTable(_Table):
-    """The Peltier module and its two plates."""
+class DatasheetTable(_Table):
+    """What a module's maker prints for one hot-side temperature."""
 
-    seebeck_V_per_K: Positive
-    resistance_ohm: Positive
-    thermal_resistance_K_per_W: Positive
+    i_max_A: Positive
+    v_max_V: Positive
+    dt_max_K: Annotated[float, Field(gt=0, le=150)]
+    t_hot_C: Celsius
+    q_max_W: Positive | None = None
+
+
+class ModuleTable(_Table):
+    """The Peltier module, given by three parameters, data sheets or a shipped name, and its two plates."""
+
+    seebeck_V_per_K: Positive | None = None
+    resistance_ohm: Positive | None = None
+    thermal_resistance_K_per_W: Positive | None = None
+    datasheet: list[DatasheetTable] | None = None
+    name: Annotated[str, Field(min_length=1)] | None = None
+    extraction: Literal["three", "four"] | None = None
     hot_plate_J_per_K: Positive
     cold_plate_J_per_K: Positive
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ModuleTable:
+        if faults := module_faults(self):
+            raise ValueError(faults)
+        return self
 
 
 class HeatSinkTable(_Table):
@@ -41,6 +61,10 @@ class HeatSinkTable(_Table):
 
     temperature_C: Celsius
     resistance_K_per_W: Positive
+    capacity_J_per_K: Positive | None = None
+    kp_W_per_K: NotNegative | None = None
+    ki_W_per_Ks: NotNegative | None = None
+    power_limit_W: Positive | None = None
 
 
 class DriverTable(_Table):
@@ -58,6 +82,15 @@ class ContactTable(_Table):
 
     area_cm2: Positive
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
+
+
+class ControllerTable(_Table):
+    """A closed loop on a display thermistor."""
+
+    lag_s: NotNegative = 0.0
+    kp_A_per_K: NotNegative
+    ki_A_per_Ks: NotNegative = 0.0
+    kd_As_per_K: NotNegative = 0.0
 
 
 class AmbientTable(_Table):
@@ -85,6 +118,7 @@ class SkinTable(_Table):
     rest_C: Annotated[float, Field(ge=10, le=45)]
     cold_receptor_mm: Positive
     warm_receptor_mm: Positive
+    depth_from: Literal["surface", "stratum corneum"] = "surface"
     deep_C: Celsius | None = None
     elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
     layer: Annotated[list[LayerTable], Field(min_length=1)]
@@ -97,37 +131,71 @@ class BloodTable(_Table):
     heat_capacity_J_per_kgK: Positive
 
 
+class ProbeTable(_Table):
+    """A point whose temperature is recorded; what an insulated probe leaves out is filled from records."""
+
+    name: str
+    place: Literal["display", "interface", "skin", "insulated skin"]
+    depth_mm: NotNegative = 0.0
+    lag_s: NotNegative = 0.0
+    lateral_mm: Positive | None = None
+    width_mm: Positive | None = None
+    insulation_m2K_per_W: Positive | None = None
+
+
 class RigTable(_Table):
     """A whole rig file."""
 
     format: Literal[1]
     name: Annotated[str, Field(min_length=1)]
     title: str = ""
+    notes: list[str] = Field(default_factory=list)
     module: ModuleTable
     heat_sink: HeatSinkTable
     driver: DriverTable
+    controller: ControllerTable | None = None
     contact: ContactTable
     ambient: AmbientTable
     skin: SkinTable
     blood: BloodTable
+    probe: list[ProbeTable] = Field(default_factory=list)
     source: dict[str, str] = Field(default_factory=dict)
 
 
 _LATER = {
-    "module.datasheet": "module data sheets are not read yet; give seebeck_V_per_K, resistance_ohm and "
-    "thermal_resistance_K_per_W",
-    "heat_sink.capacity_J_per_K": "a hot plate under its own controller is not simulated yet",
-    "heat_sink.kp_W_per_K": "a hot plate under its own controller is not simulated yet",
-    "heat_sink.ki_W_per_Ks": "a hot plate under its own controller is not simulated yet",
-    "heat_sink.power_limit_W": "a hot plate under its own controller is not simulated yet",
-    "controller": "closed-loop control is not simulated yet; the display is tracked ideally within the driver's limits",
-    "probe": "extra probes are not simulated yet",
     "uncertainty": "uncertainty is not used yet",
     "safety": "the shipped safety limits cannot be changed yet",
 }
 
-_UNITS = ("V_per_K", "A_per_V", "K_per_W", "m2K_per_W", "W_per_m2K", "W_per_mK", "kg_per_m3", "J_per_kgK", "J_per_K")
-_UNITS_SHORT = {"C": "°C", "ohm": "Ω", "per_s": "1/s", "cm2": "cm²", "mm": "mm", "A": "A", "V": "V", "Hz": "Hz"}
+_UNITS = (
+    "V_per_K",
+    "A_per_V",
+    "A_per_Ks",
+    "As_per_K",
+    "A_per_K",
+    "W_per_Ks",
+    "W_per_K",
+    "K_per_W",
+    "m2K_per_W",
+    "W_per_m2K",
+    "W_per_mK",
+    "kg_per_m3",
+    "J_per_kgK",
+    "J_per_K",
+)
+_UNITS_SHORT = {
+    "C": "°C",
+    "ohm": "Ω",
+    "per_s": "1/s",
+    "cm2": "cm²",
+    "mm": "mm",
+    "A": "A",
+    "V": "V",
+    "K": "K",
+    "W": "W",
+    "Hz": "Hz",
+    "s": "s",
+}
 
 
 def unit_of(key: str) -> str:
@@ -143,7 +211,7 @@ def unit_of(key: str) -> str:
             top, bottom = (part.replace("m3", "m³").replace("m2", "m²") for part in pretty)
             return f"{top}/({bottom})" if "·" in bottom else f"{top}/{bottom}"
     for unit, written in _UNITS_SHORT.items():
-        if key.endswith("_" + unit):
+        if key.endswith("_" + unit) and not key.endswith("_per_" + unit):
             return written
     return ""
 
@@ -161,7 +229,9 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        findings = [_in_words(error, document) for error in problem.errors(include_url=False)]
+        findings = [
+            line for error in problem.errors(include_url=False) for line in _in_words(error, document).splitlines()
+        ]
         raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
 
 
@@ -174,6 +244,14 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
     for name, field in table.model_fields.items():
         if name == "layer":
             yield from _keys(LayerTable, f"{prefix}layer.0.")
+        elif name == "datasheet":
+            yield prefix + name
+            yield from _keys(DatasheetTable, f"{prefix}datasheet.0.")
+        elif name == "probe":
+            yield "probe"
+            yield from _keys(ProbeTable, "probe.0.")
+        elif name == "controller":
+            yield from _keys(ControllerTable, "controller.")
         elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
             yield from _keys(field.annotation, f"{prefix}{name}.")
         elif name != "source":
@@ -202,6 +280,8 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
     if kind == "extra_forbidden":
         plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
         return unknown_key(plain).replace(plain + ":", key + ":", 1)
+    if kind == "value_error":  # said by a table itself, in whole sentences
+        return str(context["error"])
     if kind == "missing":
         return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
     if kind in ("greater_than", "greater_than_equal", "less_than_equal"):

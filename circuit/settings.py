@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+from thermicon.circuit.modules import PARAMETERS
 from thermicon.circuit.rigfile import RigError, parse_toml, rig_keys, unknown_key
 
 
@@ -26,15 +27,31 @@ def read_settings(settings: Iterable[str]) -> dict[str, object]:
     return changes
 
 
+def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
+    """Set dotted keys in the document; a module that changes drops its source and the way it was given before."""
+    for key, value in changes.items():
+        if key in ("module.datasheet", "module.name") and value is not None:
+            for way in (*PARAMETERS, "datasheet", "name"):
+                document["module"].pop(way, None)
+    for key, value in changes.items():
+        put(document, key, value)
+
+
 def put(document: dict[str, Any], key: str, value: object) -> None:
     """Set a dotted key in the document; an unknown key or layer is an error with the nearest."""
     parts, place, plain = key.split("."), document, []
     for position, part in enumerate(parts[:-1]):
         if isinstance(place, list):
-            index = _layer(place, part, key)
+            index = _item(place, part, key)
             place, part_of_key = place[index], "0"
         else:
+            if part == "controller" and position == 0 and any(key == known for known in rig_keys()):
+                place.setdefault(part, {})
+            if part == "datasheet" and part not in place:
+                raise RigError(f"{key}: this rig's module has no data sheet; set module.datasheet, a list of them")
             if not isinstance(place.get(part), (dict, list)):
+                if part == "probe":
+                    raise RigError(f"{key}: this rig has no probe; add a [[probe]] with name and place to its file")
                 raise RigError(unknown_key(key))
             place, part_of_key = place[part], part
         plain.append(part_of_key)
@@ -44,13 +61,16 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         raise RigError(
             unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
         )
+    if parts[0] == "module" and not key.endswith("plate_J_per_K") and place.get(parts[-1]) != value:
+        document.get("source", {}).pop("module", None)
     place[parts[-1]] = value
 
 
-def _layer(layers: list[dict[str, Any]], part: str, key: str) -> int:
-    names = [str(layer.get("name")) for layer in layers]
-    if part.isdigit() and int(part) < len(layers):
+def _item(items: list[dict[str, Any]], part: str, key: str) -> int:
+    names = [str(item.get("name", f"hot side at {item.get('t_hot_C')} °C")) for item in items]
+    if part.isdigit() and int(part) < len(items):
         return int(part)
     if part in names:
         return names.index(part)
-    raise RigError(f"{key}: no such layer; there are {', '.join(f'{i} ({name})' for i, name in enumerate(names))}")
+    kind = "probe" if key.startswith("probe.") else "data sheet" if key.startswith("module.") else "layer"
+    raise RigError(f"{key}: no such {kind}; there are {', '.join(f'{i} ({name})' for i, name in enumerate(names))}")

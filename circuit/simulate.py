@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, cut, run_forward
+from thermicon.circuit.bank import Bank, Index, cut, run_forward
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.inverse import baseline_C, design, target_at
 from thermicon.circuit.module import Peltier
 from thermicon.circuit.network import PROBES, network_of
+from thermicon.circuit.probes import between, divided, joined, readings_of, sensed
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.skin import Array
@@ -46,6 +47,29 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     >>> simulate(step, Rig.load("thenar"))
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
     """
+    return _play(icon, rig, rate_Hz, tail_s, None)[0]
+
+
+def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0) -> Trace:
+    """Run the circuit with a given drive, from the steady state of its first current to its last row.
+
+    The driver's limits only warn. Raises RigError when the first current has no steady state.
+    """
+    return _replay(drive, rig, rate_Hz, None)[0]
+
+
+def watch(
+    cue: Icon | Drive, rig: Rig, readings: tuple[Index, Array], *, rate_Hz: float = 100.0, tail_s: float = 0.0
+) -> tuple[Trace, Array]:
+    """Play a cue or a drive, and return its trace with further readings (k, rows) of the state: starts and weights."""
+    if isinstance(cue, Icon):
+        return _play(cue, rig, rate_Hz, tail_s, readings)
+    return _replay(cue, rig, rate_Hz, readings)
+
+
+def _play(
+    icon: Icon, rig: Rig, rate_Hz: float, tail_s: float, readings: tuple[Index, Array] | None
+) -> tuple[Trace, Array]:
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
     if tail_s * rate_Hz > MOST_ROWS:
@@ -60,30 +84,31 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     target = np.full(len(rows), np.nan)
     if icon.frame.control != "current":
         target = target_at(icon, base, rows)
-    return _run(rig, plan.drive, plan.start_C, rows, icon.name, target, icon.frame.control, plan.outcome)
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, target, icon.frame.control, plan.outcome, readings)
 
 
-def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0) -> Trace:
-    """Run the circuit with a given drive, from the steady state of its first current to its last row.
-
-    The driver's limits only warn. Raises RigError when the first current has no steady state.
-    """
+def _replay(drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array] | None) -> tuple[Trace, Array]:
     first = float(drive.current_A[0])
     try:
         state = steady_state(network_of(rig), first)
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     rows = rows_until(float(drive.time_s[-1]), rate_Hz)
-    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None)
+    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None, readings)
 
 
 def _run(
     rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
-    outcome: Outcome | None,
-) -> Trace:  # fmt: skip
+    outcome: Outcome | None, readings: tuple[Index, Array] | None,
+) -> tuple[Trace, Array]:  # fmt: skip
     bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
-    intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
-    probes = run_forward(bank, one, one, intervals, bank.states([state]))[:, 0]
+    parts = between(rows, rig)
+    fine = divided(rows, parts)
+    intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
+    own = readings_of(rig)
+    recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
+    probes, others = recorded[: len(PROBES), ::parts], recorded[len(PROBES) :]
+    listed = 0 if own is None else len(own[0])
     finite = np.isfinite(probes).all(axis=0)
     if not finite.all():
         raise RigError(f"rig {rig.name}: the run leaves all bounds at {rows[int(np.argmin(finite))]:g} s")
@@ -91,7 +116,7 @@ def _run(
     values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
     voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
     limits = (rig.driver.current_min_A, rig.driver.current_max_A)
-    return Trace(
+    trace = Trace(
         icon=icon,
         rig_name=rig.name,
         site=rig.site,
@@ -104,8 +129,10 @@ def _run(
         current_A=current,
         voltage_V=voltage,
         target_C=target,
+        probes=sensed(rig, fine, others[:listed], parts),
         **values,
     )
+    return trace, others[listed:, ::parts]
 
 
 def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:

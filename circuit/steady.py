@@ -66,7 +66,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
     heat = float(network.conductance_W_per_K[0]) * (z[0] + (e[0] - 1.0) * cold)
     base, total = out * sink + leak * cold, out + leak
     greatest = greatest_cooling_A(cold, base, total, alpha, ohm, leak)
-    return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest)
+    return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
 
 
 def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:

@@ -68,6 +68,7 @@ class Trace:
     """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
 
     `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
+    `probes` has name and temperature of every probe of the rig, in the order of its file.
     """
 
     icon: str | None
@@ -90,10 +91,10 @@ class Trace:
     heat_flow_skin_W_per_m2: Array
     heat_flow_cold_receptor_W_per_m2: Array
     heat_flow_warm_receptor_W_per_m2: Array
+    probes: tuple[tuple[str, Array], ...] = ()
 
     def __post_init__(self) -> None:
-        for name in COLUMNS[1:]:
-            array = getattr(self, name)
+        for name, array in (*((name, getattr(self, name)) for name in COLUMNS[1:]), *self.probes):
             if array.shape != self.time_s.shape:
                 raise ValueError(f"trace: {name} has {array.shape} values for {self.time_s.shape} times")
             array.setflags(write=False)
@@ -111,19 +112,27 @@ class Trace:
 
         return svg_of(self)
 
+    def probe(self, name: str) -> Array:
+        """Temperature (rows,) in °C that a probe of the rig reads; raises KeyError with the probes there are."""
+        for other, values in self.probes:
+            if other == name:
+                return values
+        raise KeyError(f"no probe {name!r} in this trace; there is {', '.join(dict(self.probes)) or 'none'}")
+
     def to_frame(self) -> pd.DataFrame:
-        """Return the trace as a table with the columns of a trace file."""
+        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe."""
         import pandas as pd
 
         columns: dict[str, Any] = {"icon": pd.Series([self.icon] * len(self.time_s), dtype="string")}
         columns.update({name: getattr(self, name) for name in COLUMNS[1:]})
+        columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw target, display, skin and receptor temperatures against time; returns the Axes."""
+    def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
+        """Draw target, display, skin and receptor temperatures against time, and probes if asked; returns the Axes."""
         from thermicon.circuit.draw import plot_temperatures
 
-        return plot_temperatures(self, ax)
+        return plot_temperatures(self, ax, probes)
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:

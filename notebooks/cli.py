@@ -1,4 +1,4 @@
-"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``.
+"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``, and those of ``whatif``.
 
 Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
 command, beside this one.
@@ -15,7 +15,9 @@ from typing import Annotated
 
 import typer
 
+from thermicon.notebooks import whatif
 from thermicon.notebooks.door import INTERRUPTED, Commands, check_changes, load_rig, usage
+from thermicon.notebooks.options import Changes, Files, IconName, RigName, check_tail
 
 TRACKING = ("replay", "display", "ideal")
 
@@ -29,13 +31,6 @@ app = typer.Typer(
     no_args_is_help=True,
 )
 
-Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
-RigName = Annotated[
-    str | None, typer.Option("--rig", metavar="RIG", help="A shipped rig or a .toml file.  [default: thenar]")
-]
-Changes = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be repeated.")
-]
 Output = Annotated[
     Path | None, typer.Option("-o", "--output", metavar="OUT", help="Write the trace: .csv, .parquet, or - for stdout.")
 ]
@@ -81,7 +76,7 @@ def simulate_command(
     file: Annotated[
         str | None, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")
     ] = None,
-    icon: Annotated[str | None, typer.Option("--icon", metavar="NAME", help="Only this icon of the file.")] = None,
+    icon: IconName = None,
     current: Annotated[
         Path | None, typer.Option("--current", metavar="DRIVE.csv", help="Play this drive (time_s, current_A) instead.")
     ] = None,
@@ -111,8 +106,7 @@ def simulate_command(
         raise usage("belongs to a cue FILE; a drive ends at its last row", "--tail")
     if not (math.isfinite(rate) and rate > 0):
         raise usage(f"{rate:g} is not a number of rows a second above 0", "--rate")
-    if tail is not None and not (math.isfinite(tail) and tail >= 0):
-        raise usage(f"{tail:g} is not a time in seconds of 0 or more", "--tail")
+    check_tail(tail)
     from thermicon.notebooks.simulate import simulate_drive, simulate_file
 
     if current is not None:
@@ -152,6 +146,11 @@ def rank_command(
 
     request = Request(people=people, seed=seed, tracking=tracking, norm=norm, trials=trials)
     rank_files(files, load_rig(rig, changes or []), request, json, figure)
+
+
+app.command("sweep")(whatif.sweep_command)
+app.command("compare")(whatif.compare_command)
+app.command("netlist")(whatif.netlist_command)
 
 
 @app.command("rigs")

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+from thermicon.notebooks.door import usage
+
 if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
@@ -73,3 +75,12 @@ def read_set(files: Sequence[str]) -> IconSet:
 def pick(icons: IconSet, name: str | None) -> list[Icon]:
     """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest."""
     return list(icons) if name is None else [icons[name]]
+
+
+def only(icons: IconSet, name: str | None, where: str) -> Icon:
+    """Return the icon of this name, or the only one there is; a usage error that lists them where there are more."""
+    found = pick(icons, name)
+    if len(found) > 1:
+        names = ", ".join(icon.name for icon in found)
+        raise usage(f"{where} has {len(found)} icons; name one of {names}", "--icon")
+    return found[0]

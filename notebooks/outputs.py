@@ -9,6 +9,7 @@ from pathlib import Path
 
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
+NETLIST_SUFFIXES = (".cir", ".net", ".sp")
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
 
 

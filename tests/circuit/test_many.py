@@ -31,7 +31,7 @@ def test_display_tracking_is_each_rigs_own_run() -> None:
     for r, rig in enumerate(OTHERS):
         for i, icon in enumerate(SIX):
             alone = simulate(icon, rig, tail_s=12.0 - icon.lower(32.0).duration_s)
-            assert batch["cold_receptor_C"][r, i] == pytest.approx(alone.cold_receptor_C, abs=1e-9)
+            assert batch["cold_receptor_C"][r, i] == pytest.approx(alone.cold_receptor_C, abs=1e-4)
 
 
 @pytest.mark.parametrize("tracking", ["replay", "display", "ideal"])

@@ -57,11 +57,38 @@ def test_greatest_cooling_is_where_the_heat_peaks_behind_a_heat_sink() -> None:
 def test_current_for_heat_absorbs_that_heat_at_the_low_root(heat: float) -> None:
     base, total = _plates(TC, 5.0)
     greatest = greatest_cooling_A(TC, base, total, 0.0521, 6.35, 0.1524)
-    current = current_for_heat_A(heat, TC, base, total, 0.0521, 6.35, 0.1524, greatest)
+    current = current_for_heat_A(heat, TC, base, total, 0.0521, 6.35, 0.1524, greatest, 0.0, 1e-13)
     assert current < greatest
     assert MODULE.heat_absorbed_W(current, TC, hot_plate_C(current, base, total, 0.0521, 6.35)) == pytest.approx(heat)
 
 
 def test_more_heat_than_the_module_can_absorb_gives_the_current_of_greatest_cooling() -> None:
     base, total = _plates(TC, 5.0)
-    assert current_for_heat_A(50.0, TC, base, total, 0.0521, 6.35, 0.1524, 2.2) == 2.2
+    assert current_for_heat_A(50.0, TC, base, total, 0.0521, 6.35, 0.1524, 2.2, 0.0, 1e-13) == 2.2
+
+
+def test_greatest_difference_is_where_no_heat_is_absorbed_any_more() -> None:
+    coldest, current = MODULE.coldest_C(TH), MODULE.greatest_difference_current_A(TH)
+    assert MODULE.greatest_difference_K(TH) == pytest.approx(TH - coldest)
+    assert MODULE.greatest_heat_W(coldest, TH) == pytest.approx(0.0, abs=1e-9)
+    for other in (0.98 * current, current, 1.02 * current):
+        assert MODULE.heat_absorbed_W(other, coldest, TH) <= 1e-9
+    assert MODULE.heat_absorbed_W(current, coldest, TH) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_currents_and_performance_of_the_published_check() -> None:
+    assert MODULE.greatest_heat_current_A(TC) == pytest.approx(2.4614, abs=1e-4)
+    assert MODULE.best_performance(TC, TH) == pytest.approx(3.08797, abs=1e-5)
+    assert MODULE.best_performance_current_A(TC, TH) == pytest.approx(0.29658, abs=1e-5)
+    assert MODULE.performance(0.29658, TC, TH) == pytest.approx(3.08797, abs=1e-5)
+    assert MODULE.figure_of_merit_per_K() == pytest.approx(0.0521**2 / (6.35 * 0.1524))
+
+
+def test_a_performance_that_does_not_exist_is_refused_in_words() -> None:
+    with pytest.raises(ValueError, match="no electrical power at 0 A, so no coefficient of performance; change it"):
+        MODULE.performance(0.0, TC, TH)
+    for cold in (TH, TH + 5, TH - 90):
+        with pytest.raises(ValueError, match=r"needs a hot plate 0 to 77\.7 K warmer than the cold one, not .* K"):
+            MODULE.best_performance(cold, TH)
+        with pytest.raises(ValueError, match=r"needs a hot plate 0 to 77\.7 K warmer than the cold one, not .* K"):
+            MODULE.best_performance_current_A(cold, TH)

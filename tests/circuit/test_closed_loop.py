@@ -1,0 +1,172 @@
+"""A PID loop on a display thermistor, and a hot plate under its own control, beside ngspice running the same loops."""
+
+import re
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Rig, RigError, Trace, hold, netlist, simulate, simulate_current
+from thermicon.icons import Icon, parse
+
+GAINS = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
+LOOP = Rig.load("thenar").with_set([f"controller.{key}={value}" for key, value in GAINS.items()])
+SINK = ["capacity_J_per_K=60", "kp_W_per_K=4", "ki_W_per_Ks=0.5", "power_limit_W=12"]
+HEAVY = Rig.load("thenar").with_set([f"heat_sink.{setting}" for setting in SINK])
+
+
+def icon(body: str, control: str = "display") -> Icon:
+    head = f"cue 1\nset s {{\n control {control}\n baseline 32 °C\n}}\n"
+    return parse(f"{head}icon x {{\n{body}\n}}").icons[0]
+
+
+STEPS = {
+    "cooling": icon("cool by 1 °C over 10 ms\nhold for 7 s"),
+    "warming": icon("warm by 1 °C over 10 ms\nhold for 7 s"),
+}
+
+
+@pytest.mark.parametrize("name", STEPS)
+def test_a_step_that_meets_the_limit_overshoots_little_and_settles(name: str) -> None:
+    trace = simulate(STEPS[name], LOOP)
+    change = np.abs(trace.display_C - 32.0)
+    assert np.abs(trace.current_A).max() == 1.5, "the limit is hit"
+    assert change.max() < 1.1
+    assert np.abs(change - 1.0)[trace.time_s > 5.0].max() < 0.020
+
+
+def test_the_integral_does_not_wind_up_at_the_limit() -> None:
+    # A step too large for the driver: the time at the limit would wind a plain integral up to some 10 A.
+    far = icon("cool by 12 °C over 10 ms\nhold for 14 s")
+    trace = simulate(far, LOOP)
+    assert (trace.current_A == 1.5).sum() > 150
+    assert (32.0 - trace.display_C).max() < 12.3
+
+
+def test_the_loop_lags_a_ramp_and_says_so() -> None:
+    trace = simulate(icon("cool by 6 °C at 3 °C/s\nhold for 4 s\nreturn at 3 °C/s"), LOOP)
+    assert trace.outcome is not None
+    assert not trace.outcome.reached
+    assert 0.1 < abs(trace.outcome.largest_miss_K) < 1.5
+    ideal = simulate(icon("cool by 6 °C at 3 °C/s\nhold for 4 s\nreturn at 3 °C/s"), Rig.load("thenar"))
+    assert ideal.outcome is not None
+    assert ideal.outcome.reached
+
+
+def test_under_skin_control_the_loop_follows_the_display_that_the_skin_needs() -> None:
+    cue = icon("cool by 3 °C at 1 °C/s\nhold for 5 s", "skin")
+    trace, ideal = simulate(cue, LOOP), simulate(cue, Rig.load("thenar"))
+    assert np.abs(trace.skin_C - ideal.skin_C)[trace.time_s > 6].max() < 0.05
+    assert trace.outcome is not None
+    assert trace.outcome.largest_miss_K == pytest.approx(max(trace.skin_C - trace.target_C, key=abs), abs=0.01), (
+        "what is judged is the skin"
+    )
+
+
+def test_a_loop_starts_at_rest_and_stays_there() -> None:
+    trace = simulate(icon("rest for 4 s"), LOOP)
+    assert np.ptp(trace.display_C) < 1e-9
+
+
+def test_a_controller_needs_its_proportional_gain() -> None:
+    with pytest.raises(RigError, match=r"controller\.kp_A_per_K is missing; add it, in A/K"):
+        Rig.load("thenar").with_(**{"controller.lag_s": 0.1})
+    with pytest.raises(RigError, match=r"controller\.kp_A_per_K = -1 A/K: must be at least 0 A/K"):
+        Rig.load("thenar").with_(**{"controller.kp_A_per_K": -1})
+
+
+def test_a_heat_sink_is_ideal_or_has_all_of_its_controller() -> None:
+    with pytest.raises(RigError, match=r"heat_sink\.kp_W_per_K is missing; a hot plate under its own control needs"):
+        Rig.load("thenar").with_(**{"heat_sink.capacity_J_per_K": 60})
+
+
+def test_a_hot_plate_under_its_own_control_moves_and_comes_back() -> None:
+    drive = Drive([0, 1, 1.1, 8, 8.1, 60], [0.1, 0.1, 1.2, 1.2, 0.1, 0.1])
+    heavy, ideal = simulate_current(drive, HEAVY), simulate_current(drive, Rig.load("thenar"))
+    moved = heavy.hot_plate_C - ideal.hot_plate_C
+    assert moved[0] == pytest.approx(0.0, abs=1e-9)
+    assert 0.5 < moved.max() < 3.0
+    assert abs(moved[-1]) < 0.2
+
+
+def test_its_power_limit_binds() -> None:
+    drive = Drive([0, 1, 1.1, 20], [0.1, 0.1, 1.2, 1.2])
+    weak = simulate_current(drive, HEAVY.with_(**{"heat_sink.power_limit_W": 3.0}))
+    assert weak.hot_plate_C[-1] > simulate_current(drive, HEAVY).hot_plate_C[-1] + 1.5
+
+
+Tool = Callable[[str], str]
+
+
+def ngspice_table(text: str, ngspice: str, folder: Path) -> tuple[list[str], np.ndarray]:
+    """Run a netlist whose control section writes out.txt; return its column names and values."""
+    (folder / "loop.cir").write_text(text)
+    run = subprocess.run([ngspice, "-b", "loop.cir"], cwd=folder, capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stdout + run.stderr
+    with (folder / "out.txt").open() as file:
+        names = file.readline().split()
+        return names, np.loadtxt(file)
+
+
+def display_difference(trace: Trace, names: list[str], table: np.ndarray) -> float:
+    display = next(k for k, name in enumerate(names) if name.lower() == "v(display_c)")
+    return float(np.abs(np.interp(trace.time_s, table[:, 0], table[:, display]) - trace.display_C).max())
+
+
+def test_a_hot_plate_under_its_own_control_agrees_with_ngspice(tool: Tool, tmp_path: Path) -> None:
+    drive = Drive([0, 1, 1.1, 8, 8.1, 20], [0.1, 0.1, 1.2, 1.2, 0.1, 0.1])
+    trace = simulate_current(drive, HEAVY)
+    names, table = ngspice_table(netlist(HEAVY, drive, out_file="out.txt"), tool("ngspice"), tmp_path)
+    for probe in ("hot_plate_C", "display_C", "skin_C"):
+        column = next(k for k, name in enumerate(names) if name.lower() == f"v({probe.lower()})")
+        ours = getattr(trace, probe)
+        assert np.abs(np.interp(trace.time_s, table[:, 0], table[:, column]) - ours).max() < 2e-3, probe
+
+
+def sampled_loop(rig: Rig, cue: Icon, end_s: float) -> str:
+    """The netlist of a rig whose command comes from a sampled PID made of capacitors and B sources."""
+    bias = hold(rig, "display", 32.0)[0]
+    text = netlist(rig, Drive([0.0, end_s], [bias, bias]), out_file="out.txt")
+    text = re.sub(r"Vcommand command 0 PWL\(\n(\+.*\n)+", "", text)
+    corners = cue.lower(32.0)
+    points = " ".join(f"{t!r} {v!r}" for t, v in zip(corners.time_s, corners.value, strict=True))
+    lag, period = GAINS["lag_s"], 1 / rig.driver.update_Hz
+    low, high = rig.driver.current_min_A, rig.driver.current_max_A
+
+    def hold_of(name: str, source: str, clock: str) -> str:
+        # Follows its source with 0.1 µs while the clock is 1, and with 10 s (for the operating point) while it is 0.
+        return f"B{name} 0 {name} I=0.1*(V({clock})+1e-8)*(({source})-V({name}))\nC{name} {name} 0 10n\n"
+
+    def clock(name: str, delay: float) -> str:
+        return f"V{name} {name} 0 PULSE(0 1 {delay!r} 50n 50n 1u {period!r})\n"
+
+    loop = (
+        clock("k0", period - 8e-6)  # the last sample of the thermistor is kept before the next is taken
+        + clock("k1", 1e-9)
+        + clock("k2", 3e-6)
+        + f"Vset set 0 PWL({points} {end_s + 1!r} {corners.value[-1]!r})\n"
+        + f"Rfelt felti felt 1\nCfelt felt 0 {lag!r}\nBfelt felti 0 V=V(cold)\n"
+        + hold_of("now", "V(felt)", "k1")
+        + hold_of("was", "V(now)", "k0")
+        + hold_of("err", "V(felt)-V(set)", "k1")
+        + hold_of(
+            "ask",
+            f"{bias!r}+{GAINS['kp_A_per_K']!r}*V(err)+{GAINS['ki_A_per_Ks']!r}*V(total)"
+            f"+{GAINS['kd_As_per_K'] / period!r}*(V(now)-V(was))",
+            "k2",
+        )
+        + f"Bgive give 0 V=min(max(V(ask),{low!r}),{high!r})\n"
+        + f"Bcommand command 0 V=V(give)/{rig.driver.transconductance_A_per_V!r}\n"
+        + "Btotal 0 total I=(((V(ask)-V(give))*V(err)) < 1e-12) ? V(err) : 0\nCtotal total 0 1\nRtotal total 0 1e12\n"
+    )
+    return text.replace(".options reltol", loop + ".options reltol")
+
+
+@pytest.mark.parametrize("body", ["cool by 1 °C over 10 ms\nhold for 5 s", "cool by 3 °C at 2 °C/s\nhold for 3 s"])
+def test_the_same_loop_in_ngspice_agrees_within_5_mK(body: str, tool: Tool, tmp_path: Path) -> None:
+    cue = icon(body)
+    trace = simulate(cue, LOOP)
+    names, table = ngspice_table(sampled_loop(LOOP, cue, float(trace.time_s[-1])), tool("ngspice"), tmp_path)
+    assert display_difference(trace, names, table) < 5e-3

@@ -1,0 +1,82 @@
+"""The source paper's results beside ours; what it prints is in a table of records, what we find is computed here."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.circuit.account import account
+from thermicon.circuit.paper import controlled_cue, dermis_change, miss_by_limit, printed, thermistors
+from thermicon.circuit.studydraw import stacked_figure
+
+
+def test_whichever_is_controlled_is_the_clean_step() -> None:
+    for rig in ("shani2021", "thenar"):
+        wrong = controlled_cue(Rig.load(rig)).distortions
+        assert wrong["skin"][0] < 0.03 < 0.07 < wrong["skin"][1]
+        assert wrong["display"][1] < 1e-4 < 0.07 < wrong["display"][0]
+
+
+def test_each_miss_is_stated() -> None:
+    cue = controlled_cue()
+    assert repr(cue).startswith(
+        "ControlledCue(shani2021; skin control: missed, 0.73 K off at most, display control: re"
+    )
+    titles = [cue.plot(control=control).get_title(loc="left") for control in ("skin", "display")]
+    assert titles[0].startswith("skin control; misses its target by 0.73 K at 2.00 s, held back by the\ncurrent limit")
+    assert titles[1] == "display control; reached"
+
+
+def test_the_miss_falls_with_the_current_limit() -> None:
+    found = miss_by_limit()
+    assert found.shipped_A == 1.5
+    assert (np.diff(found.miss_K) < 1e-6).all()
+    at = dict(zip(found.limit_A.tolist(), found.miss_K.tolist(), strict=True))
+    assert at[1.5] == pytest.approx(0.73, abs=0.01)
+    assert at[printed().one("module current").central] < 0.3
+    assert found.reached == tuple(limit >= 2.0 for limit in found.limit_A)
+    legend = found.plot().get_legend()
+    assert legend is not None
+    said = [text.get_text() for text in legend.get_texts()]
+    assert said == ["reached", "missed", "this rig's 1.5 A (assumed)", "the module's own 1.85 A"]
+
+
+def test_a_drive_that_only_cools_misses_the_return_by_about_4_K() -> None:
+    (point,) = (point for point in account() if point.topic == "directions of current")
+    assert "with currents of 0 A and more the skin misses by 4." in point.ours
+
+
+def test_the_papers_dermis_numbers_belong_to_one_depth() -> None:
+    seen = dermis_change()
+    change = seen.depth_of_m(printed().one("dermis change").central)
+    rate = seen.depth_of_rate_m(printed().one("dermis rate").central)
+    assert change == pytest.approx(1.5e-3, abs=0.1e-3)
+    assert rate == pytest.approx(change, abs=0.1e-3)
+    assert seen.at(0.15e-3)[0] > 4.0
+    assert np.isnan(seen.depth_of_m(100.0))
+    assert seen.plot().get_xlabel() == "depth (mm)"
+    assert repr(seen).startswith("DermisChange(shani2021; 5.0 K at 0.15 mm, 1 K at 1.5")
+
+
+def test_the_third_thermistor_depends_on_a_distance_nobody_printed() -> None:
+    swings = [np.ptp(thermistors(lateral_m=lateral).trace.probe("3")) for lateral in (1e-3, 2e-3, 5e-3)]
+    assert (np.diff(swings) < 0).all()
+    found = thermistors()
+    one, two = found.trace.probe("1"), found.trace.probe("2")
+    assert np.array_equal(one, found.trace.display_C)
+    assert two == pytest.approx((found.trace.skin_C + one) / 2, abs=1e-9)
+    assert repr(found).startswith("Thermistors(shani2021; #1 -8.6")
+    assert found.plot().get_ylabel() == "change (K)"
+
+
+def test_the_account_is_made_of_sentences_with_numbers() -> None:
+    points = account()
+    assert [point.topic for point in points if point.agrees] == ["shape under control"]
+    for point in points:
+        assert "nan" not in str(point)
+        assert any(letter.isdigit() for letter in point.ours), point
+        assert all(text.endswith(".") for text in (point.paper, point.ours, point.why)), point
+
+
+def test_panels_stack() -> None:
+    figure = stacked_figure(miss_by_limit(limits_A=[1.5, 1.85]).plot, dermis_change().plot)
+    assert len(figure.axes) == 2

@@ -1,0 +1,168 @@
+"""Shipped sites: rest by closed form, receptor depths in both conventions, and what a rig says of itself."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, RigError, rig_names, simulate, steady_state
+from thermicon.circuit.network import network_of
+from thermicon.circuit.skin import Layer, Skin, column_of
+from thermicon.icons import load_library
+
+THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
+SITES = ("thenar", "fingertip", "forearm", "hand-dorsum")
+BLOOD = 1060 * 3770
+
+
+def _deep_C(layers: tuple[Layer, ...], surface_C: float, loss_W_per_m2: float) -> float:
+    """Deep and blood temperature over which a surface rests: a 2 × 2 Pennes matrix for each layer."""
+    chain = np.eye(2)
+    for layer in layers:
+        m = math.sqrt(layer.perfusion_per_s * BLOOD / layer.conductivity_W_per_mK)
+        h, k = layer.thickness_m, layer.conductivity_W_per_mK
+        step = (
+            [[1, h / k], [0, 1]]
+            if m == 0
+            else [[math.cosh(m * h), math.sinh(m * h) / (k * m)], [k * m * math.sinh(m * h), math.cosh(m * h)]]
+        )
+        chain = np.array(step) @ chain
+    return float(surface_C + chain[0, 1] * loss_W_per_m2 / chain[0, 0])
+
+
+@pytest.mark.parametrize("name", SITES)
+def test_rest_at_every_site_is_the_layered_closed_form(name: str) -> None:
+    rig = Rig.load(name)
+    assert rig.blood_C == pytest.approx(_deep_C(rig.skin.layers, 32.0, 80.0), abs=2e-3)
+    assert rig.resting_flux_W_per_m2 == pytest.approx(-80.0, abs=1e-9)
+    assert (rig.site, rig.warnings) == (name, ())
+    assert {"hand-dorsum": "back of the hand"}.get(name, name) in rig.title
+
+
+def test_blood_temperatures_that_are_printed() -> None:
+    solved = {name: _deep_C(Rig.load(name).skin.layers, 32.0, 80.0) for name in SITES}
+    assert solved == pytest.approx(
+        {"thenar": 34.576, "fingertip": 34.625, "forearm": 34.499, "hand-dorsum": 34.516}, abs=1e-3
+    )
+
+
+def test_two_perfused_layers_rest_where_the_closed_form_says() -> None:
+    layers = (Layer("dermis", 1.6e-3, 0.45, 1116, 3300, 1.1e-3), Layer("muscle", 15e-3, 0.49, 1090, 3421, 6e-4))
+    column = column_of(Skin("forearm", 32.0, 0.15e-3, 0.3e-3, layers), BLOOD)
+    assert 32.0 - column.steady_drop_K(-80.0) == pytest.approx(_deep_C(layers, 32.0, 80.0), abs=1e-3)
+
+
+def test_layers_of_the_sites() -> None:
+    horny = {name: Rig.load(name).skin.layers[0].thickness_m * 1e3 for name in SITES}
+    assert horny == pytest.approx({"thenar": 0.17, "fingertip": 0.30, "forearm": 0.022, "hand-dorsum": 0.029})
+    forearm = Rig.load("forearm").skin.layers
+    assert forearm[1].thickness_m == pytest.approx(0.08e-3)
+    assert 1.2e-3 <= forearm[2].thickness_m <= 2e-3
+    assert forearm[2].perfusion_per_s == pytest.approx(1.1e-3)
+    for name in SITES:
+        assert Rig.load(name).skin.layers[3:] == THENAR.skin.layers[3:]
+
+
+@pytest.mark.parametrize("name", [*SITES, "from the base"])
+def test_receptors_are_nodes_of_the_mesh(name: str) -> None:
+    rig = THENAR.with_(**{"skin.depth_from": "stratum corneum"}) if name == "from the base" else Rig.load(name)
+    network = network_of(rig)
+    for depth, probe in ((rig.skin.cold_receptor_m, 3), (rig.skin.warm_receptor_m, 4)):
+        assert np.abs(rig.column.depth_m - depth).min() < 1e-12
+        assert sorted(network.probe_weight[probe]) == [0.0, 0.0, 1.0]
+
+
+def test_receptor_depths_in_both_conventions() -> None:
+    depths = THENAR.receptor_depths()
+    assert (depths.cold_mm, depths.warm_mm) == (0.15, 0.30)
+    assert (depths.cold_below_horny_mm, depths.warm_below_horny_mm) == (-0.02, 0.13)
+    base = THENAR.with_(**{"skin.depth_from": "stratum corneum"})
+    assert base.receptor_depths() == type(depths)(0.32, 0.47, 0.15, 0.30)
+    assert base.skin.cold_receptor_m == pytest.approx(0.32e-3)
+    thick = base.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
+    assert thick.receptor_depths() == Rig.load("fingertip").receptor_depths()
+    assert base.with_(**{"skin.depth_from": "surface"}).receptor_depths() == depths
+    assert SHANI.receptor_depths().cold_below_horny_mm is None
+
+
+@pytest.mark.parametrize(
+    ("rig", "changes", "words"),
+    [
+        (
+            SHANI,
+            {"skin.depth_from": "stratum corneum"},
+            r'skin\.depth_from = "stratum corneum": needs a first layer of that name, not "epidermis"; rename',
+        ),
+        (
+            THENAR,
+            {"skin.depth_from": "base"},
+            r"skin\.depth_from = 'base': must be 'surface' or 'stratum corneum'",
+        ),
+        (
+            THENAR,
+            {"skin.depth_from": "stratum corneum", "skin.warm_receptor_mm": 19.4},
+            r"skin\.warm_receptor_mm = 19\.4 mm below the stratum corneum: must lie inside the skin, which is 19\.3 mm",
+        ),
+        (THENAR, {"skin.warm_receptor_mm": 19.47}, r"warm_receptor_mm = 19\.47 mm: must lie inside the skin, which is"),
+        (THENAR, {"contact.area_cm2": 0.0}, r"contact\.area_cm2 = 0\.0 cm²: must be greater than 0 cm²"),
+        (
+            THENAR,
+            {"driver.current_min_A": 2.0, "driver.current_limit_A": 1.0},
+            r"driver\.current_min_A = 2 A: must be 0 .* or below, and current_limit_A \(1 A\) above 0",
+        ),
+        (THENAR, {"driver.current_limit_A": -1.0}, r"driver\.current_limit_A = -1\.0 A: must be greater than 0 A"),
+        (THENAR, {"notes": "one"}, r"notes.*list"),
+    ],
+)
+def test_a_rig_that_cannot_be_is_refused_in_words(rig: Rig, changes: dict[str, object], words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        rig.with_(**changes)
+
+
+def test_rest_warmer_than_blood_is_possible_and_warned_of() -> None:
+    # A limb colder than the sun-warmed skin over it: no error, since such a rig can be built and simulated.
+    rig = THENAR.with_(**{"skin.deep_C": 30.0})
+    assert rig.warnings == ("blood at 30.00 °C is colder than the resting surface at 32 °C",)
+    assert rig.resting_flux_W_per_m2 > 0
+    assert "taken up by bare skin" in rig.about()
+
+
+def test_what_shani2021_says_of_itself_is_so() -> None:
+    said = " ".join(SHANI.notes)
+    cue = load_library("cooling-step-skin")["cooling-step"]
+    slab = 0.081e-3 / 0.24 + 2e-3 / 0.45
+    low, high = ((37 / slab + film * 24) / (1 / slab + film) for film in (12, 8))
+    hot, hotter = (network_of(rig).read(steady_state(network_of(rig), -0.5), "skin_C") for rig in (SHANI, THENAR))
+    cools = simulate(cue, SHANI.with_(**{"driver.current_min_A": 0})).outcome
+    both = simulate(cue, SHANI).outcome
+    assert cools is not None
+    assert both is not None
+    for words in (
+        f"lets {-SHANI.resting_flux_W_per_m2:.0f} W/m² flow",
+        f"(film 12 to 8 W/m²K) it would rest at {low:.1f} to {high:.1f} °C",
+        f"misses by about {abs(cools.largest_miss_K):.0f} K",
+        f"-0.5 A held brings the skin to {hot:.0f} °C here and to {hotter:.0f} °C on the thenar rig",
+        f"the paper's cue on the skin is missed by {abs(both.largest_miss_K):.2f} K",
+    ):
+        assert words in said
+
+
+@pytest.mark.parametrize("name", rig_names())
+def test_a_rig_tells_about_itself_in_plain_text(name: str) -> None:
+    rig = Rig.load(name)
+    lines = rig.about().splitlines()
+    assert lines[0] == f"{name}: {rig.title}"
+    assert all(len(line) <= 118 for line in lines)
+    told = " ".join(rig.about().split())
+    words = [f"site {rig.site}", f"{rig.blood_C:.2f} °C", str(rig.receptor_depths()), rig.module_source]
+    for text in (*words, *(f"warning {text}" for text in rig.warnings), *(f"note {text}" for text in rig.notes)):
+        assert text in told
+    assert "\n" not in repr(rig)
+
+
+def test_notes_of_a_rig_file_are_kept() -> None:
+    assert THENAR.notes == ()
+    assert THENAR.with_(**{"notes": ["measured on a Monday"]}).notes == ("measured on a Monday",)
+    assert len(SHANI.notes) == len(set(SHANI.notes)) == 4
+    assert list(itertools.chain(*(note.splitlines() for note in SHANI.notes))) == list(SHANI.notes)

@@ -1,0 +1,82 @@
+"""``thermicon netlist``: the file as a lab gets it, and what the command says."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+Cli = Callable[..., Any]
+
+
+def test_it_says_what_it_wrote_and_how_to_run_it(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "cool.cir"
+    said = cli("netlist", two, "--icon", "cool-step", "-o", out)
+    assert (said.exit_code, said.stdout) == (0, "")
+    assert said.stderr.splitlines() == [
+        "cool-step: 8 s, reached (everywhere within 1 mK)",
+        f"wrote {out}; open it in LTspice, or run ngspice -b -r cool.raw cool.cir",
+    ]
+    text = out.read_text(encoding="ascii")
+    assert text.startswith("* cool-step of two.cue on rig thenar, written by thermicon ")
+    assert ".control" not in text
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_a_set_with_one_icon_needs_no_name_and_stdout_has_the_same_bytes(cli: Cli, tmp_path: Path) -> None:
+    out = tmp_path / "step.cir"
+    assert cli("netlist", "cooling-step-skin", "-o", out).exit_code == 0
+    said = cli("netlist", "cooling-step-skin", "-o", "-")
+    assert said.stdout == out.read_text(encoding="ascii")
+    assert said.stderr.startswith("cooling-step: 8 s, reached")
+
+
+def test_several_icons_are_listed(cli: Cli, two: Path, tmp_path: Path) -> None:
+    said = cli("netlist", two, "-o", tmp_path / "a.cir")
+    assert said.exit_code == 2
+    assert "has 2 icons; name one of cool-step, warm-step" in said.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words", "code"),
+    [
+        (("two.cue", "--icon", "cool-step"), "Missing option", 2),
+        (("two.cue", "--icon", "cool-step", "-o", "a.txt"), "a netlist is written as .cir or .net or .sp, not .txt", 1),
+        (("two.cue", "--icon", "cool-stp", "-o", "a.cir"), "did you mean cool-step?", 1),
+        (("two.cue", "--icon", "cool-step", "-o", "a.cir", "--tail", "nan"), "'--tail': nan is not a time", 2),
+        (("two.cue", "--icon", "cool-step", "-o", "a.cir", "--ngspice", "a;b"), "use letters, digits, blanks", 1),
+    ],
+)
+def test_what_cannot_be(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], words: str, code: int
+) -> None:
+    monkeypatch.chdir(two.parent)
+    said = cli("netlist", *arguments)
+    assert (said.exit_code, said.stdout) == (code, "")
+    assert words in " ".join(said.stderr.split())
+    assert not Path("a.cir").exists()
+
+
+def test_ngspice_plays_what_simulate_writes(
+    process: Cli, two: Path, tmp_path: Path, tool: Callable[[str], str]
+) -> None:
+    ngspice = tool("ngspice")
+    options = ("--icon", "cool-step", "--tail", "2", "--set", "contact.area_cm2=4")
+    said = process("netlist", two, *options, "-o", "Cool.cir", "--ngspice", "Probes.txt", cwd=tmp_path)
+    assert said.exit_code == 0, said.stderr
+    assert said.stderr.endswith("wrote Cool.cir; ngspice -b Cool.cir writes the probes into Probes.txt\n")
+    assert process("simulate", two, *options, "-o", "trace.csv", cwd=tmp_path).exit_code == 0
+    run = subprocess.run([ngspice, "-b", "Cool.cir"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    theirs = pd.read_csv(tmp_path / "Probes.txt", sep=r"\s+").add_prefix("/")
+    ours = pd.read_csv(tmp_path / "trace.csv")
+    for column in ("hot_plate_C", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
+        played = np.interp(ours["time_s"], theirs["/time"], theirs[f"/v({column})"])
+        assert np.abs(played - ours[column]).max() < 2e-3, column
+    behind = np.interp(ours["time_s"][:-1] + 1.01e-6, theirs["/time"], theirs["/v(plus)"])
+    assert np.abs(behind - ours["voltage_V"][:-1]).max() < 1e-3

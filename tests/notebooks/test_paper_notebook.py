@@ -1,0 +1,28 @@
+"""The notebook of the paper's figures: thin, without outputs, and every cell runs."""
+
+from pathlib import Path
+
+import nbformat
+from nbclient import NotebookClient
+
+NOTEBOOK = Path(__file__).parents[2] / "notebooks/06_the_papers_figures.ipynb"
+
+
+def test_it_is_thin_and_has_no_outputs() -> None:
+    cells = nbformat.read(NOTEBOOK, as_version=4).cells
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    assert all(not cell.outputs and cell.execution_count is None for cell in code)
+    assert all(len(cell.source.splitlines()) <= 7 for cell in code)
+    assert "def " not in "".join(cell.source for cell in code)
+
+
+def test_every_cell_runs_and_shows_something(tmp_path: Path) -> None:
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    resources = {"metadata": {"path": str(tmp_path)}}
+    NotebookClient(notebook, timeout=60, kernel_name="python3", resources=resources).execute()
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    kinds = [{kind for output in cell.outputs for kind in output.get("data", {"text": 1})} for cell in code]
+    assert kinds[0] == set()
+    assert [("image/png" in kind) for kind in kinds[1:]] == [True, True, True, True, True, False, False]
+    assert "text/html" in kinds[6]
+    assert "change at the receptors (differs)" in code[7].outputs[0]["text"]

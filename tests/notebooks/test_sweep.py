@@ -1,0 +1,177 @@
+"""``thermicon sweep``: the table as scripts read it, the summary lines and figures as people do."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from thermicon.circuit import Rig, RigError, simulate, summarise
+from thermicon.icons import read_cue
+from thermicon.notebooks import sweep, sweep_figure
+from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K
+
+Cli = Callable[..., Any]
+AREA = "contact.area_cm2"
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_a_row_for_every_icon_and_value(cli: Cli, two: Path, tmp_path: Path, suffix: str) -> None:
+    out = tmp_path / f"sweep{suffix}"
+    said = cli("sweep", two, "--vary", f"{AREA}=4:16:4", "-o", out)
+    assert (said.exit_code, said.stdout) == (0, "")
+    assert said.stderr.splitlines() == [
+        "cool-step: reached at 4 of 4 values, everywhere within 1 mK",
+        "warm-step: reached at 4 of 4 values, everywhere within 1 mK",
+        f"wrote {out}",
+    ]
+    frame = pd.read_csv(out) if suffix == ".csv" else pd.read_parquet(out)
+    assert list(frame.columns[:4]) == ["icon", AREA, "duration_s", "reached"]
+    assert list(frame["icon"]) == ["cool-step"] * 4 + ["warm-step"] * 4
+    assert list(frame[AREA]) == [4, 8, 12, 16] * 2
+    assert frame["reached"].all()
+    assert frame["reason"].isna().all()
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_every_number_is_that_of_the_run(two: Path) -> None:
+    icons, rig = read_cue(two), Rig.load("thenar")
+    frame = sweep(icons, rig, "driver.current_limit_A", [0.7, 1.5], tail_s=1.0)
+    assert len(frame) == 4
+    for _, row in frame.iterrows():
+        limited = rig.with_(**{"driver.current_limit_A": row["driver.current_limit_A"]})
+        trace = simulate(icons[row["icon"]], limited, tail_s=1.0)
+        for name, value in summarise(trace).to_dict().items():
+            assert row[name] == value or (value is None and pd.isna(row[name])), name
+        for channel in ("cold", "warm"):
+            assert row[f"{channel}_receptor_peak_change_K"] == peak_change_K(trace, channel)
+            assert row[f"{channel}_receptor_attack_K_per_s"] == attack_K_per_s(trace, channel)
+            assert row[f"{channel}_receptor_delay_s"] == delay_s(trace, channel)
+    assert frame["reached"].tolist() == [False, True, True, True]
+
+
+def test_equal_ratios(cli: Cli, two: Path) -> None:
+    said = cli("sweep", two, "--icon", "cool-step", "--vary", "contact.resistance_m2K_per_W=1e-4:1e-2:3log", "-o", "-")
+    frame = pd.read_csv(io.StringIO(said.stdout))
+    assert list(frame["contact.resistance_m2K_per_W"]) == [1e-4, 1e-3, 1e-2]
+    assert frame["cold_receptor_peak_change_K"].is_monotonic_increasing
+
+
+def test_a_layer_of_the_skin_can_be_swept(two: Path) -> None:
+    frame = sweep(read_cue(two), Rig.load("thenar"), "skin.layer.stratum corneum.thickness_mm", [0.1, 0.4])
+    peaks = frame.loc[frame["icon"] == "cool-step", "warm_receptor_peak_change_K"]
+    assert len(peaks.unique()) == 2
+
+
+def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "sweep.csv"
+    said = cli("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")
+    assert said.exit_code == 0
+    assert said.stderr.splitlines()[:3] == [
+        "cool-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
+        "warm-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
+        f"impossible, as at {AREA} = -5: rig thenar: {AREA} = -5.0 cm²: must be greater than 0 cm²",
+    ]
+    frame = pd.read_csv(out)
+    lost = frame[frame[AREA] <= 0]
+    assert lost["reason"].str.contains("must be greater than 0 cm²").all()
+    assert lost[["reached", "safe", "duration_s", "skin_min_C"]].isna().all(axis=None)
+
+
+def test_a_baseline_that_no_current_holds_is_a_row_with_the_reason(two: Path) -> None:
+    frame = sweep(read_cue(two), Rig.load("thenar"), "driver.current_limit_A", [0.01, 1.5])
+    reason = frame["reason"].iloc[0]
+    assert "a baseline of 32 °C on the display cannot be held: it needs" in reason
+    assert "choose a baseline nearer to rest or a wider current limit" in reason
+
+
+def test_a_level_that_the_language_does_not_know_is_a_row_with_the_reason(tmp_path: Path) -> None:
+    path = tmp_path / "free.cue"
+    path.write_text("cue 1\nicon a { warm to 34 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
+    frame = sweep(read_cue(path), Rig.load("thenar"), "skin.rest_C", [32.0, 38.0])
+    assert frame["reason"].isna().tolist() == [True, False]
+
+
+def test_all_impossible_is_an_error_and_leaves_no_file(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "sweep.csv"
+    said = cli("sweep", two, "--vary", f"{AREA}=-3:-1:3", "-o", out)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert f"--vary {AREA}: none of its 3 values can be played; the first: rig thenar: {AREA} = -3.0 cm²" in said.stderr
+    assert not out.exists()
+
+
+def test_an_unsafe_run_is_counted(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "amps.cue"
+    path.write_text(
+        "cue 1\nset amps { control current }\nicon a { to -0.5 A at 1 A/s; hold for 60 s; return at 1 A/s }\n",
+        encoding="utf-8",
+    )
+    said = cli("sweep", path, "--vary", "heat_sink.temperature_C=20:60:3", "-o", tmp_path / "a.csv")
+    assert said.exit_code == 0, said.stderr
+    assert "a: played at 3 of 3 values, NOT SAFE at " in said.stderr
+
+
+def test_an_unknown_key_names_the_nearest(cli: Cli, two: Path) -> None:
+    said = cli("sweep", two, "--vary", "contact.area=1:2:3", "-o", "-")
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "contact.area: unknown key; did you mean contact.area_cm2?" in said.stderr
+    with pytest.raises(RigError, match="unknown key"):
+        sweep(read_cue(two), Rig.load("thenar"), "contact.area", [1.0])
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ("contact.area_cm2", "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7"),
+        (f"{AREA}=4:9", "give KEY=LOW:HIGH:N"),
+        ("=4:9:3", "give KEY=LOW:HIGH:N"),
+        (f"{AREA}=four:9:3", "'four' is not a number"),
+        (f"{AREA}=4:nan:3", "'nan' is not a number"),
+        (f"{AREA}=4:9:2.5", "'2.5' is not a number of values"),
+        (f"{AREA}=4:9:1", "1 values is outside 2 to 10000"),
+        (f"{AREA}=4:9:1000000", "1000000 values is outside 2 to 10000"),
+        (f"{AREA}=4:4:3", "both ends are 4; a sweep needs two different ends"),
+        (f"{AREA}=0:4:3log", "equal ratios need both ends above 0; leave out log for equal steps"),
+    ],
+)
+def test_a_range_that_is_none(cli: Cli, two: Path, vary: str, words: str) -> None:
+    said = cli("sweep", two, "--vary", vary, "-o", "-")
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert "--vary" in said.stderr
+    assert words in " ".join(said.stderr.split())
+
+
+@pytest.mark.parametrize(("option", "name", "words"), [
+    ("-o", "out.txt", "a sweep is written as .csv or .parquet, not .txt"),
+    ("--figure", "out.gif", "a figure is written as .png or .pdf or .svg, not .gif"),
+])  # fmt: skip
+def test_an_output_that_cannot_be(cli: Cli, two: Path, option: str, name: str, words: str) -> None:
+    said = cli("sweep", two, "--vary", f"{AREA}=4:9:3", "-o", "-", option, name)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert words in said.stderr
+
+
+def test_figure_colours_tell_cooling_from_warming(two: Path) -> None:
+    key = "contact.resistance_m2K_per_W"
+    frame = sweep(read_cue(two), Rig.load("thenar"), key, [3e-4, 1e-3, 3e-3])
+    figure = sweep_figure(frame, key, log=True)
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == ["cool-step", "warm-step"]
+    cool, warm = tuple(line.get_color() for line in figure.legends[0].get_lines())
+    assert (cool, warm) == ("#1f6fb4", "#d9680d")
+    assert figure.get_supxlabel() == f"{key} (m²·K/W)"
+    assert all("(" in ax.get_ylabel() for ax in figure.axes)
+    assert figure.axes[0].get_xscale() == "log"
+
+
+def test_figure_marks_what_was_missed_and_what_was_impossible(two: Path, tmp_path: Path) -> None:
+    key = "driver.current_limit_A"
+    frame = sweep(read_cue(two), Rig.load("thenar"), key, [0.0, 0.5, 1.0, 1.5])
+    figure = sweep_figure(frame, key)
+    assert [text.get_text() for text in figure.legends[0].get_texts()][2:] == ["not reached", "impossible"]
+    figure.savefig(tmp_path / "a.png")
+    assert (tmp_path / "a.png").stat().st_size > 20_000
