@@ -60,11 +60,11 @@ def factor(n, half, cap, g, perf, p, f):
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "reassoc"})
-def weighed(n, weight, lumps):
-    """Σ weight · lump over n lumps."""
+def weighed(n, f, x):
+    """Weighted sum of the lumps: the part of the first lump, after an implicit step, that the cold plate has not."""
     total = 0.0
     for i in range(n):
-        total += weight[i] * lumps[i]
+        total += f[WEIGHT, i] * x[i + 2]
     return total
 
 
@@ -86,15 +86,15 @@ def regulate_sink(step, p, sink):
 
 
 @compiled
-def advance(n, step, current, squared, p, g0, x, sink, f, y):
+def advance(n, current, squared, step, p, g0, x, sink, f, y, first):
     """One trapezoidal step in place, with the step's mean current and mean squared current; f is for step/2.
 
-    `x` (n + 2,) is hot plate, cold plate and lumps above the deep temperature p[7]; `y` (n,) is scratch.
+    `x` (n + 2,) is hot plate, cold plate and lumps above the deep temperature p[7]; `y` (n,) is scratch. `first` is
+    `weighed` of the lumps; what it is for the next step comes back, summed on the way.
     """
     middle, share = n // 2, f[WEIGHT, n]  # the heat sink's share in its own implicit step: 0 where it is ideal
     if share > 0.0:
         regulate_sink(step, p, sink)
-    first = weighed(n, f[WEIGHT], x[2:])
     hot0, cold0, kelvin = x[0], x[1], ZERO_C_IN_K + p[7]
     pump, joule = p[0] * current, 0.5 * p[1] * squared
     hot_store, cold_store, out = f[BACK, n], f[SLOPE, n], p[6] * (1.0 - share)
@@ -116,17 +116,25 @@ def advance(n, step, current, squared, p, g0, x, sink, f, y):
         below = f[KEEP, middle] * x[middle + 2] + f[LINK, middle] * below
     above = above + f[SLOPE, middle - 1] * cold if middle > 0 else cold
     above = below = (below + f[BACK, middle] * above) * f[LINK, n]
-    x[middle + 2] = 2.0 * above - x[middle + 2]
+    moved = 2.0 * above - x[middle + 2]
+    x[middle + 2] = moved
+    upper, lower = 0.0, f[WEIGHT, middle] * moved
     for j in range(1, n - middle):
         i = middle + j
         below = y[i] + f[BACK, i] * below
-        x[i + 2] = 2.0 * below - x[i + 2]
+        moved = 2.0 * below - x[i + 2]
+        x[i + 2] = moved
+        lower += f[WEIGHT, i] * moved
         i = middle - j
         above = y[i] + f[SLOPE, i] * cold + f[BACK, i] * above
-        x[i + 2] = 2.0 * above - x[i + 2]
+        moved = 2.0 * above - x[i + 2]
+        x[i + 2] = moved
+        upper += f[WEIGHT, i] * moved
     if middle > 0 and n == 2 * middle:
         above = y[0] + f[SLOPE, 0] * cold + f[BACK, 0] * above
         x[2] = 2.0 * above - x[2]
+        upper += f[WEIGHT, 0] * x[2]
+    return upper + lower
 
 
 @compiled
@@ -152,7 +160,7 @@ def forward(
         n, p = count[r], plates[r]
         load(state[lane], p, x)
         settle(state[lane, 0], p, sink)
-        factored, since, before = -1.0, 0.0, start_A[c, 0]
+        factored, since, before, first = -1.0, 0.0, start_A[c, 0], 0.0
         for k in range(edges.size):
             row = row_of[k]
             if row >= 0:
@@ -162,8 +170,8 @@ def forward(
             if k == edges.size - 1:
                 break
             length = edges[k + 1] - edges[k]
-            first, last = start_A[c, k], end_A[c, k]
-            if abs(first - before) > JUMP_A:
+            begin, last = start_A[c, k], end_A[c, k]
+            if abs(begin - before) > JUMP_A:
                 since = 0.0
             done = 0.0
             while done < length - 1e-12:
@@ -173,12 +181,12 @@ def forward(
                     step /= math.ceil(step / longest - 1e-9)
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
-                    factored = step
-                mean, square = first, first * first
-                if first != last:
-                    a, b = first + (last - first) * (done / length), first + (last - first) * ((done + step) / length)
+                    factored, first = step, weighed(n, f, x)
+                mean, square = begin, begin * begin
+                if begin != last:
+                    a, b = begin + (last - begin) * (done / length), begin + (last - begin) * ((done + step) / length)
                     mean, square = 0.5 * (a + b), (a * a + a * b + b * b) / 3.0
-                advance(n, step, mean, square, p, g[r, 0], x, sink, f, y)
+                first = advance(n, mean, square, step, p, g[r, 0], x, sink, f, y, first)
                 done += step
                 since += step
             before = last
@@ -262,16 +270,16 @@ def follow(
         load(state[lane], p, x)
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
         factor(n, period, cap[r], g[r], perf[r], p, ahead)
-        elim, amperes = ahead[KEEP, n], 0.0
+        elim, amperes, first = ahead[KEEP, n], 0.0, weighed(n, f, x)
         settle(state[lane, 0], p, sink)
         for k in range(target.shape[1]):
-            z0 = weighed(n, ahead[WEIGHT], x[2:]) + p[7] * (1.0 - elim)
+            z0 = weighed(n, ahead, x) + p[7] * (1.0 - elim)
             hot, cold = x[0] + p[7], x[1] + p[7]
             amperes, code = wanted(
                 target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[0], amperes, p
             )
             for _ in range(pieces):
-                advance(n, step, amperes, amperes * amperes, p, g[r, 0], x, sink, f, y)
+                first = advance(n, amperes, amperes * amperes, step, p, g[r, 0], x, sink, f, y, first)
             current[lane, k] = amperes
             reached[lane, k] = (share * x[1] + (1.0 - share) * x[2] if skin_control else x[1]) + p[7]
             why[lane, k] = code

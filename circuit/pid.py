@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.kernel import LONGEST_STEP_S, advance, compiled, factor, limited, load, settle
+from thermicon.circuit.kernel import LONGEST_STEP_S, advance, compiled, factor, limited, load, settle, weighed
 
 
 @compiled
@@ -34,7 +34,7 @@ def regulate(
         settle(state[lane, 0], p, sink)
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
         mean = (1.0 - decay) * lag / step  # of the old display temperature, for one linear within the step
-        felt, before, total = x[1] + p[7], x[1] + p[7], 0.0
+        felt, before, total, first = x[1] + p[7], x[1] + p[7], 0.0, weighed(n, f, x)
         for k in range(setpoint.shape[1]):
             error = felt - setpoint[c, k]
             asked = bias[lane] + kp * error + ki * total + kd * (felt - before) / period
@@ -42,7 +42,7 @@ def regulate(
             before = felt
             for _ in range(pieces):
                 display = x[1] + p[7]
-                advance(n, step, amperes, amperes * amperes, p, g[r, 0], x, sink, f, y)
+                first = advance(n, amperes, amperes * amperes, step, p, g[r, 0], x, sink, f, y, first)
                 felt = decay * felt + (mean - decay) * display + (1.0 - mean) * (x[1] + p[7])
             if code == 0 or (asked - amperes) * error < 0.0:
                 total += error * period

@@ -70,8 +70,7 @@ def test_two_sets_are_paired_by_name(cli: Cli, two: Path, tmp_path: Path) -> Non
     assert said.exit_code == 0, said.stderr
     assert said.stdout.startswith("cool-step\nA  two.cue: 8 s")
     assert f"only in one of the two: warm-step ({two}), hot-step ({other})" in said.stderr
-    one = cli("compare", two, other, "--icon", "cool-step")
-    assert (one.stdout, one.stderr) == (said.stdout, "")
+    assert cli("compare", two, other, "--icon", "cool-step").stdout == said.stdout
     assert cli("compare", two, other, "--icon", "warm-step").exit_code == 1
 
 
@@ -248,5 +247,4 @@ def test_the_figure_has_a_panel_of_differences_below_each_of_curves() -> None:
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["A  a", "B  b"]
     assert figure.axes[5].get_lines()[-1].get_ydata()[-1] == pytest.approx(0.4)
     assert figure.axes[1].get_lines()[-1].get_color() == "#d9680d"
-    low, high = figure.axes[4].get_ylim()
-    assert high - low >= 0.01  # equal curves do not fill the panel with rounding
+    assert np.ptp(figure.axes[4].get_ylim()) >= 0.01  # equal curves do not fill the panel with rounding

@@ -1,0 +1,171 @@
+"""Speed of the circuit beside ngspice simulating the same thing, in one run; ratios are what to quote.
+
+Run with `pytest -m benchmark tests/benchmarks -s`. Each ratio comes with the error of both against a tight reference.
+"""
+
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from thermicon.circuit import Drive, Rig, netlist, simulate, simulate_current
+from thermicon.circuit.bank import Bank, cut, run_follow, run_forward
+from thermicon.circuit.inverse import design
+from thermicon.circuit.network import network_of
+from thermicon.circuit.steady import hold, steady_state
+from thermicon.icons import load_library
+
+pytestmark = pytest.mark.benchmark
+Tool = Callable[[str], str]
+CORNERS = Drive([0, 2, 4, 8, 10, 30], [0.1, 1.1, 0.3, 0.4, -0.5, 0.1])
+ROWS = np.arange(3001) / 100
+PROBES = ("skin_C", "cold_receptor_C", "warm_receptor_C")
+RIGS = {"shani2021": Rig.load("shani2021"), "thenar": Rig.load("thenar")}
+
+
+def best_of(run: Callable[[], object], times: int) -> float:
+    """Least wall time in s of some runs: what the machine can do when nothing else disturbs it."""
+    found = []
+    for _ in range(times):
+        start = time.perf_counter()
+        run()
+        found.append(time.perf_counter() - start)
+    return min(found)
+
+
+def ngspice_run(ngspice: str, folder: Path, texts: list[str]) -> float:
+    """Least wall time in s of one ngspice process that runs all the circuits."""
+    names = []
+    for k, text in enumerate(texts):
+        alone = text.replace(".end\n", ".control\nrun\nquit 0\n.endc\n.end\n") if len(texts) == 1 else text
+        (folder / f"c{k}.cir").write_text(alone)
+        names.append(f"c{k}.cir")
+    if len(names) == 1:
+        command = [ngspice, "-b", names[0]]
+    else:
+        script = "\n".join(f"source {name}\nrun\ndestroy all\nremcirc" for name in names)
+        (folder / "all.sp").write_text(f"* all\n.control\n{script}\nquit 0\n.endc\n.end\n")
+        command = [ngspice, "-b", "all.sp"]
+
+    def run() -> None:
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+    return best_of(run, 5 if len(names) == 1 else 2)
+
+
+def tight(rig: Rig, drive: Drive) -> dict[str, np.ndarray]:
+    """The reference: steps of 1 ms."""
+    fine = simulate_current(drive, rig, rate_Hz=1000)
+    return {probe: getattr(fine, probe)[::10] for probe in PROBES}
+
+
+def plain(text: str) -> str:
+    """The circuit at ngspice's own default tolerance and step, with nothing written."""
+    lines = [line for line in text.splitlines() if not line.startswith((".options", ".tran"))]
+    end = lines.index(".end")
+    return "\n".join([*lines[:end], ".tran 10m 30 0 10m", ".end", ""])
+
+
+def ngspice_error(ngspice: str, folder: Path, rig: Rig, reference: dict[str, np.ndarray]) -> float:
+    text = netlist(rig, CORNERS, out_file="out.txt", reltol=1e-3).replace("abstol=1e-12 vntol=1e-9", "")
+    text = "\n".join(".tran 10m 30 0 10m" if line.startswith(".tran") else line for line in text.splitlines())
+    (folder / "error.cir").write_text(text)
+    subprocess.run([ngspice, "-b", "error.cir"], cwd=folder, capture_output=True, check=True, timeout=60)
+    with (folder / "out.txt").open() as file:
+        names = [name.lower() for name in file.readline().split()]
+        table = np.loadtxt(file)
+    return max(
+        float(np.abs(np.interp(ROWS, table[:, 0], table[:, names.index(f"v({probe.lower()})")]) - values).max())
+        for probe, values in reference.items()
+    )
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_one_cue(name: str, tool: Tool, tmp_path: Path, benchmark: BenchmarkFixture) -> None:
+    rig = RIGS[name]
+    trace = simulate_current(CORNERS, rig)
+    reference = tight(rig, CORNERS)
+    ours = max(float(np.abs(getattr(trace, probe) - values).max()) for probe, values in reference.items())
+    theirs = ngspice_error(tool("ngspice"), tmp_path, rig, reference)
+    process = ngspice_run(tool("ngspice"), tmp_path, [plain(netlist(rig, CORNERS))])
+    benchmark(simulate_current, CORNERS, rig)
+    cue = float(benchmark.stats.stats.min)
+    benchmark.extra_info.update(nodes=len(network_of(rig).capacity_J_per_K) + 3, ratio=process / cue)
+    print(
+        f"\n{name}: {len(network_of(rig).capacity_J_per_K) + 3} nodes, 30 s: ours {cue * 1e3:.2f} ms "
+        f"(error {ours * 1e3:.3f} mK), ngspice process {process * 1e3:.1f} ms (error {theirs * 1e3:.3f} mK): {process / cue:.0f} times"
+    )
+    assert ours <= theirs
+
+
+@pytest.mark.parametrize("name", RIGS)
+def test_a_batch_of_64_with_a_rig_per_lane(name: str, tool: Tool, tmp_path: Path, benchmark: BenchmarkFixture) -> None:
+    rigs = [RIGS[name].with_(**{"contact.area_cm2": 8 + k / 32}) for k in range(64)]
+    bank = Bank.of([network_of(rig) for rig in rigs])
+    scale = 1 + np.arange(64) / 640
+    intervals = cut(ROWS, CORNERS.time_s, CORNERS.current_A * scale[:, None], held=False)
+    lanes = np.arange(64)
+    start = bank.states([steady_state(network_of(rig), 0.1 * by) for rig, by in zip(rigs, scale, strict=True)])
+    benchmark(lambda: run_forward(bank, lanes, lanes, intervals, start.copy(), PROBES))
+    cue = float(benchmark.stats.stats.min) / 64
+    process = ngspice_run(tool("ngspice"), tmp_path, [plain(netlist(RIGS[name], CORNERS))])
+    drives = [Drive(CORNERS.time_s, CORNERS.current_A * by) for by in scale]
+    many = ngspice_run(
+        tool("ngspice"), tmp_path, [plain(netlist(rig, drive)) for rig, drive in zip(rigs, drives, strict=True)]
+    )
+    benchmark.extra_info.update(ratio_process=process / cue, ratio_one_process=many / 64 / cue)
+    print(
+        f"\n{name}: batch of 64, per cue {cue * 1e3:.3f} ms: {process / cue:.0f} times an ngspice process, "
+        f"{many / 64 / cue:.0f} times a cue in one ngspice process of 64 ({many / 64 * 1e3:.1f} ms)"
+    )
+
+
+@pytest.mark.parametrize("control", ["skin", "display"])
+def test_inverse_beside_forward(control: str, benchmark: BenchmarkFixture) -> None:
+    rig = RIGS["thenar"]
+    cue = next(iter(load_library("cooling-step-skin" if control == "skin" else "six-icons")))
+    bank, lanes = Bank.of([network_of(rig)] * 64), np.arange(64)
+    _, state = hold(rig, control, 32.0)
+    start = bank.states([state] * 64)
+    corners = cue.lower(32.0)
+    target = np.interp(ROWS[1:], corners.time_s, corners.value)[None]
+    plan = design(cue, rig, 30.0)
+    intervals = cut(ROWS, plan.drive.time_s, plan.drive.current_A[None], held=True)
+    zero = np.zeros(64, dtype=np.int64)
+
+    def forward() -> object:
+        return run_forward(bank, lanes, zero, intervals, start.copy(), PROBES)
+
+    def inverse() -> object:
+        return run_follow(bank, lanes, zero, 0.01, target, control == "skin", start.copy())
+
+    forward()
+    benchmark(inverse)
+    ratio = float(benchmark.stats.stats.min) / best_of(forward, 10)
+    benchmark.extra_info.update(inverse_over_forward=ratio)
+    print(f"\n{control}: inverse over forward in a batch of 64: {ratio:.2f}")
+
+
+@pytest.mark.parametrize("seconds", [10, 20, 40, 80])
+def test_cost_is_linear_in_steps(seconds: int, benchmark: BenchmarkFixture) -> None:
+    rig = RIGS["thenar"]
+    drive = Drive([0, seconds / 2, seconds], [0.1, 0.6, 0.1])
+    benchmark(simulate_current, drive, rig)
+    print(f"\n{seconds} s: {float(benchmark.stats.stats.min) / seconds * 1e3:.3f} ms for each simulated second")
+
+
+@pytest.mark.parametrize("per_layer", [5, 10, 20, 40])
+def test_cost_is_linear_in_nodes(per_layer: int, benchmark: BenchmarkFixture) -> None:
+    rig = RIGS["thenar"].with_(**{"skin.elements": [per_layer] * 5})
+    benchmark(simulate_current, CORNERS, rig)
+    lumps = len(network_of(rig).capacity_J_per_K)
+    print(f"\n{lumps} lumps: {float(benchmark.stats.stats.min) / lumps * 1e6:.1f} µs for each lump")
+
+
+def test_one_cue_to_trace(benchmark: BenchmarkFixture) -> None:
+    benchmark(simulate, load_library("six-icons")["cooling-step"], RIGS["thenar"])
