@@ -16,7 +16,8 @@ from thermicon.circuit.trace import Outcome, Trace, write_trace
 from thermicon.circuit.simulate import simulate, simulate_current
 from thermicon.circuit.depths import Depths, Likeness, probe_depths, resembles
 from thermicon.circuit.meshstudy import Mesh, MeshStudy, mesh_study
-from thermicon.circuit.many import TRACKINGS, Batch, simulate_many, usual_tracking
+from thermicon.circuit.nearest import Nearest, nearest_reachable
+from thermicon.circuit.many import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
 from thermicon.circuit.limits import SafetyVerdict, judge_safety
 from thermicon.circuit.summary import Summary, summarise
 from thermicon.circuit.netlist import netlist
@@ -56,9 +57,12 @@ __all__ = [
     "Mesh",
     "MeshStudy",
     "mesh_study",
+    "Nearest",
+    "nearest_reachable",
     "TRACKINGS",
     "Batch",
     "simulate_many",
+    "simulate_stream",
     "usual_tracking",
     "SafetyVerdict",
     "judge_safety",

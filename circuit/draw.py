@@ -72,7 +72,11 @@ def tidy(ax: Axes, time_s: Array, label: str) -> Axes:
     ax.set_xlabel("time (s)")
     ax.set_ylabel(label)
     ax.spines[["top", "right"]].set_visible(False)
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize="small")
+    figure = ax.get_figure()
+    if figure is not None and figure.get_layout_engine() is not None:  # it makes room beside the axes
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize="small")
+    else:
+        ax.legend(loc="best", fontsize="small", framealpha=0.8)
     return ax
 
 

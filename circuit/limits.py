@@ -21,7 +21,7 @@ FAR_FROM_BASELINE_K = 8.0
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One limit that a trace passes: which, how far it got, when, and who set it."""
+    """One limit that a trace passes: how far it gets and when, when it first passes, and who set the limit."""
 
     quantity: str
     severity: str
@@ -29,13 +29,15 @@ class Finding:
     limit: float
     unit: str
     time_s: float
+    since_s: float
     source: str
+    note: str = ""
 
     def __str__(self) -> str:
         side = "above" if self.value > self.limit else "below"
         return (
             f"{self.quantity} reaches {self.value:.4g} {self.unit} at {self.time_s:.2f} s, {side} the {self.severity} "
-            f"limit of {self.limit:g} {self.unit} ({self.source})"
+            f"limit of {self.limit:.4g} {self.unit}{self.note} from {self.since_s:.2f} s on ({self.source})"
         )
 
 
@@ -86,23 +88,37 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     }
     found: list[Finding] = []
     for record in limit_table():
-        values = columns[record.quantity]
-        severity = str(record.get("severity"))
+        values, severity = columns[record.quantity], str(record.get("severity"))
         low, high = record.low, record.high
         if record.quantity.startswith("rate"):
             low = None if high is None else -high
-        ends = [("above", high), ("below", low)]
+        ends = [(1.0, high, ""), (-1.0, low, "")]
         if record.quantity == "skin surface" and severity == "soft":
-            start = float(trace.skin_C[0])
-            ends += [("above", start + FAR_FROM_BASELINE_K), ("below", start - FAR_FROM_BASELINE_K)]
-        for side, limit in ends:
-            if limit is None:
-                continue
-            over = values - limit if side == "above" else limit - values
-            if over.max() > 0:
-                at = int(np.argmax(over))
-                when = float(trace.time_s[int(np.argmax(over > 0))])
+            start, far = float(trace.skin_C[0]), FAR_FROM_BASELINE_K
+            ends += [(side, start + side * far, f", {far:g} K from where it began,") for side in (1.0, -1.0)]
+        for side, limit, note in ends:
+            over = np.zeros(1) if limit is None else side * (values - limit)
+            if limit is not None and over.max() > 0:
+                most, since = int(np.argmax(over)), float(trace.time_s[int(np.argmax(over > 0))])
                 found.append(
-                    Finding(record.quantity, severity, float(values[at]), limit, record.unit, when, record.source)
+                    Finding(
+                        record.quantity,
+                        severity,
+                        float(values[most]),
+                        limit,
+                        record.unit,
+                        float(trace.time_s[most]),
+                        since,
+                        record.source,
+                        note,
+                    )
                 )
-    return SafetyVerdict(tuple(found))
+    return SafetyVerdict(_worst_of_each(found))
+
+
+def _worst_of_each(found: list[Finding]) -> tuple[Finding, ...]:
+    """One finding for each quantity and side, the hard ones first: what passes a hard limit has passed the soft one."""
+    worst: dict[tuple[str, bool], Finding] = {}
+    for finding in sorted(found, key=lambda one: (one.severity != "hard", one.since_s)):
+        worst.setdefault((finding.quantity, finding.value > finding.limit), finding)
+    return tuple(worst.values())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
@@ -53,6 +53,7 @@ class Rig:
     document: str
     probes: tuple[Probe, ...] = ()
     controller: Controller | None = None
+    changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return (
@@ -135,7 +136,9 @@ class Rig:
         """
         document = json.loads(self.document)
         put_all(document, changes)
-        return _build(document, f"rig {self.name}")
+        said = {text.partition("=")[0]: text for text in self.changes}
+        said.update({key: f"{key}={value}" for key, value in changes.items()})
+        return replace(_build(document, f"rig {self.name}"), changes=tuple(said.values()))
 
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig changed by texts of the form `key=value`, as given on the command line."""

@@ -80,7 +80,7 @@ class DriverTable(_Table):
 class ContactTable(_Table):
     """Where display and skin meet."""
 
-    area_cm2: Positive
+    area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
 
 

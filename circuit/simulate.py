@@ -7,7 +7,7 @@ import numpy as np
 from thermicon.circuit.bank import Bank, Index, cut, run_forward
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.inverse import baseline_C, design, target_at
-from thermicon.circuit.module import Peltier
+from thermicon.circuit.module import ZERO_C_IN_K, Peltier
 from thermicon.circuit.network import PROBES, network_of
 from thermicon.circuit.probes import between, divided, joined, readings_of, sensed
 from thermicon.circuit.rig import Rig
@@ -18,6 +18,8 @@ from thermicon.circuit.trace import Outcome, Trace
 from thermicon.icons import Icon
 
 MOST_ROWS = 20_000_000
+HOTTEST_C = 1000.0
+"""Above this a run is not of skin and solder any more, but of a wrong number."""
 
 
 def rows_until(end_s: float, rate_Hz: float) -> Array:
@@ -109,9 +111,15 @@ def _run(
     recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
     probes, others = recorded[: len(PROBES), ::parts], recorded[len(PROBES) :]
     listed = 0 if own is None else len(own[0])
-    finite = np.isfinite(probes).all(axis=0)
-    if not finite.all():
-        raise RigError(f"rig {rig.name}: the run leaves all bounds at {rows[int(np.argmin(finite))]:g} s")
+    temperatures = probes[: PROBES.index("heat_flow_skin_W_per_m2")]
+    possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
+    if not possible.all():
+        at = int(np.argmin(possible))
+        where = PROBES[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
+        raise RigError(
+            f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
+            f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
+        )
     current = drive.at(rows)
     values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
     voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
@@ -124,7 +132,8 @@ def _run(
         driver_limits_A=limits,
         control=control,
         outcome=outcome,
-        warnings=(*rig.warnings, *_over(rig, rows, current, voltage)),
+        warnings=rig.warnings,
+        beyond=_beyond(rig, rows, current, voltage) if outcome is None else (),
         time_s=rows,
         current_A=current,
         voltage_V=voltage,
@@ -139,20 +148,21 @@ def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
     return module.seebeck_V_per_K * (hot - cold) + current * module.resistance_ohm
 
 
-def _over(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
+def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
     """Sentences for a drive that asks more of the driver than it has."""
     driver, found = rig.driver, []
-    outside = (current > driver.current_max_A + 1e-9) | (current < driver.current_min_A - 1e-9)
-    if outside.any():
-        at = int(np.argmax(outside))
+    asked = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    if asked.max() > 1e-9:
+        most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
         found.append(
-            f"the drive asks for {current[at]:.3g} A at {rows[at]:.2f} s; this driver gives "
-            f"{driver.current_min_A:g} … {driver.current_max_A:g} A"
+            f"the drive asks for {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+            f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
-    beyond = np.abs(voltage) > driver.voltage_limit_V + 1e-6
-    if beyond.any():
-        at = int(np.argmax(beyond))
+    needed = np.abs(voltage) - driver.voltage_limit_V
+    if needed.max() > 1e-6:
+        most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
         found.append(
-            f"the drive needs {voltage[at]:.3g} V at {rows[at]:.2f} s; this driver gives {driver.voltage_limit_V:g} V"
+            f"the drive needs {voltage[most]:.3g} V at {rows[most]:.2f} s; this driver gives at most "
+            f"{driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
         )
     return tuple(found)

@@ -78,12 +78,15 @@ def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """
     network = network_of(rig)
     probe = "skin_C" if control == "skin" else "display_C"
+    what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
     current = holding_current_A(network, control, level_C)
-    state = steady_state(network, current)
+    try:
+        state = steady_state(network, current)
+    except ArithmeticError as problem:
+        raise RigError(f"{what}: {problem}") from None
     reached = network.read(state, probe)
     driver = rig.driver
-    what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
-    if abs(reached - level_C) > 1e-6:
+    if not abs(reached - level_C) <= 1e-6:
         raise RigError(f"{what}: the module cools it to {reached:.1f} °C at most; use a warmer baseline")
     if not driver.current_min_A - 1e-12 <= current <= driver.current_max_A + 1e-12:
         raise RigError(

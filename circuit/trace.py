@@ -68,7 +68,8 @@ class Trace:
     """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
 
     `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
-    `probes` has name and temperature of every probe of the rig, in the order of its file.
+    `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` is about the rig,
+    `beyond` about what the drive asks of the driver that it cannot give.
     """
 
     icon: str | None
@@ -79,6 +80,7 @@ class Trace:
     control: str
     outcome: Outcome | None
     warnings: tuple[str, ...]
+    beyond: tuple[str, ...]
     time_s: Array
     current_A: Array
     voltage_V: Array
@@ -101,6 +103,7 @@ class Trace:
 
     def __repr__(self) -> str:
         said = "" if self.outcome is None or self.outcome.reached else ", target missed"
+        said += ", beyond the driver" if self.beyond else ""
         return (
             f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
             f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, "
@@ -111,6 +114,18 @@ class Trace:
         from thermicon.circuit.draw import svg_of
 
         return svg_of(self)
+
+    @property
+    def reachable(self) -> bool:
+        """Whether the rig can play it: the target was reached, or the given current stays within the driver."""
+        return not self.beyond if self.outcome is None else self.outcome.reached
+
+    @property
+    def reason(self) -> str | None:
+        """Why the rig cannot play it, in one sentence; None where it can."""
+        if self.outcome is not None:
+            return self.outcome.reason
+        return "; ".join(self.beyond) or None
 
     def probe(self, name: str) -> Array:
         """Temperature (rows,) in °C that a probe of the rig reads; raises KeyError with the probes there are."""

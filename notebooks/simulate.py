@@ -74,7 +74,7 @@ def _check(output: Path | None, pictures: Sequence[Path]) -> None:
 
 def _finish(traces: Sequence[Trace], rig: Rig, output: Path | None) -> None:
     for trace in traces:
-        for warning in (*trace.warnings, *unsafe(trace)):
+        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
             if warning not in rig.warnings:  # those were told when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     if output is None:

@@ -59,9 +59,20 @@ def test_a_bad_drive_file_says_where(tmp_path: Path, text: str, words: str) -> N
 
 def test_a_drive_past_the_driver_only_warns() -> None:
     trace = simulate_current(Drive([0, 1, 2, 3], [0, 0, 3, 3]), Rig.load("thenar"))
-    assert trace.warnings[0].startswith("the drive asks for 1.53 A at 1.51 s; this driver gives -1.5 … 1.5 A")
+    asks, needs = trace.beyond
+    assert asks == "the drive asks for 3 A at 2.00 s; this driver gives -1.5 … 1.5 A (passed from 1.51 s)"
+    assert needs.startswith("the drive needs 20.")
+    assert needs.endswith("this driver gives at most 15 V (passed from 1.77 s)")
+    assert not trace.reachable
+    assert trace.reason == f"{asks}; {needs}"
     assert trace.current_A.max() == 3.0
-    assert "the drive needs 15" in trace.warnings[1]
+
+
+def test_a_run_that_is_not_physical_is_refused() -> None:
+    with pytest.raises(
+        RigError, match=r"leaves what is physical .* under 1e\+05 A; use less current, or check the rig"
+    ):
+        simulate_current(Drive([0, 1, 2], [0, 1e5, 1e5], held=True), Rig.load("thenar"))
 
 
 def test_a_first_current_without_a_steady_state_is_refused() -> None:

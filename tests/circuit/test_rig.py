@@ -74,7 +74,7 @@ def test_settings_from_the_command_line_are_toml_values() -> None:
             r"skin\.layer\.0\.thick_mm: unknown key; did you mean skin\.layer\.0\.thickness_mm",
         ),
         ("skin.layer.2.thickness_mm", -1.2, r"skin\.layer\.2\.thickness_mm = -1\.2 mm: must be greater than 0 mm"),
-        ("contact.area_cm2", 0, r"contact\.area_cm2 = 0 cm²: must be greater than 0 cm²"),
+        ("contact.area_cm2", 0, r"contact\.area_cm2 = 0 cm²: must be at least 0\.01 cm²"),
         ("contact.area_cm2", "big", r"contact\.area_cm2 = 'big': must be a number in cm²"),
         ("contact.resistance_m2K_per_W", 2.0, r"= 2\.0 m²·K/W: must be at most 1 m²·K/W"),
         ("heat_sink.temperature_C", float("nan"), r"heat_sink\.temperature_C = nan: must be a finite number in °C"),
@@ -112,7 +112,7 @@ def test_all_faults_of_a_file_are_told_at_once(tmp_path: Path) -> None:
     lines = str(caught.value).splitlines()
     assert [line.removeprefix(f"{path}: ") for line in lines] == [
         "driver.voltage_limit_V is missing; add it, in V",
-        "contact.area_cm2 = -9.0 cm²: must be greater than 0 cm²",
+        "contact.area_cm2 = -9.0 cm²: must be at least 0.01 cm²",
         "skin.rest_C is missing; add it, in °C",
         "skin.rest: unknown key; did you mean skin.rest_C?",
     ]
@@ -151,3 +151,10 @@ def test_an_unusual_rig_warns() -> None:
 def test_keys_are_those_that_the_shipped_rig_uses() -> None:
     assert "skin.layer.0.thickness_mm" in rig_keys()
     assert "driver.current_min_A" in rig_keys()
+
+
+def test_a_changed_rig_knows_what_was_changed() -> None:
+    assert THENAR.changes == ()
+    once = THENAR.with_(**{"contact.area_cm2": 4, "driver.current_limit_A": 1.0})
+    assert once.changes == ("contact.area_cm2=4", "driver.current_limit_A=1.0")
+    assert once.with_(**{"contact.area_cm2": 5}).changes == ("contact.area_cm2=5", "driver.current_limit_A=1.0")

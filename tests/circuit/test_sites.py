@@ -105,7 +105,7 @@ def test_receptor_depths_in_both_conventions() -> None:
             r"skin\.warm_receptor_mm = 19\.4 mm below the stratum corneum: must lie inside the skin, which is 19\.3 mm",
         ),
         (THENAR, {"skin.warm_receptor_mm": 19.47}, r"warm_receptor_mm = 19\.47 mm: must lie inside the skin, which is"),
-        (THENAR, {"contact.area_cm2": 0.0}, r"contact\.area_cm2 = 0\.0 cm²: must be greater than 0 cm²"),
+        (THENAR, {"contact.area_cm2": 0.0}, r"contact\.area_cm2 = 0\.0 cm²: must be at least 0\.01 cm²"),
         (
             THENAR,
             {"driver.current_min_A": 2.0, "driver.current_limit_A": 1.0},

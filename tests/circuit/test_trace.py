@@ -123,9 +123,19 @@ def test_safety_is_judged_from_the_simulated_skin(trace: Trace) -> None:
     verdict = judge_safety(cold)
     assert (verdict.colour, verdict.safe, verdict.reason) == ("amber", True, None)
     assert "skin surface reaches 20 °C at" in str(verdict.findings[0])
-    burn = simulate_current(Drive([0, 30], [-0.2, -0.2]), THENAR)
-    verdict = judge_safety(burn)
-    assert (verdict.colour, verdict.safe) == ("red", False)
+    first, second = simulate_current(Drive([0, 30], [-0.2, -0.2]), THENAR), judge_safety(simulate(STEP, THENAR))
+    verdict = judge_safety(first)
+    assert (verdict.colour, verdict.safe, second.safe) == ("red", False, True)
     assert verdict.reason is not None
     assert verdict.reason.startswith("skin surface reaches 58")
-    assert "above the hard limit of 42 °C" in verdict.reason
+    assert "at 0.00 s, above the hard limit of 42 °C from 0.00 s on" in verdict.reason
+    assert len({finding.quantity for finding in verdict.findings}) == len(verdict.findings), "the worst of each"
+
+
+def test_a_finding_tells_the_extreme_and_the_crossing_apart() -> None:
+    text = "cue 1\nset s { control display }\nicon far { cool by 10 °C at 1 °C/s; hold for 4 s }"
+    far = simulate(parse(text).icons[0], THENAR)
+    (finding,) = (finding for finding in judge_safety(far).findings if finding.quantity == "skin surface")
+    assert finding.since_s < finding.time_s
+    assert finding.limit == pytest.approx(24.04, abs=0.01)
+    assert "below the soft limit of 24.04 °C, 8 K from where it began, from" in str(finding)

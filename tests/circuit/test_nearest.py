@@ -1,0 +1,55 @@
+"""The nearest cue that a rig reaches."""
+
+import pytest
+
+from thermicon.circuit import Rig, nearest_reachable, simulate
+from thermicon.circuit.nearest import changed
+from thermicon.icons import load_library, parse
+
+THENAR = Rig.load("thenar")
+WEAK = THENAR.with_(**{"driver.current_limit_A": 1.0})
+STEP = load_library("cooling-step-skin").icons[0]
+
+
+def test_a_reached_cue_has_none() -> None:
+    assert nearest_reachable(STEP, THENAR) is None
+
+
+def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
+    nearest = nearest_reachable(STEP, WEAK)
+    assert nearest is not None
+    assert simulate(nearest.icon, WEAK).reachable
+    assert nearest.slower == 1.0
+    assert not simulate(changed(STEP, 32.0, smaller=nearest.smaller * 1.03), WEAK).reachable
+    assert nearest.sentence == "it is reached with its changes 0.8 times as large, in the same time"
+
+
+def test_a_cue_with_a_steep_corner_is_reached_slower() -> None:
+    text = "cue 1\nset s { control display }\nicon dip { cool by 6 °C at 6.5 °C/s; hold for 2 s; return over 4 s }"
+    icon = parse(text).icons[0]
+    nearest = nearest_reachable(icon, THENAR)
+    assert nearest is not None
+    assert simulate(nearest.icon, THENAR).reachable
+    assert max(nearest.slower, 1 / nearest.smaller) < 1.5
+    assert "times as" in nearest.sentence
+
+
+def test_changes_keep_their_durations_and_levels() -> None:
+    text = "cue 1\nicon x { repeat 2 { cool to 28 °C at 2 °C/s; hold for 1 s; return over 3 s } }"
+    icon = parse(text).icons[0]
+    smaller = changed(icon, 32.0, smaller=0.5).lower(32.0)
+    assert smaller.time_s == icon.lower(32.0).time_s
+    assert smaller.value == pytest.approx([32, 30, 30, 32, 30, 30, 32])
+    slower = changed(icon, 32.0, slower=2.0).lower(32.0)
+    assert slower.time_s == pytest.approx([0, 4, 5, 11, 15, 16, 22])
+    assert slower.value == icon.lower(32.0).value
+
+
+def test_nothing_is_reached_where_the_baseline_is_not() -> None:
+    assert nearest_reachable(STEP, THENAR.with_(**{"driver.current_limit_A": 0.01})) is None
+
+
+def test_a_current_is_not_changed() -> None:
+    icon = parse("cue 1\nset s { control current }\nicon pump { to 3 A at 1 A/s; return at 1 A/s }").icons[0]
+    assert not simulate(icon, THENAR).reachable
+    assert nearest_reachable(icon, THENAR) is None
