@@ -11,6 +11,7 @@ from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.rig import Rig, rig_names
 from thermicon.circuit.drive import Drive, DriveError, read_drive
 from thermicon.circuit.steady import hold, steady_state
+from thermicon.circuit.inverse import Design, design, design_many
 from thermicon.circuit.static import check_static
 from thermicon.circuit.trace import Outcome, Trace, write_trace
 from thermicon.circuit.simulate import simulate, simulate_current
@@ -44,6 +45,9 @@ __all__ = [
     "read_drive",
     "hold",
     "steady_state",
+    "Design",
+    "design",
+    "design_many",
     "check_static",
     "Outcome",
     "Trace",

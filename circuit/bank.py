@@ -6,11 +6,13 @@ import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.network import PROBES, Network
+from thermicon.circuit.network import PROBES, Network, network_of
+from thermicon.circuit.rig import Rig
 from thermicon.circuit.skin import Array
 
 Index = npt.NDArray[np.int64]
@@ -61,11 +63,18 @@ class Bank:
         return rows
 
 
+@lru_cache(maxsize=64)
+def bank_of(rig: Rig) -> Bank:
+    """A bank of one rig."""
+    return Bank.of([network_of(rig)])
+
+
 @dataclass(frozen=True, slots=True)
 class Intervals:
     """Time cut at every instant where a current changes or a row is written.
 
-    `edges_s` (e,); `row_of` (e,): the row written at an edge, or −1; `start_A`, `end_A` (cues, e − 1).
+    `edges_s` (e,); `row_of` (e,): the row written at an edge, or −1; `start_A`, `end_A` (e − 1, cues), so that the
+    lanes of a block lie side by side.
     """
 
     edges_s: Array
@@ -88,7 +97,7 @@ def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Interva
     else:
         at = np.array([np.interp(edges, times_s, row) for row in currents_A])
         start, end_ = at[:, :-1], at[:, 1:]
-    return Intervals(edges, row_of, np.ascontiguousarray(start), np.ascontiguousarray(end_))
+    return Intervals(edges, row_of, np.ascontiguousarray(start.T), np.ascontiguousarray(end_.T))
 
 
 def run_forward(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, Index, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.bank import Index, bank_of, cut, run_follow, run_forward, run_regulate
 from thermicon.circuit.drive import Drive
-from thermicon.circuit.network import network_of
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.skin import Array
 from thermicon.circuit.steady import hold
@@ -63,7 +63,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
         return Design(Drive(times, values), current, state, None)
     ends, base = periods(rig, end_s), baseline_C(icon, rig)
     target = target_at(icon, base, ends)
-    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
     period = 1.0 / rig.driver.update_Hz
     currents, reached, why = run_follow(
         bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
@@ -73,15 +73,44 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     return plan if rig.controller is None else close_loop(rig, plan, control, base, target)
 
 
+def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
+    """Return the designs of many cues on one rig, each with its verdict, found side by side on all cores.
+
+    As `design`, but cues share `end_s`. Cues that prescribe current, and rigs with a loop of their own, go one by one.
+
+    >>> from thermicon.icons import load_library
+    >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
+    [True, True, True, True, True, True]
+    """
+    together = [icon for icon in icons if icon.frame.control != "current" and rig.controller is None]
+    found: dict[int, Design] = {}
+    bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
+    for control in ("skin", "display"):
+        cues = [icon for icon in together if icon.frame.control == control]
+        if not cues:
+            continue
+        bases = [baseline_C(icon, rig) for icon in cues]
+        rest = {base: hold(rig, control, base) for base in set(bases)}
+        targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
+        lanes = np.arange(len(cues), dtype=np.int64)
+        states = bank.states([rest[base][1] for base in bases])
+        results = run_follow(bank, np.zeros_like(lanes), lanes, period, targets, control == "skin", states)
+        for icon, base, target, currents, reached, why in zip(cues, bases, targets, *results, strict=True):
+            outcome = judge(target, reached, period, _limits(why, period))
+            drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
+            found[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
+    return tuple(found.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
+
+
 def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array) -> Design:
     """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
 
     The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
     """
-    network, pid = network_of(rig), rig.controller
+    pid = rig.controller
     assert pid is not None
-    bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
     period = 1.0 / rig.driver.update_Hz
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
     gains = np.array([[pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K]])
@@ -96,7 +125,7 @@ def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array)
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:
     """A probe at the beginning of every driver period of a design, and at its end."""
-    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
     intervals = cut(plan.drive.time_s, plan.drive.time_s, plan.drive.current_A[np.newaxis], held=True)
     return np.asarray(run_forward(bank, one, one, intervals, bank.states([plan.start_C]), (probe,))[0, 0])
 

@@ -150,7 +150,7 @@ def forward(
 ):
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
-    `start_A`, `end_A` (cue, interval): current at both ends of an interval; `row_of` (interval + 1,): row to write at
+    `start_A`, `end_A` (interval, cue): current at both ends of an interval; `row_of` (interval + 1,): row to write at
     an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row).
     """
     most = cap.shape[1]
@@ -160,7 +160,7 @@ def forward(
         n, p = count[r], plates[r]
         load(state[lane], p, x)
         settle(state[lane, 0], p, sink)
-        factored, since, before, first = -1.0, 0.0, start_A[c, 0], 0.0
+        factored, since, before, first = -1.0, 0.0, start_A[0, c], 0.0
         for k in range(edges.size):
             row = row_of[k]
             if row >= 0:
@@ -170,7 +170,7 @@ def forward(
             if k == edges.size - 1:
                 break
             length = edges[k + 1] - edges[k]
-            begin, last = start_A[c, k], end_A[c, k]
+            begin, last = start_A[k, c], end_A[k, c]
             if abs(begin - before) > JUMP_A:
                 since = 0.0
             done = 0.0

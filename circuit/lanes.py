@@ -149,13 +149,16 @@ def forward(
     p, sink = np.empty((bank_plates.shape[1], LANES)), np.zeros((5, LANES))
     probes = places.shape[1]
     at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
+    same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
     current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     for b in range(blocks.shape[0]):
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink)
         for q in range(probes):
+            same[q] = True
             for lane in range(LANES):
                 at[q, lane] = places[rig_of[block[lane]], q]
+                same[q] &= at[q, lane] == at[q, 0]
                 for j in range(3):  # a probe near the deep node has no third state: its weight is 0, its place any
                     weight[q, j, lane] = weights[rig_of[block[lane]], q, j]
         factored, since = -1.0, 0.0
@@ -163,19 +166,30 @@ def forward(
             row = row_of[k]
             if row >= 0:
                 for q in range(probes):
+                    i = at[q, 0]
+                    if same[q]:
+                        for lane in range(LANES):
+                            value[lane] = (
+                                weight[q, 0, lane] * x[i, lane]
+                                + weight[q, 1, lane] * x[i + 1, lane]
+                                + weight[q, 2, lane] * x[i + 2, lane]
+                            )
+                    else:
+                        for lane in range(LANES):
+                            i = at[q, lane]
+                            value[lane] = (
+                                weight[q, 0, lane] * x[i, lane]
+                                + weight[q, 1, lane] * x[i + 1, lane]
+                                + weight[q, 2, lane] * x[i + 2, lane]
+                            )
                     for lane in range(LANES):
-                        i = at[q, lane]
-                        out[q, block[lane], row] = (
-                            weight[q, 0, lane] * x[i, lane]
-                            + weight[q, 1, lane] * x[i + 1, lane]
-                            + weight[q, 2, lane] * x[i + 2, lane]
-                        )
+                        out[q, block[lane], row] = value[lane]
             if k == edges.size - 1:
                 break
             if k > 0:
                 for lane in range(LANES):
                     c = cue_of[block[lane]]
-                    if abs(start_A[c, k] - end_A[c, k - 1]) > JUMP_A:
+                    if abs(start_A[k, c] - end_A[k - 1, c]) > JUMP_A:
                         since = 0.0
             length, done = edges[k + 1] - edges[k], 0.0
             while done < length - 1e-12:
@@ -184,7 +198,7 @@ def forward(
                 early, late = done / length, (done + step) / length
                 for lane in range(LANES):
                     c = cue_of[block[lane]]
-                    first, rise = start_A[c, k], end_A[c, k] - start_A[c, k]
+                    first, rise = start_A[k, c], end_A[k, c] - start_A[k, c]
                     a, e = first + rise * early, first + rise * late
                     current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
                 if abs(step - factored) > 1e-12:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import cast
 
 from thermicon.circuit.inverse import baseline_C
 from thermicon.circuit.rig import Rig
@@ -68,7 +69,7 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
 
     def one(statement: Statement) -> Statement:
         if isinstance(statement, Repeat):
-            return replace(statement, body=tuple(one(part) for part in statement.body))
+            return replace(statement, body=tuple(one(cast(Statement, part)) for part in statement.body))
         if isinstance(statement, Change):
             to = None if statement.to_C is None else base_C + smaller * (statement.to_C - base_C)
             by = None if statement.by_K is None else smaller * statement.by_K

@@ -34,7 +34,7 @@ HOT, COLD, SKIN = 0, 1, 2
 """Places of hot plate, cold plate and first skin lump in the state vector."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Network:
     """A rig as lumps; n skin lumps, arrays read-only.
 

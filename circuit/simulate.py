@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, Index, cut, run_forward
+from thermicon.circuit.bank import bank_of, Index, cut, run_forward
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.inverse import baseline_C, design, target_at
 from thermicon.circuit.module import ZERO_C_IN_K, Peltier
@@ -103,7 +103,7 @@ def _run(
     rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
     outcome: Outcome | None, readings: tuple[Index, Array] | None,
 ) -> tuple[Trace, Array]:  # fmt: skip
-    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
     parts = between(rows, rig)
     fine = divided(rows, parts)
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from thermicon.circuit.module import ZERO_C_IN_K
@@ -12,6 +14,7 @@ from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.skin import Array
 
 
+@lru_cache(maxsize=512)
 def _column(network: Network) -> tuple[Array, Array]:
     """Return (z, e) with lump[i] = z[i] + e[i] · (the state above it) in steady state."""
     g, perfusion, deep = network.conductance_W_per_K, network.perfusion_W_per_K, network.deep_C

@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many
-from thermicon.circuit.inverse import design
+from thermicon.circuit import (
+    Drive,
+    Rig,
+    RigError,
+    design,
+    design_many,
+    simulate,
+    simulate_current,
+    simulate_many,
+    simulate_stream,
+)
 from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")
@@ -84,3 +93,25 @@ def test_an_unknown_tracking_and_mixed_drivers_are_refused() -> None:
         simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0, tracking="replays")
     with pytest.raises(RigError, match=r"rigs of one batch must share driver\.update_Hz"):
         simulate_many(SIX, [THENAR.with_(**{"driver.update_Hz": 50})], nominal=THENAR, end_s=10.0)
+
+
+def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
+    weak = THENAR.with_(**{"driver.current_limit_A": 1.0})
+    cues = [*load_library("six-icons"), *SKIN, *load_library("wave-shapes")]
+    for icon, plan in zip(cues, design_many(cues, weak, 12.0), strict=True):
+        alone = design(icon, weak, 12.0)
+        assert np.abs(plan.drive.current_A - alone.drive.current_A).max() < 1e-6, icon.name
+        assert plan.outcome is not None
+        assert alone.outcome is not None
+        assert plan.outcome.reached == alone.outcome.reached
+        assert plan.outcome.reason == alone.outcome.reason
+        assert plan.rest_A == alone.rest_A
+
+
+def test_a_stream_is_the_batch_in_parts() -> None:
+    six = tuple(load_library("six-icons"))
+    whole = simulate_many(six, [THENAR], nominal=THENAR, end_s=9.0, tracking="ideal")
+    parts = list(simulate_stream(iter(six), THENAR, end_s=9.0, at_once=4))
+    assert [len(cues) for cues, _ in parts] == [4, 2]
+    joined = np.concatenate([batch.values for _, batch in parts], axis=2)
+    assert np.abs(joined - whole.values).max() < 1e-4
