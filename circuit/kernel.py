@@ -109,11 +109,11 @@ def advance(n, current, squared, step, p, g0, x, sink, f, y, first):
     above, below = 0.0, 0.0
     for j in range(middle):
         i = n - 1 - j
-        above = f[KEEP, j] * x[j + 2] + f[LINK, j] * above
-        below = f[KEEP, i] * x[i + 2] + f[LINK, i] * below
+        above = f[LINK, j] * above + f[KEEP, j] * x[j + 2]
+        below = f[LINK, i] * below + f[KEEP, i] * x[i + 2]
         y[j], y[i] = above, below
     if n > 2 * middle:
-        below = f[KEEP, middle] * x[middle + 2] + f[LINK, middle] * below
+        below = f[LINK, middle] * below + f[KEEP, middle] * x[middle + 2]
     above = above + f[SLOPE, middle - 1] * cold if middle > 0 else cold
     above = below = (below + f[BACK, middle] * above) * f[LINK, n]
     moved = 2.0 * above - x[middle + 2]

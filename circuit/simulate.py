@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermicon.circuit.bank import bank_of, Index, cut, run_forward
+from thermicon.circuit.bank import Index, bank_of, cut, run_forward
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.inverse import baseline_C, design, target_at
 from thermicon.circuit.module import ZERO_C_IN_K, Peltier
