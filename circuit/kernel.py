@@ -29,42 +29,48 @@ JUMP_A = 0.02
 
 
 @compiled
-def factor(n, half, cap, g, perf, p, f):
-    """Factor the skin for implicit steps of length `half`, into f (5, n + 1); temperatures are above the deep node's.
+def factor(n, half, cap, g, perf, p, upper, lower, whole):
+    """Factor the skin for implicit steps of length `half`; temperatures are above the deep node's.
 
-    The upper half is eliminated downwards and the lower half upwards: two short chains instead of a long one. A lump
-    is KEEP of itself, LINK of the neighbour before it in its chain, BACK of the one after it and, in the upper half,
-    SLOPE of the cold plate. WEIGHT gives the first lump from all lumps. Column n holds the cold plate's share in the
-    first lump, the factor where the halves meet, and hot plate, cold plate and heat sink over the step.
+    The upper half (n // 2 lumps) is eliminated downwards and the lower half upwards: two short chains instead of a
+    long one. The lower half stands in reverse, so that both run with one index. A lump is KEEP of itself, LINK of the
+    neighbour before it in its chain, BACK of the one after it and, in the upper half, SLOPE of the cold plate; WEIGHT
+    gives the first lump from all. `whole` gets what is not of one lump: the cold plate's share in the first lump, the
+    factor where the halves meet, and hot plate, cold plate and heat sink over the step.
     """
     middle = n // 2
     share = 0.0
     for i in range(n - 1, -1, -1):
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i + 1] * share)
         share = g[i] * inverse
-        f[KEEP, i], f[LINK, i], f[BACK, i] = cap[i] / half * inverse, g[i + 1] * inverse, share
+        row, j = (upper, i) if i < middle else (lower, n - 1 - i)
+        row[KEEP, j], row[LINK, j], row[BACK, j] = cap[i] / half * inverse, g[i + 1] * inverse, share
     product = 1.0
     for i in range(n):
-        f[WEIGHT, i] = product * f[KEEP, i]
-        product *= f[LINK, i]
-    f[KEEP, n] = share
+        row, j = (upper, i) if i < middle else (lower, n - 1 - i)
+        row[WEIGHT, j] = product * row[KEEP, j]
+        product *= row[LINK, j]
+    whole[0] = share
     share, product = 0.0, 1.0
     for i in range(middle):
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i] * share)
         share = g[i + 1] * inverse
         product *= g[i] * inverse
-        f[KEEP, i], f[LINK, i], f[BACK, i], f[SLOPE, i] = cap[i] / half * inverse, g[i] * inverse, share, product
-    f[LINK, n] = 1.0 / (1.0 - f[BACK, middle] * share)
-    f[BACK, n], f[SLOPE, n] = p[3] / half, p[4] / half
-    f[WEIGHT, n] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
+        upper[KEEP, i], upper[LINK, i] = cap[i] / half * inverse, g[i] * inverse
+        upper[BACK, i], upper[SLOPE, i] = share, product
+    whole[1] = 1.0 / (1.0 - lower[BACK, n - middle - 1] * share)
+    whole[2], whole[3] = p[3] / half, p[4] / half
+    whole[4] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True, fastmath={"contract", "reassoc"})
-def weighed(n, f, x):
+def weighed(n, upper, lower, x):
     """Weighted sum of the lumps: the part of the first lump, after an implicit step, that the cold plate has not."""
     total = 0.0
-    for i in range(n):
-        total += f[WEIGHT, i] * x[i + 2]
+    for j in range(n // 2):
+        total += upper[WEIGHT, j] * x[j + 2]
+    for j in range(n - n // 2):
+        total += lower[WEIGHT, j] * x[n // 2 + j + 2]
     return total
 
 
@@ -86,19 +92,19 @@ def regulate_sink(step, p, sink):
 
 
 @compiled
-def advance(n, current, squared, step, p, g0, x, sink, f, y, first):
-    """One trapezoidal step in place, with the step's mean current and mean squared current; f is for step/2.
+def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, whole, y, z, first):
+    """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
 
-    `x` (n + 2,) is hot plate, cold plate and lumps above the deep temperature p[7]; `y` (n,) is scratch. `first` is
-    `weighed` of the lumps; what it is for the next step comes back, summed on the way.
+    `x` is the state as `load` lays it out, `top` and `low` its lumps; `y`, `z` are scratch. `first` is `weighed` of the
+    lumps; what it is for the next step comes back, summed on the way.
     """
-    middle, share = n // 2, f[WEIGHT, n]  # the heat sink's share in its own implicit step: 0 where it is ideal
+    middle, share = n // 2, whole[4]  # the heat sink's share in its own implicit step: 0 where it is ideal
     if share > 0.0:
         regulate_sink(step, p, sink)
     hot0, cold0, kelvin = x[0], x[1], ZERO_C_IN_K + p[7]
     pump, joule = p[0] * current, 0.5 * p[1] * squared
-    hot_store, cold_store, out = f[BACK, n], f[SLOPE, n], p[6] * (1.0 - share)
-    a11, a22 = hot_store + out + p[2] - pump, cold_store + p[2] + pump + g0 * (1.0 - f[KEEP, n])
+    hot_store, cold_store, out = whole[2], whole[3], p[6] * (1.0 - share)
+    a11, a22 = hot_store + out + p[2] - pump, cold_store + p[2] + pump + g0 * (1.0 - whole[0])
     b1 = hot_store * hot0 + out * (sink[0] - p[7]) + share * sink[2] + pump * kelvin + joule
     b2 = cold_store * cold0 - pump * kelvin + joule + g0 * first
     inverse = 1.0 / (a11 * a22 - p[2] * p[2])
@@ -108,40 +114,43 @@ def advance(n, current, squared, step, p, g0, x, sink, f, y, first):
         sink[0] += 2.0 * share * (sink[2] / p[6] + hot + p[7] - sink[0])
     above, below = 0.0, 0.0
     for j in range(middle):
-        i = n - 1 - j
-        above = f[LINK, j] * above + f[KEEP, j] * x[j + 2]
-        below = f[LINK, i] * below + f[KEEP, i] * x[i + 2]
-        y[j], y[i] = above, below
+        above = upper[LINK, j] * above + upper[KEEP, j] * top[j]
+        below = lower[LINK, j] * below + lower[KEEP, j] * low[j]
+        y[j], z[j] = above, below
     if n > 2 * middle:
-        below = f[LINK, middle] * below + f[KEEP, middle] * x[middle + 2]
-    above = above + f[SLOPE, middle - 1] * cold if middle > 0 else cold
-    above = below = (below + f[BACK, middle] * above) * f[LINK, n]
-    moved = 2.0 * above - x[middle + 2]
-    x[middle + 2] = moved
-    upper, lower = 0.0, f[WEIGHT, middle] * moved
-    for j in range(1, n - middle):
-        i = middle + j
-        below = y[i] + f[BACK, i] * below
-        moved = 2.0 * below - x[i + 2]
-        x[i + 2] = moved
-        lower += f[WEIGHT, i] * moved
-        i = middle - j
-        above = y[i] + f[SLOPE, i] * cold + f[BACK, i] * above
-        moved = 2.0 * above - x[i + 2]
-        x[i + 2] = moved
-        upper += f[WEIGHT, i] * moved
-    if middle > 0 and n == 2 * middle:
-        above = y[0] + f[SLOPE, 0] * cold + f[BACK, 0] * above
-        x[2] = 2.0 * above - x[2]
-        upper += f[WEIGHT, 0] * x[2]
-    return upper + lower
+        below = lower[LINK, middle] * below + lower[KEEP, middle] * low[middle]
+    above = above + upper[SLOPE, middle - 1] * cold if middle > 0 else cold
+    last = n - middle - 1  # where the halves meet: the last of the lower half
+    above = below = (below + lower[BACK, last] * above) * whole[1]
+    moved = 2.0 * below - low[last]
+    low[last] = moved
+    sum_top, sum_low, j = 0.0, lower[WEIGHT, last] * moved, last - 1
+    if n == 2 * middle and middle > 0:  # the upper half has one more to go
+        above = y[middle - 1] + upper[SLOPE, middle - 1] * cold + upper[BACK, middle - 1] * above
+        moved = 2.0 * above - top[middle - 1]
+        top[middle - 1] = moved
+        sum_top = upper[WEIGHT, middle - 1] * moved
+    for j in range(last - 1, -1, -1):
+        above = y[j] + upper[SLOPE, j] * cold + upper[BACK, j] * above
+        below = z[j] + lower[BACK, j] * below
+        moved, other = 2.0 * above - top[j], 2.0 * below - low[j]
+        top[j], low[j] = moved, other
+        sum_top += upper[WEIGHT, j] * moved
+        sum_low += lower[WEIGHT, j] * other
+    return sum_top + sum_low
 
 
 @compiled
-def load(state, p, x):
-    """Copy a lane's state (°C) into x, above the deep temperature."""
-    for i in range(state.size):
-        x[i] = state[i] - p[7]
+def place_of(k, n):
+    """Where state k (hot plate, cold plate, lumps from the surface down, deep node) stands in what `load` lays out."""
+    return k if k < 2 + n // 2 or k > n + 1 else n // 2 + n + 3 - k
+
+
+@compiled
+def load(n, state, p, x):
+    """Lay a lane's state (°C) out above the deep temperature: plates, upper half, lower half in reverse, deep node."""
+    for k in range(n + 3):
+        x[place_of(k, n)] = state[k] - p[7]
 
 
 @compiled
@@ -154,19 +163,27 @@ def forward(
     an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row).
     """
     most = cap.shape[1]
-    f, y, x, sink = np.empty((5, most + 1)), np.empty(most), np.empty(most + 3), np.zeros(4)
+    upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
+    probes = places.shape[1]
+    at, offset = np.empty((probes, 3), dtype=np.int64), np.empty(probes)
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
-        load(state[lane], p, x)
+        load(n, state[lane], p, x)
+        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
+        for q in range(probes):
+            offset[q] = (weights[r, q, 0] + weights[r, q, 1] + weights[r, q, 2]) * p[7]
+            for j in range(3):
+                at[q, j] = place_of(places[r, q] + j, n)
         settle(state[lane, 0], p, sink)
         factored, since, before, first = -1.0, 0.0, start_A[0, c], 0.0
         for k in range(edges.size):
             row = row_of[k]
             if row >= 0:
-                for q in range(places.shape[1]):
-                    at, w = places[r, q], weights[r, q]
-                    out[q, lane, row] = w[0] * x[at] + w[1] * x[at + 1] + w[2] * x[at + 2] + (w[0] + w[1] + w[2]) * p[7]
+                for q in range(probes):
+                    w = weights[r, q, 0] * x[at[q, 0]] + weights[r, q, 1] * x[at[q, 1]] + weights[r, q, 2] * x[at[q, 2]]
+                    out[q, lane, row] = w + offset[q]
             if k == edges.size - 1:
                 break
             length = edges[k + 1] - edges[k]
@@ -180,13 +197,13 @@ def forward(
                 if step > longest * (1.0 + 1e-9):
                     step /= math.ceil(step / longest - 1e-9)
                 if abs(step - factored) > 1e-12:
-                    factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
-                    factored, first = step, weighed(n, f, x)
+                    factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
+                    factored, first = step, weighed(n, upper, lower, x)
                 mean, square = begin, begin * begin
                 if begin != last:
                     a, b = begin + (last - begin) * (done / length), begin + (last - begin) * ((done + step) / length)
                     mean, square = 0.5 * (a + b), (a * a + a * b + b * b) / 3.0
-                first = advance(n, mean, square, step, p, g[r, 0], x, sink, f, y, first)
+                first = advance(n, mean, square, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first)
                 done += step
                 since += step
             before = last
@@ -255,31 +272,30 @@ def follow(
     the accurate rule.
     """
     most = cap.shape[1]
-    f, ahead, y, x, sink = (
-        np.empty((5, most + 1)),
-        np.empty((5, most + 1)),
-        np.empty(most),
-        np.empty(most + 3),
-        np.zeros(4),
-    )
+    upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
+    upper_p, lower_p, whole_p = np.empty((5, most)), np.empty((5, most)), np.empty(5)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
         n, p, share = count[r], plates[r], face_share[r]
-        load(state[lane], p, x)
-        factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
-        factor(n, period, cap[r], g[r], perf[r], p, ahead)
-        elim, amperes, first = ahead[KEEP, n], 0.0, weighed(n, f, x)
+        load(n, state[lane], p, x)
+        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
+        factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
+        factor(n, period, cap[r], g[r], perf[r], p, upper_p, lower_p, whole_p)
+        elim, amperes, first = whole_p[0], 0.0, weighed(n, upper, lower, x)
         settle(state[lane, 0], p, sink)
         for k in range(target.shape[1]):
-            z0 = weighed(n, ahead, x) + p[7] * (1.0 - elim)
+            z0 = weighed(n, upper_p, lower_p, x) + p[7] * (1.0 - elim)
             hot, cold = x[0] + p[7], x[1] + p[7]
             amperes, code = wanted(
                 target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[0], amperes, p
             )
             for _ in range(pieces):
-                first = advance(n, amperes, amperes * amperes, step, p, g[r, 0], x, sink, f, y, first)
+                first = advance(
+                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
+                )
             current[lane, k] = amperes
-            reached[lane, k] = (share * x[1] + (1.0 - share) * x[2] if skin_control else x[1]) + p[7]
+            reached[lane, k] = (share * x[1] + (1.0 - share) * x[place_of(2, n)] if skin_control else x[1]) + p[7]
             why[lane, k] = code

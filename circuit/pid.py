@@ -22,19 +22,21 @@ def regulate(
     those of `kernel.follow`. The integral waits while the current is at a limit and the error would push it further.
     """
     most = cap.shape[1]
-    f, y, x, sink = np.empty((5, most + 1)), np.empty(most), np.empty(most + 3), np.zeros(4)
+    upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
-        load(state[lane], p, x)
+        load(n, state[lane], p, x)
+        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
         lag, kp, ki, kd = gains[r, 0], gains[r, 1], gains[r, 2], gains[r, 3]
-        factor(n, 0.5 * step, cap[r], g[r], perf[r], p, f)
+        factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
         settle(state[lane, 0], p, sink)
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
         mean = (1.0 - decay) * lag / step  # of the old display temperature, for one linear within the step
-        felt, before, total, first = x[1] + p[7], x[1] + p[7], 0.0, weighed(n, f, x)
+        felt, before, total, first = x[1] + p[7], x[1] + p[7], 0.0, weighed(n, upper, lower, x)
         for k in range(setpoint.shape[1]):
             error = felt - setpoint[c, k]
             asked = bias[lane] + kp * error + ki * total + kd * (felt - before) / period
@@ -42,7 +44,9 @@ def regulate(
             before = felt
             for _ in range(pieces):
                 display = x[1] + p[7]
-                first = advance(n, amperes, amperes * amperes, step, p, g[r, 0], x, sink, f, y, first)
+                first = advance(
+                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
+                )
                 felt = decay * felt + (mean - decay) * display + (1.0 - mean) * (x[1] + p[7])
             if code == 0 or (asked - amperes) * error < 0.0:
                 total += error * period
