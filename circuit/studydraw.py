@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.draw import COOL, DISPLAY, LIMIT, SKIN, TARGET, WARM, new_axes, tidy
+from thermicon.circuit.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,8 +44,8 @@ def plot_controlled(trace: Trace, ax: Axes | None = None) -> Axes:
     """Draw target, display and skin of the paper's cue, and say what the controlled one missed."""
     ax = new_axes(ax)
     ax.plot(trace.time_s, trace.target_C, color=TARGET, lw=5, alpha=0.45, label=f"target ({trace.control})")
-    ax.plot(trace.time_s, trace.display_C, color=WARM, lw=1.6, ls=(0, (5, 1.5)), label="display")
-    ax.plot(trace.time_s, trace.skin_C, color=COOL, lw=1.8, label="skin surface")
+    ax.plot(trace.time_s, trace.display_C, color=DISPLAY, lw=1.5, ls=(0, (5, 1.5)), label="display")
+    ax.plot(trace.time_s, trace.skin_C, color=SKIN, lw=1.8, label="skin surface")
     missed = "" if trace.outcome is None else f"; {trace.outcome.reason or 'reached'}"
     ax.set_title(fill(f"{trace.control} control{missed}", 76), fontsize="small", loc="left")
     return tidy(ax, trace.time_s, "temperature (°C)")
@@ -56,14 +56,14 @@ def plot_thermistors(found: Thermistors, ax: Axes | None = None) -> Axes:
     ax = new_axes(ax)
     styles = (
         ("1", DISPLAY, "--", "#1 display"),
-        ("2", COOL, "-", "#2 interface"),
-        ("3", WARM, (0, (5, 1.5)), "#3 insulated skin"),
+        ("2", SKIN, "-", "#2 interface"),
+        ("3", PROBE, (0, (5, 1.5)), "#3 insulated skin"),
     )
     for name, colour, dashes, label in styles:
         read = found.trace.probe(name)
         ax.plot(found.trace.time_s, read - read[0], color=colour, lw=1.8, ls=dashes, label=label)
     depth = f"skin at {found.likeness.depth_m * 1e3:.2f} mm"
-    ax.plot(found.trace.time_s, found.depth_C - found.depth_C[0], color=SKIN, lw=1.2, ls=":", label=depth)
+    ax.plot(found.trace.time_s, found.depth_C - found.depth_C[0], color=COOL, lw=1.2, ls=":", label=depth)
     ax.axhline(0, color="#cccccc", lw=0.8, zorder=0)
     title = f"insulated patch {found.lateral_m * 1e3:.2g} mm from skin in contact, as wide (a 1-D stand-in)"
     ax.set_title(title, fontsize="small", loc="left")
@@ -104,7 +104,7 @@ def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     for which, face, label in ((reached, COOL, "reached"), (~reached, "white", "missed")):
         ax.plot(misses.limit_A[which], misses.miss_K[which], "o", color=COOL, mfc=face, label=label)
     ax.axvline(misses.shipped_A, color=DISPLAY, lw=1.2, ls="--", label=f"this rig's {misses.shipped_A:g} A (assumed)")
-    ax.axvline(own, color=WARM, lw=1.6, ls=":", label=f"the module's own {own:g} A")
+    ax.axvline(own, color=LIMIT, lw=1.6, ls=":", label=f"the module's own {own:g} A")
     ax.set_ylim(bottom=0)
     tidy(ax, misses.limit_A, "largest miss (K)")
     ax.set_xlabel("current limit (A)")
