@@ -33,7 +33,8 @@ def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
     corners = icon.lower()
     points = list(zip(corners.time_s, corners.value, strict=True))
     pieces = list(pairwise(points))
-    colours = [STAY if b[1] == a[1] else COOL if b[1] < a[1] else WARM for a, b in pieces]
+    down, up = (COOL, WARM) if corners.quantity == "temperature_C" else (WARM, COOL)  # more current cools
+    colours = [STAY if b[1] == a[1] else down if b[1] < a[1] else up for a, b in pieces]
     ax.axhline(corners.value[0], color="#999999", linestyle="--", linewidth=1, zorder=1)
     ax.add_collection(LineCollection(pieces, colors=colours, linewidths=2.5, capstyle="round", zorder=2))
     middle = (corners.lowest + corners.highest) / 2
@@ -41,7 +42,7 @@ def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
     ax.set_xlim(0, corners.duration_s)
     ax.set_ylim(middle - half, middle + half)
     ax.set_title(icon.name)
-    ax.set_xlabel("Time (s)")
+    ax.set_xlabel("time (s)")
     ax.set_ylabel(_label(icon))
     return ax
 
@@ -64,5 +65,5 @@ def svg(icons: "Sequence[Icon]") -> str:
 
 def _label(icon: "Icon") -> str:
     if icon.frame.control == "current":
-        return "Current (A)"
-    return f"{'Display' if icon.frame.control == 'display' else 'Skin'} temperature (°C)"
+        return "current (A)"
+    return f"{'display' if icon.frame.control == 'display' else 'skin'} temperature (°C)"

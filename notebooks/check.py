@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.notebooks.door import fail, note
+from thermicon.notebooks.cues import warn_of_site
+from thermicon.notebooks.door import fail
 from thermicon.notebooks.wording import number, span
 
 if TYPE_CHECKING:
@@ -48,9 +49,7 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     """What the rig cannot do of this set, a message each; another site is only a warning, told on stderr."""
     from thermicon.circuit import check_static
 
-    site = icons.frame.site
-    if site is not None and site != rig.site:
-        note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
+    warn_of_site(file, icons, rig)
     return [f"{file}: {message}" for icon in icons for message in check_static(icon, rig)]
 
 

@@ -6,7 +6,6 @@ command, beside this one.
 
 from __future__ import annotations
 
-import contextlib
 import io
 import math
 import sys
@@ -16,7 +15,7 @@ from typing import Annotated
 import typer
 
 from thermicon.notebooks import whatif
-from thermicon.notebooks.door import INTERRUPTED, Commands, check_changes, load_rig, usage
+from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import Changes, Files, IconName, RigName, check_tail
 
 TRACKING = ("replay", "display", "ideal")
@@ -32,8 +31,12 @@ app = typer.Typer(
 )
 
 Output = Annotated[
-    Path | None, typer.Option("-o", "--output", metavar="OUT", help="Write the trace: .csv, .parquet, or - for stdout.")
+    Path | None,
+    typer.Option(
+        "-o", "--output", metavar="OUT", readable=False, help="Write the trace: .csv, .parquet, or - for stdout."
+    ),
 ]
+"""Commands look at paths themselves (`readable=False`), so that a bad one is bad input and not bad usage."""
 
 
 def _tell_version(wanted: bool) -> None:
@@ -57,13 +60,14 @@ def thermicon(
 def check_command(
     files: Files,
     rig: Annotated[
-        str | None, typer.Option("--rig", metavar="RIG", help="Also hold the icons against this rig.")
+        str | None, typer.Option("--rig", metavar="RIG", help="Also hold levels and rates against this rig.")
     ] = None,
     changes: Changes = None,
 ) -> None:
     """Read cue files and report everything that is wrong with them, or one line a file when nothing is.
 
-    With --rig the icons are also held against what the rig can do.
+    With --rig the icons are also held against the rig's levels, baselines and, under display control, rates;
+    whether a cue is reached in time is for simulate to say.
     """
     check_changes(changes or [])
     from thermicon.notebooks.check import check
@@ -78,7 +82,10 @@ def simulate_command(
     ] = None,
     icon: IconName = None,
     current: Annotated[
-        Path | None, typer.Option("--current", metavar="DRIVE.csv", help="Play this drive (time_s, current_A) instead.")
+        Path | None,
+        typer.Option(
+            "--current", metavar="DRIVE.csv", readable=False, help="Play this drive (time_s, current_A) instead."
+        ),
     ] = None,
     hold: Annotated[bool, typer.Option("--hold", help="With --current: hold each row until the next.")] = False,
     output: Output = None,
@@ -87,7 +94,12 @@ def simulate_command(
         float | None,
         typer.Option("--tail", metavar="S", help="Time after the last corner.  [default: 0; 10 in figures]"),
     ] = None,
-    figure: Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", help="Draw the overview.")] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option(
+            "--figure", metavar="OUT.png", readable=False, help="Draw the overview; several icons give OUT-NAME.png."
+        ),
+    ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -124,10 +136,18 @@ def rank_command(
         str | None,
         typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
     ] = None,
-    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="How a difference over time counts.")] = "max",
-    trials: Annotated[int, typer.Option("--trials", metavar="N", help="Trials of the experiment foretold.")] = 48,
-    json: Annotated[Path | None, typer.Option("--json", metavar="OUT", help="Write every number as JSON.")] = None,
-    figure: Annotated[Path | None, typer.Option("--figure", metavar="DIR", help="Write the figures into DIR.")] = None,
+    norm: Annotated[
+        str, typer.Option("--norm", metavar="NAME", help="How a difference over time counts: max, rms, integral.")
+    ] = "max",
+    trials: Annotated[
+        int, typer.Option("--trials", metavar="N", help="Trials in all of the experiment foretold.")
+    ] = 48,
+    json: Annotated[
+        Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures into DIR.")
+    ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -171,15 +191,13 @@ def library_command() -> None:
 
 def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
     try:
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")
         app(prog_name="thermicon")
     except KeyboardInterrupt:
-        with contextlib.suppress(OSError):
-            typer.echo("interrupted", err=True)
-        sys.exit(INTERRUPTED)
+        sys.exit(interrupted().exit_code)
 
 
 if __name__ == "__main__":

@@ -38,15 +38,16 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     made = {"rig": _rigs, "icon": _icons, "set": _sets, "table": _tables}[kind](first, second, request)
-    for place, each in enumerate(made):
-        if place:
-            show("")
-        show_comparison(each)
     if figure is not None:
         from thermicon.notebooks.comparefigure import compare_figure
 
         with complete_or_absent(figure) as draft:
             compare_figure([(each.title, each.both) for each in made]).savefig(draft, dpi=130)
+    for place, each in enumerate(made):
+        if place:
+            show("")
+        show_comparison(each)
+    if figure is not None:
         note(f"wrote {figure}")
 
 

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from thermicon.notebooks.door import usage
+from thermicon.notebooks.door import note, usage
+from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
 
@@ -21,11 +24,14 @@ class Joined:
     """Several sets taken as one. Unlike those of an ``IconSet``, its icons may prescribe different things."""
 
     sets: tuple[IconSet, ...]
+    files: tuple[str, ...]
 
     @property
     def title(self) -> str:
-        """The titles of the sets, one after the other."""
-        return "; ".join(each.title for each in self.sets if each.title)
+        """The titles of all sets, the name of its file for one that has none; nothing where none has a title."""
+        if not any(each.title for each in self.sets):
+            return ""
+        return "; ".join(each.title or Path(file).name for file, each in zip(self.files, self.sets, strict=True))
 
     def __iter__(self) -> Iterator[Icon]:
         return (icon for each in self.sets for icon in each)
@@ -69,7 +75,27 @@ def read_set(files: Sequence[str]) -> IconSet:
                     f"names must differ to be ranked together, so rename one of the two"
                 )
             owner[icon.name] = file
-    return cast("IconSet", Joined(tuple(sets)))
+    return cast("IconSet", Joined(tuple(sets), tuple(files)))
+
+
+def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> None:
+    """Tell on stderr which of the files are for another site than the rig's, and where their baselines differ."""
+    sets = icons.sets if isinstance(icons, Joined) else (icons,)
+    levels: dict[float, list[str]] = {}
+    for file, each in zip(files, sets, strict=True):
+        warn_of_site(file, each, rig)
+        own = each.frame.baseline_C
+        levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
+    if len(levels) > 1:
+        told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
+        note(f"warning: baselines differ: {told}; the skin must adapt anew in between, which the model leaves out")
+
+
+def warn_of_site(file: str, icons: IconSet, rig: Rig) -> None:
+    """Tell on stderr when a set is for another site than the rig's."""
+    site = icons.frame.site
+    if site is not None and site != rig.site:
+        note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
 
 
 def pick(icons: IconSet, name: str | None) -> list[Icon]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import typer
 from typer.core import TyperGroup
@@ -26,16 +27,22 @@ def is_ours(error: BaseException) -> bool:
 class Commands(TyperGroup):
     """A group of commands that ends with a message and an exit code, never with a traceback for a wrong input."""
 
+    def make_context(self, *arguments: Any, **extra: Any) -> Any:
+        """Read the command line; Ctrl-C exits with 130."""
+        try:
+            return super().make_context(*arguments, **extra)
+        except KeyboardInterrupt:
+            raise interrupted() from None
+
     def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
         try:
             result = super().invoke(ctx)
             sys.stdout.flush()
         except KeyboardInterrupt:
-            typer.echo("interrupted", err=True)
-            raise typer.Exit(INTERRUPTED) from None
+            raise interrupted() from None
         except BrokenPipeError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            into_nowhere(sys.stdout)
             raise typer.Exit(0) from None
         except MemoryError:
             fail("not enough memory for this; ask for fewer people, fewer rows a second or a shorter tail")
@@ -50,6 +57,13 @@ class Commands(TyperGroup):
             return result
 
 
+def interrupted() -> typer.Exit:
+    """Say on stderr that Ctrl-C ended the program, and build the exit with its code."""
+    with contextlib.suppress(OSError):
+        typer.echo("interrupted", err=True)
+    return typer.Exit(INTERRUPTED)
+
+
 def fail(message: str) -> NoReturn:
     """Say what is wrong on stderr and leave with the code for bad input."""
     typer.echo(message, err=True)
@@ -57,8 +71,18 @@ def fail(message: str) -> NoReturn:
 
 
 def note(message: str) -> None:
-    """Tell the person something beside the result; stderr, so that results can be piped."""
-    typer.echo(message, err=True)
+    """Tell the person something beside the result; stderr, so that results can be piped. Nobody need be there."""
+    try:
+        typer.echo(message, err=True)
+    except BrokenPipeError:
+        into_nowhere(sys.stderr)
+
+
+def into_nowhere(stream: TextIO) -> None:
+    """Let what is still to be written to a stream go nowhere, since its reader went away."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
 
 
 def usage(message: str, option: str) -> typer.BadParameter:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.notebooks.cues import only, read_set
+from thermicon.notebooks.cues import only, read_set, warn_of_site
 from thermicon.notebooks.door import note
 from thermicon.notebooks.outputs import NETLIST_SUFFIXES, STDOUT, check_output, complete_or_absent
 from thermicon.notebooks.simulate import headline
@@ -22,7 +22,9 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     from thermicon.circuit.inverse import design
 
     check_output(output, NETLIST_SUFFIXES, "a netlist")
-    played = only(read_set([file]), icon, file)
+    icons = read_set([file])
+    played = only(icons, icon, file)
+    warn_of_site(file, icons, rig)
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"

@@ -5,21 +5,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Trace
     from thermicon.perception import Percept, Ranking
 
-COOL, WARM = "#1f6fb4", "#d9680d"
-INK, GREY, TARGET = "#1a1a1a", "#6a6a6a", "#cfe3cf"
+COOL, WARM = "#2166ac", "#e08214"
+INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
 
 
-def overview(trace: Trace, percept: Percept | None = None) -> Figure:
+def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
     """Everything about one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
 
     Line styles differ as well as colours, so the figure survives a grey printer. Returns a matplotlib ``Figure``;
-    nothing is shown.
+    nothing is shown. ``rig_changes`` are named in the title.
     """
     from matplotlib.figure import Figure
 
@@ -39,7 +41,8 @@ def overview(trace: Trace, percept: Percept | None = None) -> Figure:
     axes[-1].set_xlabel("time (s)")
     figure.align_ylabels(axes)
     icon = trace.icon or "drive"
-    figure.suptitle(f"{icon} on the {trace.rig_name} rig", fontsize=11)
+    what_if = f" with {', '.join(rig_changes)}" if rig_changes else ""
+    figure.suptitle(f"{icon} on the {trace.rig_name} rig{what_if}", fontsize=11, wrap=True)
     return figure
 
 
@@ -70,7 +73,7 @@ def _current(trace: Trace, ax: Axes) -> None:
     ax.axhline(0.0, color=GREY, lw=0.6)
     ax.plot(trace.time_s, trace.current_A, color=INK, lw=1.1, drawstyle="steps-post", label="current\n(+ cools)")
     for k, limit in enumerate((low, high)):
-        ax.axhline(limit, color=WARM, lw=1.0, ls=(0, (2, 2)), label="driver's limits" if k == 0 else None)
+        ax.axhline(limit, color=LIMIT, lw=1.0, ls=(0, (2, 2)), label="driver's limits" if k == 0 else None)
     ax.set_ylabel("current (A)")
 
 
@@ -81,9 +84,9 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.plot(t, percept.psi_cold, color=COOL, lw=1.5, ls="-.", label="cold")
     ax.plot(t, percept.psi_warm, color=WARM, lw=1.5, ls="--", label="warm")
     if percept.onset_s is not None:
-        said = f"reported as {percept.channel}\nat {percept.onset_s:.2f} s"
+        said = f"reported as {percept.channel}\nat {percept.onset_s:.2f} s\n(response clock)"
         ax.axvline(percept.onset_s, color=INK, lw=1.0, ls=":", label=said)
-    ax.set_ylabel("sensation (d′)")
+    ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
 
 
 def set_figure(ranking: Ranking) -> Figure:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy
 import typer
 
-from thermicon.notebooks.cues import pick, read_set
+from thermicon.notebooks.cues import pick, read_set, warn_of_site
 from thermicon.notebooks.door import note
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
 from thermicon.notebooks.wording import number, span
@@ -21,6 +21,7 @@ FELT_TAIL_S = 10.0
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
 
 
 def simulate_file(
@@ -35,13 +36,17 @@ def simulate_file(
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import simulate
 
-    icons = pick(read_set([file]), icon)
+    whole = read_set([file])
+    icons = pick(whole, icon)
     pictures = _figure_paths(figure, [each.name for each in icons])
     _check(output, pictures)
-    _finish([simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons], rig, output)
+    warn_of_site(file, whole, rig)
+    traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
+    _write(traces, output)
     for each, picture in zip(icons, pictures, strict=False):
-        draw_overview(simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s), picture)
-        note(f"wrote {picture}")
+        played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
+        draw_overview(played, picture, rig.changes)
+    _tell(traces, rig, output, pictures, [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)])
 
 
 def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None) -> None:
@@ -51,10 +56,21 @@ def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Pa
     pictures = [] if figure is None else [figure]
     _check(output, pictures)
     played = read_drive(drive, hold=hold)
-    _finish([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output)
+    trace = simulate_current(played, rig, rate_Hz=rate_Hz)
+    _write([trace], output)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture)
-        note(f"wrote {picture}")
+        draw_overview(simulate_current(played, rig), picture, rig.changes)
+    _tell([trace], rig, output, pictures, [None])
+
+
+def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
+    """Return how the icon could be changed so that the rig reaches it; None where it is reached or nothing helps."""
+    from thermicon.circuit import nearest_reachable
+
+    if trace.reachable:
+        return None
+    near = nearest_reachable(icon, rig)
+    return None if near is None else near.sentence
 
 
 def _figure_paths(figure: Path | None, names: Sequence[str]) -> list[Path]:
@@ -72,18 +88,31 @@ def _check(output: Path | None, pictures: Sequence[Path]) -> None:
         check_output(picture, FIGURE_SUFFIXES, "a figure")
 
 
-def _finish(traces: Sequence[Trace], rig: Rig, output: Path | None) -> None:
+def _write(traces: Sequence[Trace], output: Path | None) -> None:
+    """Write the traces into their file, before anything is printed that a reader may not wait for."""
+    if output is not None and output != STDOUT:
+        write_traces(traces, output)
+
+
+def _tell(
+    traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
+) -> None:
+    """Say on stderr what is to be known and was written, then print on stdout: a summary, or the traces."""
     for trace in traces:
         for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
             if warning not in rig.warnings:  # those were told when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
+    if output is not None:
+        for trace, better in zip(traces, cures, strict=True):
+            note(headline(trace) + (f"; {better}" if better else ""))
+    for path in (output, *pictures):
+        if path not in (None, STDOUT):
+            note(f"wrote {path}")
     if output is None:
-        for trace in traces:
-            typer.echo(describe(trace))
-    else:
+        for trace, better in zip(traces, cures, strict=True):
+            typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
+    elif output == STDOUT:
         write_traces(traces, output)
-        for trace in traces:
-            note(headline(trace))
 
 
 def unsafe(trace: Trace) -> list[str]:
@@ -108,14 +137,14 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
         write_trace(list(traces), draft)
 
 
-def draw_overview(trace: Trace, picture: Path) -> None:
+def draw_overview(trace: Trace, picture: Path, rig_changes: Sequence[str] = ()) -> None:
     """Write the overview figure of one trace, its percept included."""
     from thermicon.notebooks.overview import overview
     from thermicon.perception import perceive
 
     trace = on_one_clock(trace)
     with complete_or_absent(picture) as draft:
-        overview(trace, perceive(trace)).savefig(draft, dpi=130)
+        overview(trace, perceive(trace), rig_changes).savefig(draft, dpi=130)
 
 
 def on_one_clock(trace: Trace) -> Trace:

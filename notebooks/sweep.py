@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from thermicon.notebooks.cues import pick, read_set
+from thermicon.notebooks.cues import pick, read_set, warn_of_site
 from thermicon.notebooks.door import fail, note, usage
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
 from thermicon.notebooks.progress import Progress, progress_bar
@@ -143,27 +143,28 @@ def sweep_file(
     check_output(output, TRACE_SUFFIXES, "a sweep")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
-    icons = pick(read_set([file]), icon)
+    icons = pick(whole := read_set([file]), icon)
+    warn_of_site(file, whole, rig)
     with progress_bar("sweep") as progress:
         frame = sweep(icons, rig, vary.key, vary.values, tail_s=tail_s, progress=progress)
     if frame["duration_s"].isna().all():
         first = frame["reason"].iloc[0]
         fail(f"--vary {vary.key}: none of its {len(vary.values)} values can be played; the first: {first}")
-    if output == STDOUT:
-        typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
-    else:
+    if output != STDOUT:
         with complete_or_absent(output) as draft:
             write_frame(frame, draft)
-    for line in (*(headline(frame[frame["icon"] == each.name]) for each in icons), *_impossible(frame, vary.key)):
-        note(line)
     if figure is not None:
         from thermicon.notebooks.sweepfigure import sweep_figure
 
         with complete_or_absent(figure) as draft:
             sweep_figure(frame, vary.key, log=vary.log).savefig(draft, dpi=130)
+    for line in (*(headline(frame[frame["icon"] == each.name]) for each in icons), *_impossible(frame, vary.key)):
+        note(line)
     for written in (output, figure):
         if written not in (None, STDOUT):
             note(f"wrote {written}")
+    if output == STDOUT:
+        typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
 
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:

@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COOLS = ("#0b3c6f", "#1f6fb4", "#5aa5dc", "#9ccbee")
-WARMS = ("#7a3603", "#d9680d", "#f59a45", "#fbc894")
+COOLS = ("#0b3c6f", "#2166ac", "#5aa5dc", "#9ccbee")
+WARMS = ("#7a3603", "#e08214", "#f3a95c", "#fbc894")
 MARKS = "osD^vPX*"
 PANELS = (
     (("largest_miss_K",), "largest miss\n(K)"),

@@ -10,12 +10,15 @@ import typer
 from thermicon.notebooks.door import check_changes, load_rig
 from thermicon.notebooks.options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
-Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", help="Draw the figure.")]
+Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
 def netlist_command(
     file: OneFile,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="OUT.cir", help="The netlist, or - for stdout.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="OUT.cir", readable=False, help="The netlist, or - for stdout."),
+    ],
     icon: IconName = None,
     tail: Tail = 0.0,
     record: Annotated[
@@ -40,7 +43,10 @@ def sweep_command(
         typer.Option("--vary", metavar="KEY=LOW:HIGH:N", help="A key of the rig and N values; Nlog: in equal ratios."),
     ],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="OUT", help="The table: .csv, .parquet, or - for stdout.")
+        Path,
+        typer.Option(
+            "-o", "--output", metavar="OUT", readable=False, help="The table: .csv, .parquet, or - for stdout."
+        ),
     ],
     icon: IconName = None,
     tail: Tail = 0.0,

@@ -19,6 +19,7 @@ from thermicon.perception.percept import Percept, perceive, perceive_many
 from thermicon.perception.distance import (
     back_to_back_dprime,
     difference,
+    difference_trace,
     differences,
     identification_dprime,
 )
@@ -53,6 +54,7 @@ __all__ = [
     "perceive_many",
     "Percept",
     "difference",
+    "difference_trace",
     "differences",
     "identification_dprime",
     "back_to_back_dprime",

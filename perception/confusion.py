@@ -68,7 +68,7 @@ def confuse(d_prime: ArrayLike, *, lapse: ArrayLike = 0.02, seed: int = 0, sampl
         named = _two(distances[:, 0, 1])
     else:
         drawn = max(64, min(samples, int(WORK / (people * icons * (icons + points.shape[-1])))))
-        named = _sampled(points, seed, drawn)
+        named = _shared(_sampled(points, seed, drawn), distances)
         pooled = named.mean(axis=0)
         error = float(np.sqrt((pooled * (1.0 - pooled)).max() / (drawn * people)))
     return Confusion(normalised((1.0 - lapses) * named + lapses / icons), stress, error)
@@ -114,6 +114,13 @@ def _cumulative(x: Array) -> Array:
 def _two(d_prime: Array) -> Array:
     right = _cumulative(0.5 * d_prime)
     return np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
+
+
+def _shared(named: Array, distances: Array) -> Array:
+    """Answers shared equally among icons that nobody can tell apart, which the nearest point leaves to rounding."""
+    same = (distances < 1e-9).all(axis=0).astype(np.float64)
+    mean = same / same.sum(axis=1, keepdims=True)
+    return mean @ named @ mean if mean.max(axis=1).min() < 1.0 else named
 
 
 def _sampled(points: Array, seed: int, samples: int) -> Array:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.circuit.draw import COOL, WARM
 from thermicon.perception.receptors import Array
 
 if TYPE_CHECKING:
@@ -15,44 +16,45 @@ if TYPE_CHECKING:
     from thermicon.perception.percept import Percept
     from thermicon.perception.ranking import Ranking
 
-COLD, WARM = "#2166ac", "#b2182b"
+CLOCK = "response clock: with conduction and decision"
 MAP = "cividis"
 
 
 def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
-    """Both sensations over time, and the felt onset with its channel."""
+    """Both sensations on the clock of the receptors, and when the first is reported, which is later."""
     axes = _axes(6.0, 3.2) if ax is None else ax
-    axes.plot(percept.time_s, percept.psi_cold, color=COLD, label="cold")
-    axes.plot(percept.time_s, percept.psi_warm, color=WARM, linestyle="--", label="warm")
+    axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
+    axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
     if percept.onset_s is not None:
-        axes.axvline(
-            percept.onset_s,
-            color="0.35",
-            linewidth=1.0,
-            linestyle=":",
-            label=f"felt at {percept.onset_s:.2f} s (response clock)",
-        )
-    axes.set_xlabel(f"time, s ({percept.clock} clock)")
-    axes.set_ylabel("sensation, d′")
+        said = f"reported as {percept.channel} at {percept.onset_s:.2f} s\n({CLOCK})"
+        axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
+    axes.set_xlabel(f"time (s), {percept.clock} clock")
+    axes.set_ylabel("sensation (d′)")
     axes.set_title(percept.icon or "percept")
     axes.set_xlim(0.0, float(percept.time_s[-1]))
     axes.set_ylim(bottom=0.0)
-    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(fontsize="small", framealpha=0.8)
     return axes
 
 
 def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Predicted confusions in per cent: rows the icon presented, columns the name given."""
+    """Predicted confusions in per cent: rows the icon presented, columns the name it is answered with.
+
+    Every cell says its number, so there is no colour bar.
+    """
     axes = _heat(ranking, 100.0 * ranking.confusion, ax, top=100.0)
-    axes.set_xlabel("named")
+    axes.set_xlabel("answered")
     axes.set_ylabel("presented")
     axes.set_title(f"predicted confusions, % ({100 * ranking.percent_correct:.0f} % correct)")
     return axes
 
 
 def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Predicted d′ of every pair, the median over people."""
+    """Predicted d′ of every pair, the median over people; every cell says its number, so there is no colour bar."""
     axes = _heat(ranking, ranking.d_prime, ax, top=None)
+    axes.set_xlabel("… and")
+    axes.set_ylabel("d′ between …")
     axes.set_title(f"predicted d′ between icons ({ranking.norm})")
     return axes
 

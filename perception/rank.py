@@ -14,6 +14,7 @@ import numpy as np
 
 from thermicon.perception.confusion import SAMPLES, Confusion, confuse
 from thermicon.perception.detection import detect
+from thermicon.perception.digits import decimals, significant
 from thermicon.perception.distance import differences, identification_dprime
 from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K
 from thermicon.perception.measures import information_bits, percent_correct, plugin_bits
@@ -89,6 +90,7 @@ def rank(
     ranking = Ranking(
         version=_version(),
         rig=rig.name,
+        rig_changes=tuple(rig.changes),
         seed=seed,
         people=people,
         tracking=_tracking(members, tracking),
@@ -176,7 +178,7 @@ def _assemble(
     detected = felt.probability.mean(axis=0)
     scored = []
     for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
-        reachable, safe, reason = _verdict(trace)
+        safe, reason, cautions = _verdict(trace)
         scored.append(
             IconScore(
                 name=icon.name,
@@ -187,15 +189,16 @@ def _assemble(
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
                 percent_correct=float(pooled[k, k]),
-                reachable=reachable,
+                reachable=bool(trace.reachable),
                 safe=safe,
                 reason=reason,
+                cautions=cautions,
                 rules=icon_rules(trace, percept),
             )
         )
     pairs = []
     for i, j in combinations(range(len(icons)), 2):
-        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer)
+        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
         pairs.append(
             PairScore(
                 a=icons[i].name,
@@ -209,14 +212,14 @@ def _assemble(
     return _Scores(tuple(scored), tuple(pairs))
 
 
-def _verdict(trace: Trace) -> tuple[bool, bool, str | None]:
-    """Reachable, safe, and the first reason why not."""
+def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
+    """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
     from thermicon.circuit import judge_safety
 
     safety = judge_safety(trace)
-    reachable = trace.outcome is None or trace.outcome.reached
-    missed = None if trace.outcome is None else trace.outcome.reason
-    return reachable, bool(safety.safe), safety.reason if not safety.safe else missed
+    against = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
+    amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
+    return bool(safety.safe), "; ".join(against) or None, amber
 
 
 def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
@@ -240,15 +243,15 @@ def _disagree(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tuple[d
         rules = passes(icon.rules, "change at the receptor", "rate at the receptor")
         model = icon.detected_probability >= FELT
         if rules != model:
-            said = f"{icon.name}: rules say {_felt_word(rules)}, the model {icon.detected_probability:.2f} detected"
+            shown, limit = significant(icon.detected_probability, FELT, least=2)
+            said = f"{icon.name}: rules say {_felt_word(rules)}, the model {shown} detected (felt from {limit})"
             found.append({"icon": icon.name, "rules": rules, "model": model, "text": said})
     for pair in pairs:
         apart = pair.d_prime >= APART_DPRIME
         if pair.rules_pass != apart:
             word = "told apart" if pair.rules_pass else "not told apart"
-            said = (
-                f"{pair.a} and {pair.b}: rules say {word}, the model d′ {pair.d_prime:.1f} (apart from {APART_DPRIME})"
-            )
+            shown = f"{pair.d_prime:.{decimals(pair.d_prime, APART_DPRIME, 1)}f}"
+            said = f"{pair.a} and {pair.b}: rules say {word}, the model d′ {shown} (apart from {APART_DPRIME})"
             found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": apart, "text": said})
     return tuple(found)
 

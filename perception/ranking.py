@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,8 @@ class IconScore:
     """One icon. Probability of detection and per cent correct are means over people; the rest is nominal.
 
     `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
-    attack (K/s) and delay (s) are at the cold and the warm receptor.
+    attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` says why the icon is not
+    safe, cannot be reached, or both; `cautions` are the soft limits of safety that it passes.
     """
 
     name: str
@@ -38,6 +40,7 @@ class IconScore:
     safe: bool
     reason: str | None
     rules: tuple[RuleResult, ...]
+    cautions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +65,7 @@ class Ranking:
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
     Per cent correct is 0–1 and information in bits, each with the 2.5–97.5 % interval over people.
+    `rig_changes` are what was changed on the rig for this question, such as `contact.area_cm2=4`.
     `stress` and `standard_error` are the accuracy of the confusion matrix, not spread over people.
     """
 
@@ -88,6 +92,7 @@ class Ranking:
     norm_sensitivity: dict[str, float]
     stress: float
     standard_error: float
+    rig_changes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         own = np.array(self.confusion, dtype=np.float64)
@@ -145,6 +150,7 @@ class Ranking:
             {
                 "thermicon": self.version,
                 "rig": self.rig,
+                "rig_changes": list(self.rig_changes),
                 "seed": self.seed,
                 "people": self.people,
                 "tracking": self.tracking,
@@ -183,11 +189,14 @@ class Ranking:
 
     def __repr__(self) -> str:
         low, high = self.percent_correct_interval
+        icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
+        crowd = "1 person" if self.people == 1 else f"{self.people} people"
+        spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
+        bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         return (
-            f"Ranking(predicted: {len(self.icons)} icons on {self.rig}, {self.people} people, "
-            f"{100 * self.percent_correct:.1f} % correct [{100 * low:.0f}, {100 * high:.0f}], "
-            f"{self.information_bits:.2f} bits{worst})"
+            f"Ranking(predicted: {icons} on {with_changes(self.rig, self.rig_changes)}, {crowd}, "
+            f"{100 * self.percent_correct:.1f} % correct{spread}{bits}{worst})"
         )
 
     def _repr_html_(self) -> str:
@@ -202,6 +211,15 @@ class Ranking:
         if self.by == "rules":
             return (-self._pairs_apart(icon.name), -sum(r.passed for r in icon.rules), icon.name)
         return (-icon.percent_correct, 0.0, icon.name)
+
+
+def with_changes(rig: str, changes: Sequence[str]) -> str:
+    """A rig's name with what was changed on it.
+
+    >>> with_changes("thenar", ["contact.area_cm2=4"]), with_changes("thenar", [])
+    ('thenar with contact.area_cm2=4', 'thenar')
+    """
+    return f"{rig} with {', '.join(changes)}" if changes else rig
 
 
 def _icon(icon: IconScore) -> dict[str, Any]:
@@ -220,6 +238,7 @@ def _icon(icon: IconScore) -> dict[str, Any]:
         "reachable": icon.reachable,
         "safe": icon.safe,
         "reason": icon.reason,
+        "cautions": list(icon.cautions),
         "rules": [r.to_dict() for r in icon.rules],
     }
 

@@ -6,21 +6,33 @@ The numbers come from the two nominal traces and percepts through the public fun
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.perception.distance import difference_trace
-from thermicon.perception.features import direction_words, directions, excursion_K, excursion_rate_K_per_s
-from thermicon.perception.observer import CHANNELS, Channel, Observer
+from thermicon.perception.digits import decimals, fixed, verdict
+from thermicon.perception.distance import difference, difference_trace, identification_dprime
+from thermicon.perception.features import (
+    STILL_K,
+    direction_words,
+    directions,
+    excursion_K,
+    excursion_rate_K_per_s,
+    receptor_C,
+)
+from thermicon.perception.observer import CHANNELS, Channel, Norm, Observer, check_norm
 from thermicon.perception.percept import Percept
+from thermicon.perception.receptors import Array
 from thermicon.perception.rules import load_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 VERBS = {"cold": "cool", "warm": "warm"}
+LEAST_SENSATION = 0.05
+"""Differences below this are not printed as numbers: they would read 0.0 d′."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,16 +48,30 @@ class Reason:
 
 
 def pair_reasons(
-    a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer | None = None
+    a: Trace,
+    b: Trace,
+    felt_a: Percept,
+    felt_b: Percept,
+    observer: Observer | None = None,
+    norm: Norm = "max",
 ) -> tuple[Reason, ...]:
-    """What separates the two icons, or fails to: direction, peaks, rates, onsets, and the largest difference."""
+    """What separates the two icons, or fails to: direction, peaks, rates, onsets, and the largest difference.
+
+    Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm of distance
+    that the two are told apart by from memory.
+    """
+    if _alike(a, b):
+        text = (
+            f"nothing differs: {_name(a)} and {_name(b)} move the receptors in the same way, so their names are guessed"
+        )
+        return (Reason(text, {}, "K"),)
     shared = tuple(c for c in directions(a) if c in directions(b))
     found = [_direction(a, b)]
     for channel in shared:
         found.append(_peaks(a, b, channel))
         found.append(_rates(a, b, channel))
     found.append(_onsets(a, b, felt_a, felt_b))
-    found.append(_largest(a, b, felt_a, felt_b, observer))
+    found.append(_largest(a, b, felt_a, felt_b, Observer.load() if observer is None else observer, check_norm(norm)))
     return tuple(found)
 
 
@@ -74,10 +100,10 @@ def _peaks(a: Trace, b: Trace, channel: Channel) -> Reason:
     peak_a, peak_b = excursion_K(a, channel), excursion_K(b, channel)
     needed = load_rules().one("peak", channel=channel).central
     gap = abs(peak_a - peak_b)
-    verdict = "more than" if gap >= needed else "within"
+    digits = decimals(gap, needed)
     text = (
-        f"both {VERBS[channel]}: peaks {peak_a:+.2f} and {peak_b:+.2f} K at the {channel} receptor differ by "
-        f"{gap:.2f} K, {verdict} the just noticeable {needed:.2f} K"
+        f"both {VERBS[channel]}: peaks {peak_a:+.{digits}f} and {peak_b:+.{digits}f} K at the {channel} receptor "
+        f"differ by {gap:.{digits}f} K, {verdict(gap, needed)} the just noticeable {fixed(needed, digits)} K"
     )
     return Reason(text, {"a": peak_a, "b": peak_b, "difference": gap, "threshold": needed}, "K")
 
@@ -86,12 +112,15 @@ def _rates(a: Trace, b: Trace, channel: Channel) -> Reason:
     rate_a, rate_b = excursion_rate_K_per_s(a, channel), excursion_rate_K_per_s(b, channel)
     needed = load_rules().one("rate ratio").central
     low, high = sorted((abs(rate_a), abs(rate_b)))
-    text = f"rates {rate_a:+.2f} and {rate_b:+.2f} K/s at the {channel} receptor"
     values = {"a": rate_a, "b": rate_b, "threshold": needed}
-    if low > 0.0:
-        verdict = "more than" if high / low >= needed else "within"
-        text += f" differ by a factor {high / low:.2f}, {verdict} the just noticeable {needed:.2f}"
-        values["ratio"] = high / low
+    if low == 0.0:
+        return Reason(f"rates {rate_a:+.2f} and {rate_b:+.2f} K/s at the {channel} receptor", values, "K/s")
+    ratio = values["ratio"] = high / low
+    digits = decimals(ratio, needed)
+    text = (
+        f"rates {rate_a:+.{digits}f} and {rate_b:+.{digits}f} K/s at the {channel} receptor differ by a factor "
+        f"{ratio:.{digits}f}, {verdict(ratio, needed)} the just noticeable {fixed(needed, digits)}"
+    )
     return Reason(text, values, "K/s")
 
 
@@ -102,21 +131,54 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> Reason:
     channel: Channel = "warm" if felt_a.channel == felt_b.channel == "warm" else "cold"
     needed = load_rules().one("onset", channel=channel).central
     gap = abs(felt_a.onset_s - felt_b.onset_s)
-    verdict = "more than" if gap >= needed else "within"
+    digits = decimals(gap, needed)
     text = (
-        f"felt at {felt_a.onset_s:.2f} s ({felt_a.channel}) and {felt_b.onset_s:.2f} s ({felt_b.channel}): "
-        f"{gap:.2f} s apart, {verdict} the {needed:.2f} s of the response window"
+        f"felt at {felt_a.onset_s:.{digits}f} s ({felt_a.channel}) and {felt_b.onset_s:.{digits}f} s "
+        f"({felt_b.channel}): {gap:.{digits}f} s apart, {verdict(gap, needed)} the {fixed(needed, digits)} s "
+        f"of the response window"
     )
     return Reason(text, {"a": felt_a.onset_s, "b": felt_b.onset_s, "difference": gap, "threshold": needed}, "s")
 
 
-def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer | None) -> Reason:
-    size, time, channel = largest_difference(felt_a, felt_b, observer)
-    text = (
-        f"{_name(a)} and {_name(b)} differ most at {time:.2f} s, in the {channel} channel: "
-        f"{size:.1f} d′ of sensation before memory noise"
+def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm) -> Reason:
+    """When they differ most and by how much in each channel, and the d′ that memory noise leaves of it."""
+    over_time = difference_trace(felt_a, felt_b, observer)
+    k = int(np.hypot(over_time[0], over_time[1]).argmax())
+    cold, warm = (abs(float(channel[k])) for channel in over_time)
+    size, duration = math.hypot(cold, warm), felt_a.dt_s * (over_time.shape[1] - 1)
+    apart = size if norm == "max" else difference(felt_a, felt_b, observer, norm)
+    left = float(identification_dprime(apart, observer, norm, duration))
+    values = {"difference": size, "cold": cold, "warm": warm, "time_s": k * felt_a.dt_s, norm: apart, "d_prime": left}
+    names = f"{_name(a)} and {_name(b)}"
+    if size < LEAST_SENSATION:
+        return Reason(
+            f"{names} nowhere differ by {LEAST_SENSATION:g} d′ of sensation, so their names are guessed", values, "d′"
+        )
+    told = (
+        f"{names} differ most at {k * felt_a.dt_s:.2f} s by {size:.1f} d′ of sensation "
+        f"(cold {cold:.1f}, warm {warm:.1f})"
     )
-    return Reason(text, {"difference": size, "time_s": time}, "d′")
+    if norm == "max":
+        told += f"; memory noise leaves a nominal person d′ {left:.1f} to tell them apart by"
+    else:
+        unit = {"rms": "d′", "integral": "d′·s"}[norm]
+        told += f"; by the {norm} norm it is {apart:.1f} {unit} in all"
+        told += f", of which memory noise leaves a nominal person d′ {left:.1f}"
+    return Reason(told, values, "d′")
+
+
+def _alike(a: Trace, b: Trace) -> bool:
+    """Whether both receptors go through the same temperatures at the same times, the shorter trace held at its end."""
+    return all(
+        _span_K(receptor_C(a, channel), receptor_C(b, channel)) < STILL_K and a.time_s[1] == b.time_s[1]
+        for channel in CHANNELS
+    )
+
+
+def _span_K(one: Array, two: Array) -> float:
+    n = max(one.size, two.size)
+    held = [np.pad(values, (0, n - values.size), mode="edge") for values in (one, two)]
+    return float(np.abs(held[0] - held[1]).max())
 
 
 def _name(trace: Trace) -> str:

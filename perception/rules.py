@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermicon.circuit.records import Record, Table, load_records
+from thermicon.perception.digits import significant
 from thermicon.perception.features import direction_words, directions, excursion_K, excursion_rate_K_per_s, receptor_C
 from thermicon.perception.observer import DATA, Channel
 from thermicon.perception.percept import Percept
@@ -27,7 +28,8 @@ Plain = str | float | bool | None
 class RuleResult:
     """One rule on one icon or pair; `margin` is how far the value is on the passing side (negative: fails).
 
-    `value` and `margin` are None where there is nothing to measure, as for an icon that is not felt.
+    `value` and `margin` are None where there is nothing to measure, as for an icon that is not felt. A rule that asks
+    for a value within a band has its lower end in `threshold_low` and its upper end in `threshold`; others have None.
     """
 
     rule: str
@@ -38,6 +40,7 @@ class RuleResult:
     unit: str
     source: str
     text: str
+    threshold_low: float | None = None
 
     def to_dict(self) -> dict[str, Plain]:
         """The keys of the ranking file."""
@@ -47,6 +50,7 @@ class RuleResult:
             "value": self.value,
             "margin": self.margin,
             "threshold": self.threshold,
+            "threshold_low": self.threshold_low,
             "unit": self.unit,
             "source": self.source,
             "text": self.text,
@@ -72,8 +76,10 @@ def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
     if percept.channel is None:
         for channel in moved:
             record = table.one("latency", channel=channel)
-            text = f"latency: the icon is not felt, so it has no onset to hold against {_band(record)}"
-            found.append(_result(record, channel, False, None, None, record.interval[1], text))
+            low, high = record.interval
+            band = f"{low:.3g} to {high:.3g}{_unit(record)}"
+            text = f"latency: the icon is not felt, so it has no onset to hold against {band}"
+            found.append(_result(record, channel, False, None, None, high, text, low))
     else:
         found.append(_inside(table.one("latency", channel=percept.channel), percept.channel, percept.onset_s or 0.0))
     found.append(_inside(table.one("neutral zone"), "cold", float(receptor_C(trace, "cold")[0])))
@@ -125,20 +131,20 @@ def _any(record: Record, ours: list[RuleResult]) -> RuleResult:
 
 
 def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:
-    limit = record.central
-    verdict = "passes" if value >= limit else "fails"
-    unit = _unit(record)
-    text = f"{record.quantity} ({channel}): {value:.3g}{unit} against at least {limit:.3g}{unit}: {verdict}"
+    limit, unit = record.central, _unit(record)
+    said = "passes" if value >= limit else "fails"
+    shown, least = significant(value, limit)
+    text = f"{record.quantity} ({channel}): {shown}{unit} against at least {least}{unit}: {said}"
     return _result(record, channel, value >= limit, value, value - limit, limit, text)
 
 
 def _inside(record: Record, channel: Channel, value: float) -> RuleResult:
     low, high = record.interval
-    margin = min(value - low, high - value)
-    limit = low if value - low < high - value else high
-    verdict = "passes" if margin >= 0 else "fails"
-    text = f"{record.quantity} ({channel}): {value:.3g}{_unit(record)} against {_band(record)}: {verdict}"
-    return _result(record, channel, margin >= 0, value, margin, limit, text)
+    unit, margin = _unit(record), min(value - low, high - value)
+    said = "passes" if margin >= 0 else "fails"
+    shown, least, most = significant(value, low, high)
+    text = f"{record.quantity} ({channel}): {shown}{unit} against {least} to {most}{unit}: {said}"
+    return _result(record, channel, margin >= 0, value, margin, high, text, low)
 
 
 def _result(
@@ -149,14 +155,10 @@ def _result(
     margin: float | None,
     threshold: float,
     text: str,
+    threshold_low: float | None = None,
 ) -> RuleResult:
     name = record.quantity if channel is None else f"{record.quantity} ({channel})"
-    return RuleResult(name, passed, value, margin, threshold, record.unit, record.source, text)
-
-
-def _band(record: Record) -> str:
-    low, high = record.interval
-    return f"{low:.3g} to {high:.3g}{_unit(record)}"
+    return RuleResult(name, passed, value, margin, threshold, record.unit, record.source, text, threshold_low)
 
 
 def _unit(record: Record) -> str:

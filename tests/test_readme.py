@@ -1,4 +1,4 @@
-"""What README.md shows is what the program does: its commands and snippets are run, their output compared.
+"""What README.md and docs/ show is what the program does: their commands and snippets are run, the output compared.
 
 ``python tests/test_readme.py`` writes outputs and pictures anew. Digits are not compared, since the last one may differ
 between machines; words, names and order are.
@@ -14,11 +14,14 @@ import shlex
 import tempfile
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli import app
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+ROOT = Path(__file__).resolve().parents[1]
+README = ROOT / "README.md"
+PAGES = (README, *sorted((ROOT / "docs").glob("*.md")))
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
@@ -67,9 +70,10 @@ def masked(text: str) -> list[str]:
     return re.sub(r"[-−+]?\d+(\.\d+)?", "#", text).split()
 
 
-def test_the_readme_shows_what_happens() -> None:
-    readme = README.read_text(encoding="utf-8")
-    assert masked(replay(readme)) == masked(readme)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_page_shows_what_happens(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    assert masked(replay(text)) == masked(text)
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:
@@ -78,9 +82,10 @@ def test_the_readme_begins_with_the_two_commands() -> None:
     assert 'python3 -m venv .venv && .venv/bin/pip install -e ".[test]" && .venv/bin/pytest\n' in readme
 
 
-def test_links_to_files_lead_somewhere() -> None:
-    for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", README.read_text(encoding="utf-8")):
-        assert (README.parent / target).exists(), target
+@pytest.mark.parametrize("page", (*PAGES, ROOT / "CONTRIBUTING.md"), ids=lambda page: page.name)
+def test_links_to_files_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", page.read_text(encoding="utf-8")):
+        assert (page.parent / target).exists(), target
 
 
 def draw_images(folder: Path) -> None:
@@ -97,5 +102,6 @@ def draw_images(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    README.write_text(replay(README.read_text(encoding="utf-8")), encoding="utf-8")
+    for page in PAGES:
+        page.write_text(replay(page.read_text(encoding="utf-8")), encoding="utf-8")
     draw_images(README.parent / "images")

@@ -57,8 +57,8 @@ def test_a_plot_shows_levels_times_and_directions() -> None:
     assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM)]
     assert (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()) == (
         "cooling-step",
-        "Time (s)",
-        "Display temperature (°C)",
+        "time (s)",
+        "display temperature (°C)",
     )
 
 
@@ -71,7 +71,7 @@ def test_cool_and_warm_differ_in_grey() -> None:
 def test_a_plot_draws_on_the_axes_it_is_given() -> None:
     ax = Figure().add_subplot()
     assert plot_icon(load_library("wave-shapes")["sine"], ax) is ax
-    assert Icon("x", (Hold(1),), Frame("current")).plot().get_ylabel() == "Current (A)"
+    assert Icon("x", (Hold(1),), Frame("current")).plot().get_ylabel() == "current (A)"
 
 
 def test_pictures_for_notebooks() -> None:

@@ -118,7 +118,12 @@ def test_json_that_cannot_be_written_is_told_before_the_work(cli: Cli, two: Path
 
 
 def test_a_figure_folder_that_is_a_file(cli: Cli, two: Path) -> None:
-    refused(cli("rank", two, "--people", 100_000, "--figure", two), "it is a file")
+    refused(cli("rank", two, "--people", 100_000, "--figure", two), "is the name of a file; give a folder", code=2)
+
+
+def test_a_figure_folder_with_the_name_of_a_picture(cli: Cli, two: Path, tmp_path: Path) -> None:
+    said = cli("rank", two, "--people", 100_000, "--figure", tmp_path / "fig.png")
+    refused(said, "--figure", "fig.png is the name of a file; give a folder, such as ", "fig, for all figures", code=2)
 
 
 DRIVES = [
@@ -134,6 +139,19 @@ def test_a_drive_that_cannot_be(cli: Cli, tmp_path: Path, text: str, words: tupl
     path = tmp_path / "drive.csv"
     path.write_text(text)
     refused(cli("simulate", "--current", path), *words)
+
+
+def test_a_drive_that_may_not_be_read_is_bad_input(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("time_s,current_A\n0,0.1\n1,0.1\n")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("os.access", lambda *_: False)  # what the parser of the command line would ask
+    for reader in ("read_text", "read_bytes", "open"):
+        monkeypatch.setattr(Path, reader, refuse)
+    refused(cli("simulate", "--current", path), "drive.csv", "ermission")
 
 
 USAGE = [

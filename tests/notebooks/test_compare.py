@@ -246,5 +246,5 @@ def test_the_figure_has_a_panel_of_differences_below_each_of_curves() -> None:
     assert [ax.get_title() for ax in figure.axes[:3]] == ["skin", "warm receptor", "heat flow, skin"]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ["A  a", "B  b"]
     assert figure.axes[5].get_lines()[-1].get_ydata()[-1] == pytest.approx(0.4)
-    assert figure.axes[1].get_lines()[-1].get_color() == "#d9680d"
+    assert figure.axes[1].get_lines()[-1].get_color() == "#e08214"
     assert np.ptp(figure.axes[4].get_ylim()) >= 0.01  # equal curves do not fill the panel with rounding

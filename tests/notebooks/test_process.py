@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
 from importlib.metadata import entry_points, version
+from pathlib import Path
 from typing import Any
 
 import pytest
+
+from thermicon.notebooks.cli import main
 
 Cli = Callable[..., Any]
 
@@ -33,6 +37,52 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     run = subprocess.run([sys.executable, "-c", program, "check", "x"], capture_output=True, text=True, check=False)
     assert run.returncode == 130
     assert run.stderr == "interrupted\n"
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        "thermicon.notebooks.door.TyperGroup.make_context",
+        "thermicon.notebooks.door.TyperGroup.invoke",
+        "thermicon.notebooks.cli.app",
+    ],
+)
+def test_an_interrupt_is_told_wherever_it_comes(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
+) -> None:
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(where, stopped)
+    monkeypatch.setattr(sys, "argv", ["thermicon", "library"])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert end.value.code == 130
+    assert capsys.readouterr().err == "interrupted\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")
+@pytest.mark.parametrize(
+    ("command", "files"),
+    [
+        (("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"), ("l.json", "fl/distance.png")),
+        (("simulate", "two.cue", "-o", "t.csv", "--figure", "t.png"), ("t.csv", "t-cool-step.png", "t-warm-step.png")),
+        (("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png")),
+        (("sweep", "two.cue", "--vary", "contact.area_cm2=4:9:2", "-o", "-", "--figure", "s.png"), ("s.png",)),
+        (("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"), ("c.png",)),
+    ],
+)
+def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tuple[str, ...], files: Any) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    run = subprocess.run(
+        [sys.executable, "-m", "thermicon.notebooks.cli", *command],
+        cwd=two.parent, stdout=write, stderr=write, timeout=120, check=False,
+    )  # fmt: skip
+    os.close(write)
+    assert run.returncode == 0
+    for name in files:
+        assert (two.parent / name).stat().st_size > 0, name
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")

@@ -11,12 +11,12 @@ import pytest
 
 Cli = Callable[..., Any]
 TOP = {
-    *("thermicon", "rig", "seed", "people", "tracking", "by", "norm", "content_hash"),
+    *("thermicon", "rig", "rig_changes", "seed", "people", "tracking", "by", "norm", "content_hash"),
     *("icons", "pairs", "confusion", "set", "chosen"),
 }
 ICON = {
     *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
-    *("percent_correct", "reachable", "safe", "reason", "rules"),
+    *("percent_correct", "reachable", "safe", "reason", "cautions", "rules"),
 }
 PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit"}
 SET = {
@@ -89,6 +89,112 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
     said = cli("rank", two, more, "--people", 5, "--json", "-")
     assert said.exit_code == 0, said.stderr
     assert json.loads(said.stdout)["confusion"]["labels"] == ["cool-step", "warm-step", "slow"]
+    assert said.stderr == (
+        "warning: baselines differ: 32 °C in two.cue, 33 °C in more.cue; the skin must adapt anew in between, "
+        "which the model leaves out\n"
+    )
+    table = cli("rank", two, more, "--people", 5).stdout
+    assert table.startswith("Two for a test; more.cue\n")
+
+
+def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None:
+    files = []
+    for name, verb in (("a", "warm"), ("b", "cool")):
+        path = tmp_path / f"{name}.cue"
+        path.write_text(f"cue 1\nicon {name} {{ {verb} by 2 °C at 1 °C/s; return at 1 °C/s }}\n", encoding="utf-8")
+        files.append(path)
+    said = cli("rank", *files, "--people", 2)
+    assert said.stdout.startswith("icon ")
+    assert said.stderr == ""
+
+
+@pytest.mark.parametrize("command", [("rank", "--people", 2), ("simulate",), ("netlist", "--icon", "cool-step")])
+def test_another_site_is_warned_about(cli: Cli, two: Path, tmp_path: Path, command: tuple[str, ...]) -> None:
+    two.write_text(two.read_text(encoding="utf-8").replace("site thenar", "site forearm"), encoding="utf-8")
+    out = ("-o", tmp_path / "a.cir") if command[0] == "netlist" else ()
+    said = cli(command[0], two, *command[1:], *out)
+    assert said.exit_code == 0
+    assert said.stderr.startswith(f"warning: {two} is for the site forearm, the rig thenar is for thenar\n")
+
+
+def test_a_sweep_warns_of_another_site(cli: Cli, two: Path) -> None:
+    two.write_text(two.read_text(encoding="utf-8").replace("site thenar", "site forearm"), encoding="utf-8")
+    said = cli("sweep", two, "--vary", "contact.area_cm2=4:9:2", "-o", "-")
+    assert "is for the site forearm" in said.stderr
+
+
+def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "rank.json"
+    options = ("--people", 2, "--norm", "rms", "--set", "driver.current_limit_A=0.3", "--json", out)
+    said = cli("rank", two, *options)
+    assert said.exit_code == 0, said.stderr
+    assert json.loads(out.read_text(encoding="utf-8"))["rig_changes"] == ["driver.current_limit_A=0.3"]
+    words = " ".join(said.stdout.split())
+    assert "Predicted for 2 virtual people on the thenar rig with driver.current_limit_A=0.3 (seed 0, " in words
+    assert "display tracking, rms norm). These are predictions of a model, not measurements." in words
+    assert "cool-step is not reached: misses its target by " in words
+    assert "; it is reached with its " in words
+    assert f"wrote {out}" in said.stderr
+    plain = " ".join(cli("rank", two, "--people", 2).stdout.split())
+    assert "on the thenar rig (seed 0, display tracking)." in plain
+
+
+def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
+    said = cli("rank", two, "--people", 1, "--trials", 1)
+    assert "for 95 % of people" not in said.stdout
+    assert "% correct\n" in said.stdout
+    assert " bits\n" in said.stdout
+    assert "of 1 trial would report" in said.stdout
+    assert "for 95 % of people" in cli("rank", two, "--people", 2).stdout
+
+
+def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "hard.cue"
+    path.write_text(
+        "cue 1\nset s { control current }\n"
+        "icon burn { to -3 A at 20 A/s; hold for 20 s; return at 20 A/s }\n"
+        "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n",
+        encoding="utf-8",
+    )
+    words = " ".join(cli("rank", path, "--people", 1).stdout.split())
+    assert "burn is NOT SAFE and not reached: " in words
+    assert "jolt is not reached: the drive asks for 1.6 A" in words
+
+
+def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "cold.cue"
+    cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
+    path.write_text(f"cue 1\nset s {{ control display }}\nicon a {cue}\nicon b {cue}\n", encoding="utf-8")
+    words = " ".join(cli("rank", path, "--people", 1).stdout.split())
+    assert "Caution, soft limit of safety passed by a, b: of a, skin surface reaches " in words
+    assert words.count("skin surface") == 1
+    assert "NOT SAFE" not in words
+
+
+def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "near.cue"
+    cues = [
+        f"icon i{k} {{ cool by {3 + 0.2 * k:.1f} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n" for k in range(5)
+    ]
+    path.write_text("cue 1\nset s { control display }\n" + "".join(cues), encoding="utf-8")
+    out = tmp_path / "rank.json"
+    words = " ".join(cli("rank", path, "--people", 2, "--json", out).stdout.split())
+    found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
+    assert len(found) > 5
+    assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons back to back, ")
+    assert "while naming one of them needs memory" in words
+    assert words.count("(apart from 2.563)") == 5
+    assert f"- and {len(found) - 5} more, all of them in --json" in words
+
+
+def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
+    from thermicon.notebooks.ranking import _disagreements
+
+    said = list(_disagreements([{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}]))
+    assert said == [
+        "Rules and model disagree: rules ask for a change and a rate, the model for a cautious observer who notices",
+        "  - a: rules say felt, the model 0.52 detected (felt from 0.9)",
+    ]
 
 
 def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> None:
@@ -97,6 +203,10 @@ def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> N
     said = cli("rank", path, "--people", 5)
     assert said.exit_code == 0, said.stderr
     assert "Worst pair" not in said.stdout
+    assert " bits" not in said.stdout
+    folder = tmp_path / "figures"
+    said = cli("rank", path, "--people", 5, "--figure", folder)
+    assert said.stderr == f"wrote distance.png, confusion.png and 1 overview into {folder}\n"
 
 
 def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Path) -> None:

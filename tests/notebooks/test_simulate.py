@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Rig, hold
+from thermicon.circuit import Rig, hold, nearest_reachable
+from thermicon.icons import read_cue
 
 Cli = Callable[..., Any]
 COLUMNS = [
@@ -37,7 +38,10 @@ def test_the_trace_has_the_promised_columns_and_rows(cli: Cli, two: Path, tmp_pa
     said = cli("simulate", two, "-o", out)
     assert said.exit_code == 0, said.stderr
     assert said.stdout == ""
-    assert said.stderr.splitlines()[0].startswith("cool-step: 8 s, reached")
+    first, second, last = said.stderr.splitlines()
+    assert first.startswith("cool-step: 8 s, reached")
+    assert second.startswith("warm-step: 6 s, reached")
+    assert last == f"wrote {out}"
     frame = pd.read_csv(out) if suffix == ".csv" else pd.read_parquet(out)
     assert list(frame.columns) == COLUMNS
     assert list(frame["icon"].unique()) == ["cool-step", "warm-step"]
@@ -82,6 +86,18 @@ def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path) -> None:
     assert said.exit_code == 0
     assert "NOT reached: misses its target by" in said.stdout
     assert "K" in said.stdout
+    icon, rig = read_cue(two)["cool-step"], Rig.load("thenar").with_(**{"driver.current_limit_A": 0.8})
+    near = nearest_reachable(icon, rig)
+    assert near is not None
+    assert said.stdout.endswith(f"\n  nearest   {near.sentence}\n")
+
+
+def test_a_miss_beside_a_file_says_how_to_mend_it(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "a.csv", tmp_path / "a.png"
+    options = ("--icon", "cool-step", "--set", "driver.current_limit_A=0.8", "-o", out, "--figure", picture)
+    lines = cli("simulate", two, *options).stderr.splitlines()
+    assert "; it is reached with its " in lines[0]
+    assert lines[1:] == [f"wrote {out}", f"wrote {picture}"]
 
 
 def test_a_designed_drive_replays_exactly_when_held(cli: Cli, two: Path, tmp_path: Path) -> None:

@@ -74,11 +74,11 @@ def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_p
     assert said.stderr.splitlines()[:3] == [
         "cool-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
         "warm-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
-        f"impossible, as at {AREA} = -5: rig thenar: {AREA} = -5.0 cm²: must be greater than 0 cm²",
+        f"impossible, as at {AREA} = -5: rig thenar: {AREA} = -5.0 cm²: must be at least 0.01 cm²",
     ]
     frame = pd.read_csv(out)
     lost = frame[frame[AREA] <= 0]
-    assert lost["reason"].str.contains("must be greater than 0 cm²").all()
+    assert lost["reason"].str.contains("must be at least 0.01 cm²").all()
     assert lost[["reached", "safe", "duration_s", "skin_min_C"]].isna().all(axis=None)
 
 
@@ -162,7 +162,7 @@ def test_figure_colours_tell_cooling_from_warming(two: Path) -> None:
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert names == ["cool-step", "warm-step"]
     cool, warm = tuple(line.get_color() for line in figure.legends[0].get_lines())
-    assert (cool, warm) == ("#1f6fb4", "#d9680d")
+    assert (cool, warm) == ("#2166ac", "#e08214")
     assert figure.get_supxlabel() == f"{key} (m²·K/W)"
     assert all("(" in ax.get_ylabel() for ax in figure.axes)
     assert figure.axes[0].get_xscale() == "log"

@@ -45,9 +45,19 @@ def _at(trace: Any, site: str) -> Any:
 def test_plot_returns_axes(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
     axes = percept.plot()
-    assert axes.get_ylabel() == "sensation, d′"
+    assert axes.get_ylabel() == "sensation (d′)"
+    assert axes.get_xlabel() == "time (s), receptor clock"
     assert axes.get_title() == "dip"
     assert percept._repr_html_().startswith("<svg")
+
+
+def test_the_onset_says_that_it_is_on_another_clock(cue: Any, observer: Observer) -> None:
+    percept = perceive(cue(change=-4.0), observer)
+    labels = [text.get_text() for text in percept.plot().get_legend().get_texts()]
+    said = f"reported as cold at {percept.onset_s:.2f} s\n(response clock: with conduction and decision)"
+    assert labels == ["cold", "warm", said]
+    unfelt = perceive(cue(change=0.0), observer).plot()
+    assert [text.get_text() for text in unfelt.get_legend().get_texts()] == ["cold", "warm"]
 
 
 def test_clock_and_shape_messages() -> None:

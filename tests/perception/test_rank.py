@@ -8,10 +8,10 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, perceive, rank
 
-TOP = "thermicon rig seed people tracking by norm content_hash icons pairs confusion set chosen"
+TOP = "thermicon rig rig_changes seed people tracking by norm content_hash icons pairs confusion set chosen"
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s percent_correct reachable safe "
-    "reason rules"
+    "reason cautions rules"
 )
 PAIR = "a b d_prime confused_probability why rules edit"
 SET = (
@@ -42,7 +42,7 @@ def test_keys_are_those_of_the_contract(held: Any) -> None:
     for icon in held["icons"]:
         assert list(icon) == ICON.split()
         assert list(icon["peak_change_K"]) == ["cold_receptor", "warm_receptor"]
-        assert {"rule", "pass", "value", "threshold", "unit", "source"} <= set(icon["rules"][0])
+        assert {"rule", "pass", "value", "threshold", "threshold_low", "unit", "source"} <= set(icon["rules"][0])
     for pair in held["pairs"]:
         assert list(pair) == PAIR.split()
         assert pair["edit"] is None
@@ -91,7 +91,78 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert ranking._repr_html_().startswith("<svg")
     from thermicon.perception.draw import plot_distance
 
-    assert plot_distance(ranking).get_title() == "predicted d′ between icons (max)"
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
+    apart = plot_distance(ranking)
+    assert apart.get_title() == "predicted d′ between icons (max)"
+    assert (apart.get_xlabel(), apart.get_ylabel()) == ("… and", "d′ between …")
+    assert len(apart.texts) == len(axes.texts) == 36  # every cell says its number, so no colour bar is needed
+
+
+def test_every_icon_is_felt_later_than_the_windows_usually_quoted(ranking: Ranking) -> None:
+    for icon in ranking.icons:
+        (latency,) = (rule for rule in icon.rules if rule.rule.startswith("latency"))
+        assert not latency.passed
+        assert latency.value is not None
+        assert latency.value > latency.threshold
+
+
+def test_what_was_changed_on_the_rig_is_told(rig: Rig) -> None:
+    other = rig.with_(**{"contact.area_cm2": 4}).with_set(["driver.current_limit_A=1.2"])
+    ranking = rank(load_library("wave-shapes"), other, people=1)
+    assert ranking.to_dict()["rig_changes"] == ["contact.area_cm2=4", "driver.current_limit_A=1.2"]
+    assert " on thenar with contact.area_cm2=4, driver.current_limit_A=1.2, 1 person, " in repr(ranking)
+    assert "[" not in repr(ranking)
+
+
+BY_CURRENT = "cue 1\nset s { control current; baseline 32 °C }\nicon a { %s }"
+
+
+def test_a_current_beyond_the_driver_is_not_reachable(rig: Rig) -> None:
+    icon = rank(parse(BY_CURRENT % "to 1.6 A at 0.4 A/s; hold for 0.1 s; to 0.1 A at 0.4 A/s"), rig, people=1).icons[0]
+    assert (icon.reachable, icon.safe) == (False, True)
+    assert icon.reason is not None
+    assert "1.6 A" in icon.reason
+    assert "-1.5 … 1.5 A" in icon.reason
+
+
+def test_what_is_neither_safe_nor_reachable_says_both(rig: Rig) -> None:
+    icon = rank(parse(BY_CURRENT % "to -3 A at 20 A/s; hold for 20 s"), rig, people=1).icons[0]
+    assert (icon.reachable, icon.safe) == (False, False)
+    assert icon.reason is not None
+    assert "hard" in icon.reason
+    assert "-1.5 … 1.5 A" in icon.reason
+    assert "; " in icon.reason
+
+
+def test_soft_limits_are_cautions(rig: Rig) -> None:
+    text = "cue 1\nset s { control display; baseline 32 °C }\nicon a { cool by 12 °C at 2 °C/s; hold for 9 s }"
+    ranking = rank(parse(text), rig, people=1)
+    assert ranking.icons[0].safe
+    assert ranking.icons[0].reason is None
+    assert any("soft" in caution for caution in ranking.icons[0].cautions)
+    assert ranking.to_dict()["icons"][0]["cautions"] == list(ranking.icons[0].cautions)
+
+
+def test_one_icon_has_no_bits_in_its_repr(rig: Rig) -> None:
+    text = "cue 1\nset s { control skin; baseline 32 °C }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
+    ranking = rank(parse(text), rig, people=2)
+    assert repr(ranking) == "Ranking(predicted: 1 icon on thenar, 2 people, 100.0 % correct [100, 100])"
+    from thermicon.perception.draw import plot_distance
+
+    assert [cell.get_text() for cell in ranking.plot().texts] == ["100"]
+    assert [cell.get_text() for cell in plot_distance(ranking).texts] == ["0.0"]
+
+
+def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
+    head = "cue 1\nset s { control display; baseline 32 °C }\n"
+    a, b = (
+        f"icon {n} {{ cool by {k} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n" for n, k in (("a", 3), ("b", 3.3))
+    )
+    (found,) = rank(parse(head + a + b), rig, people=2).rules_disagree
+    assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
+    assert found["text"].startswith("a and b: rules say told apart, the model d′ ")
+    assert float(found["text"].split("d′ ")[1].split()[0]) < 2.563
+    assert found["text"].endswith(" (apart from 2.563)")
 
 
 def test_what_does_not_exist_is_null(rig: Rig) -> None:

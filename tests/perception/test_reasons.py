@@ -1,14 +1,22 @@
+import re
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from thermicon.perception import (
+    NORMS,
     Observer,
     Percept,
     attack_K_per_s,
     delay_s,
+    difference,
+    difference_trace,
     excursion_K,
+    identification_dprime,
     largest_difference,
+    load_rules,
     onset_s,
     pair_reasons,
     peak_change_K,
@@ -48,7 +56,7 @@ def test_same_direction_gives_peaks_rates_and_onsets(cue: Any, observer: Observe
     assert rates.values["ratio"] == pytest.approx(3.0)
     assert onsets.values["difference"] == pytest.approx(abs(onsets.values["a"] - onsets.values["b"]))
     assert f"{onsets.values['difference']:.2f} s apart, within the 0.20 s of the response window" in onsets.text
-    assert "in the cold channel" in largest.text
+    assert largest.text.startswith("a and b differ most at ")
 
 
 def test_what_fails_to_separate_is_said(cue: Any, observer: Observer) -> None:
@@ -66,6 +74,76 @@ def test_other_directions_give_no_peaks(cue: Any, observer: Observer) -> None:
         "directions differ: a cools (-4.00 K at the cold receptor); b warms (+3.00 K at the warm receptor)"
     )
     assert reasons[1].text.startswith("felt at 0.")
+
+
+@pytest.mark.parametrize("norm", NORMS)
+def test_every_number_of_the_largest_difference_can_be_computed_again(cue: Any, observer: Observer, norm: Any) -> None:
+    one, two = cue(change=-4.0, name="a"), cue(change=3.0, name="b")
+    felt = perceive(one, observer), perceive(two, observer)
+    text = pair_reasons(one, two, *felt, observer, norm)[-1].text
+
+    over_time = np.abs(difference_trace(*felt, observer))
+    k = int(np.hypot(*over_time).argmax())
+    total = difference(*felt, observer, "max")
+    apart = difference(*felt, observer, norm)
+    left = float(identification_dprime(apart, observer, norm, float(felt[0].time_s[-1])))
+    cold, warm = over_time[:, k]
+    assert np.hypot(cold, warm) == pytest.approx(total)
+    begins = (
+        f"a and b differ most at {felt[0].time_s[k]:.2f} s by {total:.1f} d′ of sensation "
+        f"(cold {cold:.1f}, warm {warm:.1f}); "
+    )
+    leaves = f"memory noise leaves a nominal person d′ {left:.1f}"
+    ends = {
+        "max": f"{leaves} to tell them apart by",
+        "rms": f"by the rms norm it is {apart:.1f} d′ in all, of which {leaves}",
+        "integral": f"by the integral norm it is {apart:.1f} d′·s in all, of which {leaves}",
+    }
+    assert text == begins + ends[norm]
+
+
+def test_identical_icons_get_one_sentence(cue: Any, observer: Observer) -> None:
+    (only,) = why(cue, observer, {"change": -4.0}, {"change": -4.0})
+    assert only.text == "nothing differs: a and b move the receptors in the same way, so their names are guessed"
+    (longer,) = why(cue, observer, {"change": -4.0}, {"change": -4.0, "end_s": 20.0})
+    assert longer.text == only.text
+
+
+def test_what_no_sensation_tells_apart_has_no_time_of_largest_difference(cue: Any, observer: Observer) -> None:
+    *_, last = why(cue, observer, {"change": -0.001}, {"change": -0.0012})
+    assert last.text == "a and b nowhere differ by 0.05 d′ of sensation, so their names are guessed"
+
+
+@pytest.mark.parametrize("share", [0.9999, 0.99999, 1.00001, 1.0001])
+def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, share: float) -> None:
+    needed = load_rules().one("peak", channel="warm").central
+    peaks = why(cue, observer, {"change": 4.0}, {"change": 4.0 + needed * share})[1].text
+    found = re.search(r"differ by (\S+) K, (more than|within) the just noticeable (\S+) K$", peaks)
+    assert found is not None
+    gap, said, limit = found.groups()
+    assert said == ("more than" if share > 1 else "within")
+    assert (float(gap) > float(limit)) == (share > 1)
+    assert float(gap) != float(limit)
+    assert limit == "0.09"
+
+
+def test_rounding_does_not_undo_the_verdict_on_rates_and_onsets(cue: Any, observer: Observer) -> None:
+    ratio = load_rules().one("rate ratio").central
+    rates = why(cue, observer, {"change": -4.0, "rate": 2.0}, {"change": -4.0, "rate": 2.0 * ratio * 0.999})[2].text
+    assert rates.endswith("differ by a factor 1.429, within the just noticeable 1.43")
+    one = cue(change=-4.0, name="a")
+    felt = perceive(one, observer)
+    late = replace(felt, onset_s=(felt.onset_s or 0.0) + 0.1999)
+    onsets = pair_reasons(one, cue(change=-4.2, name="b"), felt, late, observer)[3].text
+    assert onsets.endswith(": 0.1999 s apart, within the 0.20 s of the response window")
+
+
+def test_as_much_as_is_said_of_what_is_equal(cue: Any, observer: Observer) -> None:
+    one = cue(change=-4.0, name="a")
+    felt = replace(perceive(one, observer), onset_s=0.0)
+    later = replace(felt, onset_s=0.2)
+    text = pair_reasons(one, cue(change=-4.2, name="b"), felt, later, observer)[3].text
+    assert text.endswith("0.20 s apart, as much as the 0.20 s of the response window")
 
 
 def test_unfelt_icons_are_named(cue: Any, observer: Observer) -> None:

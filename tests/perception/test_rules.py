@@ -45,14 +45,33 @@ def test_latency_is_held_against_its_window(cue: Any, observer: Observer) -> Non
     latency = scored(cue, observer, change=6.0)["latency (warm)"]
     assert latency.value is not None
     assert latency.value > 1.4 + 0.2
-    assert (latency.passed, latency.threshold) == (False, 0.9)
+    assert (latency.passed, latency.threshold_low, latency.threshold) == (False, 0.5, 0.9)
+    assert (latency.to_dict()["threshold_low"], latency.to_dict()["threshold"]) == (0.5, 0.9)
     assert latency.margin == pytest.approx(0.9 - latency.value)
     assert "against 0.5 to 0.9 s: fails" in latency.text
 
 
 def test_neutral_zone(cue: Any, observer: Observer) -> None:
     zone = scored(cue, observer, change=-6.0)["neutral zone (cold)"]
-    assert (zone.passed, zone.value, zone.margin, zone.threshold) == (True, 32.0, 2.0, 30.0)
+    assert (zone.passed, zone.value, zone.margin) == (True, 32.0, 2.0)
+    assert (zone.threshold_low, zone.threshold) == (30.0, 36.0)
+
+
+def test_a_rule_with_one_end_has_no_lower_threshold(cue: Any, observer: Observer) -> None:
+    change = scored(cue, observer, change=-6.0)["change at the receptor (cold)"]
+    assert change.threshold_low is None
+    assert change.to_dict()["threshold_low"] is None
+
+
+def test_an_icon_that_is_not_felt_keeps_both_ends_of_the_window(cue: Any, observer: Observer) -> None:
+    latency = scored(cue, observer, change=0.15, rate=0.05)["latency (warm)"]
+    assert (latency.threshold_low, latency.threshold) == (0.5, 0.9)
+
+
+@pytest.mark.parametrize(("change", "said"), [(-0.10999, "fails"), (-0.11001, "passes")])
+def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: float, said: str) -> None:
+    text = scored(cue, observer, change=change)["change at the receptor (cold)"].text
+    assert text == f"change at the receptor (cold): {-change:g} K against at least 0.11 K: {said}"
 
 
 def test_directions_tell_apart(cue: Any, observer: Observer) -> None:

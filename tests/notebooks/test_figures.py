@@ -1,0 +1,64 @@
+"""Figures for people: one colour and one style of labels everywhere, clocks and what-ifs told."""
+
+from __future__ import annotations
+
+import pytest
+
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit import draw as circuit_draw
+from thermicon.icons import load_library, parse
+from thermicon.notebooks import overview, set_figure, sweepfigure
+from thermicon.notebooks.overview import COOL, WARM, single_map
+from thermicon.perception import Percept, perceive, rank
+
+
+@pytest.fixture(scope="module")
+def percept() -> Percept:
+    return perceive(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=4.0))
+
+
+def test_cool_and_warm_have_one_colour_everywhere(percept: Percept) -> None:
+    assert (COOL, WARM) == (circuit_draw.COOL, circuit_draw.WARM) == ("#2166ac", "#e08214")
+    assert [line.get_color() for line in percept.plot().get_lines()[:2]] == [COOL, WARM]
+    assert COOL in sweepfigure.COOLS
+    assert WARM in sweepfigure.WARMS
+
+
+def test_time_is_labelled_alike(percept: Percept) -> None:
+    trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    for axes in (percept.plot(), trace.plot(), overview(trace).axes[-1]):
+        assert axes.get_xlabel().startswith("time (s)")
+        assert axes.get_ylabel().partition("(")[1] == "("
+
+
+def test_an_overview_names_what_was_changed_and_the_clock_of_the_onset(percept: Percept) -> None:
+    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4})
+    trace = simulate(load_library("six-icons")["cooling-step"], rig)
+    figure = overview(trace, percept, rig.changes)
+    assert figure.get_suptitle() == "cooling-step on the thenar rig with contact.area_cm2=4"
+    assert overview(trace).get_suptitle() == "cooling-step on the thenar rig"
+    sensation = figure.axes[-1]
+    assert sensation.get_ylabel() == "sensation (d′)\nreceptor clock"
+    label = sensation.get_legend().get_texts()[-1].get_text()
+    assert label == f"reported as cold\nat {percept.onset_s:.2f} s\n(response clock)"
+
+
+def test_nouns_print_as_one_line_and_draw_themselves(percept: Percept) -> None:
+    icons, rig = load_library("cooling-step-skin"), Rig.load("thenar")
+    trace, ranking = simulate(icons.icons[0], rig), rank(icons, rig, people=1)
+    for noun in (icons.icons[0], rig, trace, percept, ranking):
+        assert "\n" not in repr(noun)
+    for noun in (icons.icons[0], trace, percept, ranking):
+        assert "<svg" in noun._repr_html_()
+        assert noun.plot().get_title
+    assert len(trace.to_frame()) == 801
+    assert len(ranking.to_frame()) == 1
+
+
+def test_the_maps_of_one_icon_are_one_cell() -> None:
+    icons = parse("cue 1\nset s { control display }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }")
+    ranking = rank(icons, Rig.load("thenar"), people=1)
+    assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
+    only = single_map(ranking, "distance")
+    only.canvas.draw()
+    assert [ax.get_ylabel() for ax in only.axes] == ["d′ between …"]
