@@ -14,7 +14,7 @@ from thermicon.circuit.steady import hold, steady_state
 from thermicon.circuit.inverse import Design, design, design_many
 from thermicon.circuit.static import check_static
 from thermicon.circuit.trace import Outcome, Trace, write_trace
-from thermicon.circuit.simulate import simulate, simulate_current
+from thermicon.circuit.simulate import duration_s, simulate, simulate_all, simulate_current
 from thermicon.circuit.depths import Depths, Likeness, probe_depths, resembles
 from thermicon.circuit.meshstudy import Mesh, MeshStudy, mesh_study
 from thermicon.circuit.nearest import Nearest, nearest_reachable
@@ -52,7 +52,9 @@ __all__ = [
     "Outcome",
     "Trace",
     "write_trace",
+    "duration_s",
     "simulate",
+    "simulate_all",
     "simulate_current",
     "Depths",
     "Likeness",

@@ -76,32 +76,33 @@ def weighed(n, weight, constant, x, z0):
 
 
 @compiled
-def advance(n, step, current, squared, p, g0, x, sink, m, z, above):
+def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
     """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state from the hot plate to the deep node.
 
-    `sink` (5, lane) is each lane's heat sink as in `kernel.settle`, and its share in an implicit step.
+    `p` (parameter, lane) and `rig` (lane, parameter) are Network.plates twice; `sink` (lane, 5) is each lane's heat
+    sink as in `kernel.settle`, and its share in an implicit step.
     """
     half = 0.5 * step
     sweep(n, m[0], m[1], m[2], x, z)
     elim = m[3]
     for lane in range(LANES):
         if p[11, lane] > 0.0:
-            regulate_sink(step, p[:, lane], sink[:, lane])
-            sink[4, lane] = p[6, lane] / (p[11, lane] / half + p[6, lane])
+            regulate_sink(step, rig[lane], sink[lane])
+            sink[lane, 4] = p[6, lane] / (p[11, lane] / half + p[6, lane])
     for lane in range(LANES):
         hot0, cold0 = x[0, lane], x[1, lane]
         pump, joule = p[0, lane] * current[lane], 0.5 * p[1, lane] * squared[lane]
         hot_store, cold_store = p[3, lane] / half, p[4, lane] / half
-        share = sink[4, lane]
+        share = sink[lane, 4]
         out = p[6, lane] * (1.0 - share)
         a11 = hot_store + out + p[2, lane] - pump
         a22 = cold_store + p[2, lane] + pump + g0[lane] * (1.0 - elim[0, lane])
-        b1 = hot_store * hot0 + out * sink[0, lane] + share * sink[2, lane] + pump * ZERO_C_IN_K + joule
+        b1 = hot_store * hot0 + out * sink[lane, 0] + share * sink[lane, 2] + pump * ZERO_C_IN_K + joule
         b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0[lane] * z[0, lane]
         determinant = 1.0 / (a11 * a22 - p[2, lane] * p[2, lane])
         hot, cold = (b1 * a22 + p[2, lane] * b2) * determinant, (a11 * b2 + p[2, lane] * b1) * determinant
         x[0, lane], x[1, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
-        sink[0, lane] += 2.0 * share * (sink[2, lane] / p[6, lane] + hot - sink[0, lane])
+        sink[lane, 0] += 2.0 * share * (sink[lane, 2] / p[6, lane] + hot - sink[lane, 0])
         above[lane] = cold
     for i in range(n):
         for lane in range(LANES):
@@ -111,7 +112,7 @@ def advance(n, step, current, squared, p, g0, x, sink, m, z, above):
 
 
 @compiled
-def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink):
+def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink):
     """Load a block's rigs and states side by side; returns the most lumps. Short columns are padded at the deep end.
 
     The deep node joins the perfusion of the last lump (both are at one temperature), so padding is cut off by g = 0.
@@ -123,10 +124,10 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
         r = rig_of[block[lane]]
         own = count[r]
         for k in range(p.shape[0]):
-            p[k, lane] = bank_plates[r, k]
+            p[k, lane] = rig[lane, k] = bank_plates[r, k]
         x[0, lane], x[1, lane], x[n + 2, lane] = state[block[lane], 0], state[block[lane], 1], bank_plates[r, 7]
-        settle(x[0, lane], p[:, lane], sink[:, lane])
-        sink[4, lane] = 0.0
+        settle(x[0, lane], rig[lane], sink[lane])
+        sink[lane, 4] = 0.0
         for i in range(n + 1):
             inside = i < own
             cap[i, lane] = bank_cap[r, i] if inside else 1.0
@@ -146,14 +147,15 @@ def forward(
     most = bank_cap.shape[1] + 1
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
     x, z, m = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
-    p, sink = np.empty((bank_plates.shape[1], LANES)), np.zeros((5, LANES))
+    p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
+    sink = np.zeros((LANES, 5))
     probes = places.shape[1]
     at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
     same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
     current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink)
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         for q in range(probes):
             same[q] = True
             for lane in range(LANES):
@@ -204,7 +206,7 @@ def forward(
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap, g, perf, p[7], m)
                     factored = step
-                advance(n, step, current, squared, p, g[0], x, sink, m, z, above)
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
                 done += step
                 since += step
 
@@ -219,18 +221,14 @@ def follow(
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
     x, z, weight = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.empty((most, LANES))
     m, mp = np.zeros((4, most, LANES)), np.zeros((4, most, LANES))
-    p, sink, constant, z0 = (
-        np.empty((bank_plates.shape[1], LANES)),
-        np.zeros((5, LANES)),
-        np.empty(LANES),
-        np.empty(LANES),
-    )
+    p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
+    sink, constant, z0 = np.zeros((LANES, 5)), np.empty(LANES), np.empty(LANES)
     current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, cap, g, perf, x, sink)
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         factor(n, 0.5 * step, cap, g, perf, p[7], m)
         factor(n, period, cap, g, perf, p[7], mp)
         foresee(n, mp, weight, constant)
@@ -240,12 +238,12 @@ def follow(
                 share, elim = face_share[rig_of[block[lane]]], mp[3, 0, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
-                    x[0, lane], x[1, lane], sink[0, lane], current[lane], p[:, lane],
+                    x[0, lane], x[1, lane], sink[lane, 0], current[lane], rig[lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code
             for _ in range(pieces):
-                advance(n, step, current, squared, p, g[0], x, sink, m, z, above)
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
             for lane in range(LANES):
                 share = face_share[rig_of[block[lane]]] if skin_control else 1.0
                 reached[block[lane], k] = share * x[1, lane] + (1.0 - share) * x[2, lane]

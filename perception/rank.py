@@ -61,7 +61,7 @@ def rank(
     with (steps done, steps in all). A pair's d′ is the median over people. Same arguments, same bytes.
     Raises `ValueError` for a set without icons and for unknown names.
     """
-    from thermicon.circuit import simulate, simulate_many
+    from thermicon.circuit import duration_s, simulate_all, simulate_many
 
     members = list(icons)
     if not members:
@@ -72,9 +72,9 @@ def rank(
     report = _steps(progress, 4)
     observer = Observer.load()
     crowd = draw_people(people, seed)
-    durations = [float(simulate(icon, rig, rate_Hz=RATE_HZ).time_s[-1]) for icon in members]
+    durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
-    traces = [simulate(i, rig, rate_Hz=RATE_HZ, tail_s=end - own) for i, own in zip(members, durations, strict=True)]
+    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     percepts = [perceive(trace, observer) for trace in traces]
     report()
 
