@@ -8,27 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.circuit.network import PROBES
 from thermicon.circuit.skin import Array
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-COLUMNS = (
-    "icon",
-    "time_s",
-    "current_A",
-    "voltage_V",
-    "target_C",
-    "hot_plate_C",
-    "display_C",
-    "skin_C",
-    "cold_receptor_C",
-    "warm_receptor_C",
-    "heat_flow_skin_W_per_m2",
-    "heat_flow_cold_receptor_W_per_m2",
-    "heat_flow_warm_receptor_W_per_m2",
-)
+COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *PROBES)
 """Columns of a trace file, in order."""
 
 CLOSE_K = 0.1
