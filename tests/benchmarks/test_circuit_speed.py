@@ -95,6 +95,11 @@ def test_one_cue(name: str, tool: Tool, tmp_path: Path, benchmark: BenchmarkFixt
     process = ngspice_run(tool("ngspice"), tmp_path, [plain(netlist(rig, CORNERS))])
     benchmark(simulate_current, CORNERS, rig)
     cue = float(benchmark.stats.stats.min)
+    bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
+    intervals = cut(ROWS, CORNERS.time_s, CORNERS.current_A[None], held=False)
+    start = bank.states([steady_state(network_of(rig), 0.1)])
+    kernel = best_of(lambda: run_forward(bank, one, one, intervals, start.copy()), 30)
+    print(f"\n{name}: the compiled run alone {kernel * 1e3:.2f} ms: {process / kernel:.0f} times an ngspice process")
     benchmark.extra_info.update(nodes=len(network_of(rig).capacity_J_per_K) + 3, ratio=process / cue)
     said = f"ours {cue * 1e3:.2f} ms (error {ours * 1e3:.3f} mK), "
     said += f"ngspice process {process * 1e3:.1f} ms (error {theirs * 1e3:.3f} mK): {process / cue:.0f} times"
