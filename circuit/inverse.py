@@ -102,18 +102,23 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     return tuple(found.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
 
 
+def gains_of(rig: Rig) -> tuple[float, float, float, float]:
+    """Thermistor lag s and gains A/K, A/(K·s), A·s/K of a rig's own loop."""
+    pid = rig.controller
+    assert pid is not None
+    return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K
+
+
 def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array) -> Design:
     """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
 
     The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
     """
-    pid = rig.controller
-    assert pid is not None
     bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
     period = 1.0 / rig.driver.update_Hz
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
-    gains = np.array([[pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K]])
+    gains = np.array([gains_of(rig)])
     currents, reached, why = run_regulate(
         bank, one, one, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
     )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, cut, run_follow, run_forward
-from thermicon.circuit.inverse import baseline_C, design, periods, target_at
+from thermicon.circuit.bank import Bank, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.inverse import baseline_C, design, gains_of, periods, target_at
 from thermicon.circuit.network import network_of
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
@@ -66,10 +66,16 @@ def simulate_many(
 
     `tracking` is one of TRACKINGS, or None for what suits each cue: `replay` plays the current designed on `nominal`
     open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits, `ideal`
-    solves anew for each rig. Raises RigError when a rig cannot hold a baseline.
+    solves anew for each rig. Rigs with a PID loop run it. Raises RigError when a rig cannot hold a baseline.
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
+    if not rigs or not icons:
+        raise RigError("a batch needs at least one cue and one rig")
+    if not 0 < end_s < np.inf:
+        raise RigError(f"a batch cannot end at {end_s:g} s; it must be above 0")
+    if len({rig.controller is None for rig in (*rigs, nominal)}) > 1:
+        raise RigError("rigs of one batch must all have a controller, or none")
     if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
     rows = rows_until(end_s, rate_Hz)
@@ -107,11 +113,13 @@ def simulate_stream(
     >>> [(len(cues), batch.values.shape) for cues, batch in parts]
     [(4, (3, 1, 4, 901)), (2, (3, 1, 2, 901))]
     """
+    if at_once < 1:
+        raise RigError(f"at_once = {at_once}: at least one cue must be in memory at a time")
     waiting = iter(icons)
     while cues := tuple(itertools.islice(waiting, at_once)):
         yield (
             cues,
-            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking="ideal", probes=probes),
+            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, probes=probes),
         )
 
 
@@ -141,7 +149,10 @@ class _Stage:
         ends = periods(self.nominal, self.end_s)
         targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
         rest = {base: hold(self.nominal, control, base)[0] for base in set(bases)}
-        currents = self._find((self.nominal,), control, targets, bases)
+        if self.nominal.controller is None:
+            currents = self._find((self.nominal,), control, targets, bases)
+        else:
+            currents = np.array([design(icon, self.nominal, self.end_s).drive.current_A[:-1] for icon in icons])
         states = {
             (r, amperes): steady_state(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
@@ -166,11 +177,29 @@ class _Stage:
 
     def _find(self, rigs: Sequence[Rig], control: str, targets: Array, bases: Sequence[float]) -> Array:
         """Currents (rigs · cues, periods) that make each rig follow each target from rest at its baseline."""
+        if self.nominal.controller is not None:
+            return self._loop(rigs, control, targets, bases)
         bank, period = Bank.of([network_of(rig) for rig in rigs]), 1.0 / self.nominal.driver.update_Hz
         rig_of, cue_of = (place.ravel() for place in np.indices((len(rigs), len(bases))))
         held = {(r, base): hold(rig, control, base)[1] for r, rig in enumerate(rigs) for base in set(bases)}
         start = bank.states([held[int(r), bases[int(c)]] for r, c in zip(rig_of, cue_of, strict=True)])
         return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", start)[0]
+
+    def _loop(self, rigs: Sequence[Rig], control: str, targets: Array, bases: Sequence[float]) -> Array:
+        """As `_find`, by the PID loop of each rig; under skin control a loop has no set-point of its own."""
+        if control == "skin":
+            raise RigError(
+                "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
+                "use tracking display, or rigs without [controller]"
+            )
+        bank, period = Bank.of([network_of(rig) for rig in rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = (place.ravel() for place in np.indices((len(rigs), len(bases))))
+        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(rigs) for base in set(bases)}
+        lanes = [held[int(r), bases[int(c)]] for r, c in zip(rig_of, cue_of, strict=True)]
+        setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
+        gains = np.array([gains_of(rig) for rig in rigs])
+        bias, start = np.array([current for current, _ in lanes]), bank.states([state for _, state in lanes])
+        return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias, start)[0]
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, a row a cue or a row a lane, on every rig and cue from given states."""

@@ -57,7 +57,10 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
     """The shipped mesh, coarser and finer ones, and fixed elements: one for the outer layers, a few for the rest."""
     layers = len(rig.skin.layers)
     outer = max(1, layers - 3)
-    fixed = tuple((1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20))
+    fixed = [(1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20)]
+    own = rig.skin.elements
+    if own is not None and own not in fixed:
+        fixed.insert(0, own)
     return (
         SHIPPED,
         Mesh("twice as coarse", 2 * FIRST_CELL_M, 2 * CELL_GROWTH),

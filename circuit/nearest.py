@@ -58,7 +58,8 @@ def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     if smaller is None or (slower is not None and slower <= smaller):
         assert slower is not None
         return Nearest(changed(icon, base, slower=slower), slower, 1.0)
-    return Nearest(changed(icon, base, smaller=1.0 / smaller), 1.0, 1.0 / smaller)
+    least = _three_digits(1.0 / smaller, math.floor)  # never rounded towards what is not reached
+    return Nearest(changed(icon, base, smaller=least), 1.0, least)
 
 
 def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:
@@ -93,13 +94,17 @@ def _reached(icon: Icon, rig: Rig) -> bool:
 
 
 def _least(works: Callable[[float], bool], most: float) -> float | None:
-    """Least factor above 1 that works, rounded up to three digits; None where not even the most does."""
+    """Least factor above 1 that works, with three digits; None where not even the most does."""
     if not works(most):
         return None
     low, high = 0.0, math.log(most)
     for _ in range(STEPS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if works(math.exp(middle)) else (middle, high)
-    digits = 10 ** (2 - math.floor(high / math.log(10)))
-    rounded = math.ceil(math.exp(high) * digits) / digits
-    return rounded if works(rounded) else math.exp(high)
+    return _three_digits(math.exp(high), math.ceil)
+
+
+def _three_digits(value: float, towards: Callable[[float], int]) -> float:
+    """A value with three digits, rounded up or down."""
+    digits = 10.0 ** (2 - math.floor(math.log10(value)))
+    return towards(value * digits - 1e-9 if towards is math.ceil else value * digits + 1e-9) / digits

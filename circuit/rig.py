@@ -21,6 +21,9 @@ from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table
 from thermicon.circuit.settings import put_all, read_settings
 from thermicon.circuit.skin import Column, Layer, Skin, column_of
 
+LIVING_C = (28.0, 38.5)
+"""Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
+
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 """Bare skin in still air loses 40 to 120 W/m²; a rig that rests above this is told so."""
 
@@ -106,6 +109,11 @@ class Rig:
             )
         if self.deep_C < self.skin.rest_C:
             found.append(f"blood at {self.deep_C:.2f} °C is colder than the resting surface at {self.skin.rest_C:g} °C")
+        if not LIVING_C[0] <= self.deep_C <= LIVING_C[1]:
+            found.append(
+                f"blood at {self.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
+                f"check skin.rest_C and the ambient"
+            )
         return (*found, *self.module_origin.warnings)
 
     @property

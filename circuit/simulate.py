@@ -15,7 +15,7 @@ from thermicon.circuit.probes import between, divided, joined, readings_of, sens
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.skin import Array
-from thermicon.circuit.steady import hold, steady_state
+from thermicon.circuit.steady import check_sink, hold, steady_state
 from thermicon.circuit.trace import Outcome, Trace
 from thermicon.icons import Icon
 
@@ -126,6 +126,7 @@ def _replay(drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array
         state = steady_state(network_of(rig), first)
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
+    check_sink(rig, state)
     rows = rows_until(float(drive.time_s[-1]), rate_Hz)
     return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None, readings)
 

@@ -72,6 +72,19 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
     return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
 
 
+def check_sink(rig: Rig, state_C: Array) -> None:
+    """Raise RigError where a hot plate under its own control has not the power to rest at a state (n + 3,) in °C."""
+    sink, own = rig.heat_sink, rig.heat_sink.controller
+    if own is None:
+        return
+    power = (float(state_C[HOT]) - sink.temperature_C) / sink.resistance_K_per_W
+    if abs(power) > own.power_limit_W:
+        raise RigError(
+            f"rig {rig.name}: at rest the hot plate has {abs(power):.2f} W to {'remove' if power > 0 else 'add'}, its "
+            f"controller gives {own.power_limit_W:g} W; raise heat_sink.power_limit_W, or begin nearer to rest"
+        )
+
+
 def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """Return (current A, state °C) that hold `skin` or `display` at a baseline; raises RigError when none can.
 
@@ -102,4 +115,5 @@ def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
             f"{what}: it needs {voltage:.2f} V, the driver gives at most {driver.voltage_limit_V:g} V; "
             f"choose a baseline nearer to rest or a higher driver.voltage_limit_V"
         )
+    check_sink(rig, state)
     return float(current), state

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, Trace, hold, netlist, simulate, simulate_current
+from thermicon.circuit import Drive, Rig, RigError, Trace, hold, netlist, simulate, simulate_current, simulate_many
 from thermicon.icons import Icon, parse
 
 GAINS = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
@@ -170,3 +170,28 @@ def test_the_same_loop_in_ngspice_agrees_within_5_mK(body: str, tool: Tool, tmp_
     trace = simulate(cue, LOOP)
     names, table = ngspice_table(sampled_loop(LOOP, cue, float(trace.time_s[-1])), tool("ngspice"), tmp_path)
     assert display_difference(trace, names, table) < 5e-3
+
+
+def test_a_batch_runs_the_loop_too() -> None:
+    cues = [icon("cool by 6 °C at 3 °C/s\nhold for 4 s"), icon("warm by 2 °C at 1 °C/s\nhold for 5 s")]
+    other = LOOP.with_(**{"contact.resistance_m2K_per_W": 9e-4})
+    batch = simulate_many(cues, [LOOP, other], nominal=LOOP, end_s=9.0, probes=("display_C",))
+    for r, rig in enumerate((LOOP, other)):
+        for c, cue in enumerate(cues):
+            alone = simulate(cue, rig, tail_s=9.0 - cue.lower(32.0).duration_s)
+            assert np.abs(batch["display_C"][r, c] - alone.display_C).max() < 1e-4
+    skin = [icon("cool by 3 °C at 1 °C/s\nhold for 5 s", "skin")]
+    replayed = simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, probes=("skin_C",))
+    assert np.abs(replayed["skin_C"][0, 0] - simulate(skin[0], LOOP, tail_s=1.0).skin_C).max() < 1e-4
+    with pytest.raises(RigError, match="cannot be solved anew through a PID loop, which sees the display alone"):
+        simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, tracking="ideal")
+    with pytest.raises(RigError, match="must all have a controller, or none"):
+        simulate_many(cues, [Rig.load("thenar")], nominal=LOOP, end_s=9.0)
+
+
+def test_a_hot_plate_without_the_power_to_rest_is_refused() -> None:
+    weak = HEAVY.with_(**{"heat_sink.power_limit_W": 0.5})
+    with pytest.raises(RigError, match=r"at rest the hot plate has 10\.\d+ W to remove, its controller gives 0\.5 W"):
+        simulate_current(Drive([0, 5], [1.0, 1.0]), weak)
+    with pytest.raises(RigError, match=r"raise heat_sink\.power_limit_W, or begin nearer to rest"):
+        hold(HEAVY.with_(**{"heat_sink.power_limit_W": 0.1}), "display", 32.0)

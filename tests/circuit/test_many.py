@@ -115,3 +115,23 @@ def test_a_stream_is_the_batch_in_parts() -> None:
     assert [len(cues) for cues, _ in parts] == [4, 2]
     joined = np.concatenate([batch.values for _, batch in parts], axis=2)
     assert np.abs(joined - whole.values).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"icons": ()}, "at least one cue and one rig"),
+        ({"rigs": []}, "at least one cue and one rig"),
+        ({"end_s": float("nan")}, "a batch cannot end at nan s"),
+        ({"end_s": -2.0}, "a batch cannot end at -2 s"),
+    ],
+)
+def test_an_empty_batch_and_an_impossible_end_are_refused(changes: dict[str, object], words: str) -> None:
+    given = {"icons": SIX, "rigs": [THENAR], "nominal": THENAR, "end_s": 9.0, **changes}
+    with pytest.raises(RigError, match=words):
+        simulate_many(**given)  # type: ignore[arg-type]
+
+
+def test_a_stream_needs_room_for_one() -> None:
+    with pytest.raises(RigError, match="at_once = 0: at least one cue must be in memory"):
+        next(simulate_stream(SIX, THENAR, end_s=9.0, at_once=0))

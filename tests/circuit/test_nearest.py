@@ -53,3 +53,21 @@ def test_a_current_is_not_changed() -> None:
     icon = parse("cue 1\nset s { control current }\nicon pump { to 3 A at 1 A/s; return at 1 A/s }").icons[0]
     assert not simulate(icon, THENAR).reachable
     assert nearest_reachable(icon, THENAR) is None
+
+
+@pytest.mark.parametrize(
+    ("body", "control", "changes"),
+    [
+        ("warm by 3 °C at 2 °C/s; hold for 2 s", "skin", {"driver.current_min_A": 0.0}),
+        ("cool by 6 °C at 3 °C/s; hold for 4 s", "skin", {"driver.current_limit_A": 0.3}),
+        ("cool by 5 °C at 50 °C/s; hold for 1 s", "display", {}),
+    ],
+)
+def test_the_number_as_printed_is_reached(body: str, control: str, changes: dict[str, float]) -> None:
+    rig = THENAR.with_(**changes)
+    icon = parse(f"cue 1\nset s {{ control {control} }}\nicon x {{ {body} }}").icons[0]
+    nearest = nearest_reachable(icon, rig)
+    assert nearest is not None
+    printed = float(f"{nearest.smaller:.3g}")
+    assert printed == pytest.approx(nearest.smaller, rel=1e-12)
+    assert simulate(changed(icon, 32.0, slower=float(f"{nearest.slower:.3g}"), smaller=printed), rig).reachable

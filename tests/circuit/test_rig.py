@@ -158,3 +158,9 @@ def test_a_changed_rig_knows_what_was_changed() -> None:
     once = THENAR.with_(**{"contact.area_cm2": 4, "driver.current_limit_A": 1.0})
     assert once.changes == ("contact.area_cm2=4", "driver.current_limit_A=1.0")
     assert once.with_(**{"contact.area_cm2": 5}).changes == ("contact.area_cm2=5", "driver.current_limit_A=1.0")
+
+
+def test_blood_that_no_limb_has_is_told() -> None:
+    hot = THENAR.with_(**{"skin.rest_C": 38.0})
+    assert hot.warnings[-1].endswith("of living limbs; check skin.rest_C and the ambient")
+    assert "blood at 42.5" in hot.warnings[-1]
