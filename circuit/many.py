@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.bank import Bank, cut, run_follow, run_forward, run_regulate
-from thermicon.circuit.inverse import baseline_C, design, gains_of, periods, target_at
+from thermicon.circuit.bank import Bank, Index, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from thermicon.circuit.network import network_of
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
@@ -90,7 +90,7 @@ def simulate_many(
             for place, cue in zip(places, cues, strict=True):
                 values[:, :, place] = stage.play_corners(cue)
         elif way == "replay":
-            values[:, :, places] = stage.replay(cues, control == "skin")
+            values[:, :, places] = stage.replay(cues)
         else:
             values[:, :, places] = stage.track(cues, control, way)
     values.setflags(write=False)
@@ -142,23 +142,16 @@ class _Stage:
         bank = Bank.of([network_of(rig) for rig in self.rigs])
         return run_forward(bank, every, np.zeros_like(every), intervals, bank.states(states), self.probes)
 
-    def replay(self, icons: Sequence[Icon], skin_control: bool) -> Array:
+    def replay(self, icons: Sequence[Icon]) -> Array:
         """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
-        control = "skin" if skin_control else "display"
-        bases = [baseline_C(icon, self.nominal) for icon in icons]
-        ends = periods(self.nominal, self.end_s)
-        targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        rest = {base: hold(self.nominal, control, base)[0] for base in set(bases)}
-        if self.nominal.controller is None:
-            currents = self._find((self.nominal,), control, targets, bases)
-        else:
-            currents = np.array([design(icon, self.nominal, self.end_s).drive.current_A[:-1] for icon in icons])
+        plans = design_many(icons, self.nominal, self.end_s)
+        currents = np.array([plan.drive.current_A[:-1] for plan in plans])
         states = {
             (r, amperes): steady_state(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
-            for amperes in rest.values()
+            for amperes in {plan.rest_A for plan in plans}
         }
-        return self._play(currents, icons, [states[r, rest[base]] for r in range(len(self.rigs)) for base in bases])
+        return self._play(currents, icons, [states[r, plan.rest_A] for r in range(len(self.rigs)) for plan in plans])
 
     def track(self, icons: Sequence[Icon], control: str, way: str) -> Array:
         """Each rig's own current for the nominal display trajectory, or for the cue itself: as `replay`."""
@@ -171,42 +164,47 @@ class _Stage:
             bases = [float(display[0]) for display in shown]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        currents = self._find(self.rigs, control, targets, bases)
-        states = {(r, base): hold(rig, control, base)[1] for r, rig in enumerate(self.rigs) for base in set(bases)}
-        return self._play(currents, icons, [states[r, base] for r in range(len(self.rigs)) for base in bases])
+        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
+        states = [state for _, state in lanes]
+        if self.nominal.controller is None:
+            currents = self._follow(control, targets, states)
+        else:
+            currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
+        return self._play(currents, icons, states)
 
-    def _find(self, rigs: Sequence[Rig], control: str, targets: Array, bases: Sequence[float]) -> Array:
-        """Currents (rigs · cues, periods) that make each rig follow each target from rest at its baseline."""
-        if self.nominal.controller is not None:
-            return self._loop(rigs, control, targets, bases)
-        bank, period = Bank.of([network_of(rig) for rig in rigs]), 1.0 / self.nominal.driver.update_Hz
-        rig_of, cue_of = (place.ravel() for place in np.indices((len(rigs), len(bases))))
-        held = {(r, base): hold(rig, control, base)[1] for r, rig in enumerate(rigs) for base in set(bases)}
-        start = bank.states([held[int(r), bases[int(c)]] for r, c in zip(rig_of, cue_of, strict=True)])
-        return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", start)[0]
+    def _lanes(self, cues: int) -> tuple[Index, Index]:
+        """Rig and cue of every lane, all cues of a rig together."""
+        rig_of, cue_of = (place.ravel() for place in np.indices((len(self.rigs), cues)))
+        return rig_of, cue_of
 
-    def _loop(self, rigs: Sequence[Rig], control: str, targets: Array, bases: Sequence[float]) -> Array:
-        """As `_find`, by the PID loop of each rig; under skin control a loop has no set-point of its own."""
+    def _follow(self, control: str, targets: Array, states: Sequence[Array]) -> Array:
+        """Currents (rigs · cues, periods) that make each rig follow each target from its state."""
+        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = self._lanes(len(targets))
+        return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", bank.states(states))[0]
+
+    def _loop(
+        self, control: str, targets: Array, bases: Sequence[float], bias_A: Array, states: Sequence[Array]
+    ) -> Array:
+        """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point of its own."""
         if control == "skin":
             raise RigError(
                 "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
                 "use tracking display, or rigs without [controller]"
             )
-        bank, period = Bank.of([network_of(rig) for rig in rigs]), 1.0 / self.nominal.driver.update_Hz
-        rig_of, cue_of = (place.ravel() for place in np.indices((len(rigs), len(bases))))
-        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(rigs) for base in set(bases)}
-        lanes = [held[int(r), bases[int(c)]] for r, c in zip(rig_of, cue_of, strict=True)]
+        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = self._lanes(len(targets))
         setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
-        gains = np.array([gains_of(rig) for rig in rigs])
-        bias, start = np.array([current for current, _ in lanes]), bank.states([state for _, state in lanes])
-        return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias, start)[0]
+        gains = np.array([gains_of(rig) for rig in self.rigs])
+        return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, bank.states(states))[0]
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, a row a cue or a row a lane, on every rig and cue from given states."""
         times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
         held = np.concatenate([currents, currents[:, -1:]], axis=1)
         bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
-        rig_of, cue_of = (place.ravel() for place in np.indices(shape))
+        rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
         intervals = cut(self.rows, times, held, held=True)

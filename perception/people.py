@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit.records import Record
-from thermicon.perception.observer import Observer, load_thresholds
+from thermicon.perception.observer import load_thresholds
 from thermicon.perception.receptors import Array
 
 if TYPE_CHECKING:
@@ -132,23 +132,6 @@ def people_records() -> dict[str, Record]:
         "decision_s": table.one("decision and motor time"),
         "lapse": table.one("lapse rate"),
     }
-
-
-def nominal_people(observer: Observer) -> People:
-    """One person without any deviation."""
-    one = np.ones(1)
-    return People(
-        threshold_cold=one,
-        threshold_warm=one,
-        memory=one,
-        contact_resistance=one,
-        outer_layer=one,
-        velocity_cold_m_per_s=one * observer.cold.velocity_m_per_s,
-        velocity_warm_m_per_s=one * observer.warm.velocity_m_per_s,
-        path=one,
-        decision_s=one * observer.decision_s,
-        lapse=one * observer.lapse,
-    )
 
 
 def _normal(uniform: Array) -> Array:
