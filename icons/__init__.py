@@ -8,10 +8,14 @@ from thermicon.icons.corners import Corners
 from thermicon.icons.draw import plot_icon
 from thermicon.icons.errors import CueError, CueErrors
 from thermicon.icons.frame import Frame, Metadata
-from thermicon.icons.icon import Icon, IconSet
+from thermicon.icons.parameter import Parameter
+from thermicon.icons.icon import Icon
+from thermicon.icons.family import Family, Slot
+from thermicon.icons.iconset import IconSet, Members
 from thermicon.icons.shipped import library_names, load_library, read_cue
 from thermicon.icons.parse import parse
-from thermicon.icons.statements import Change, Drive, Hold, Repeat, Rest, Return, Statement
+from thermicon.icons.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from thermicon.icons.shapes import Pulse, Step, Wave
 
 # In the order of the flow, not of the alphabet.
 __all__ = [
@@ -22,7 +26,11 @@ __all__ = [
     "CueError",
     "CueErrors",
     "IconSet",
+    "Members",
     "Icon",
+    "Family",
+    "Parameter",
+    "Slot",
     "Frame",
     "Metadata",
     "Statement",
@@ -31,7 +39,12 @@ __all__ = [
     "Hold",
     "Rest",
     "Return",
+    "Step",
+    "Pulse",
+    "Wave",
     "Repeat",
+    "Play",
+    "Total",
     "ASSUMED_BASELINE_C",
     "Corners",
     "plot_icon",

@@ -63,9 +63,6 @@ def _not_yet(case: _Case) -> Finding | None:
     if case.first in NOT_YET and case.index == 0:
         help = NOT_YET[case.first]
         return _at(bad, "E120", f'"{case.first}" is designed, but this version does not have it', help)
-    if case.first == "icon" and bad.text.startswith("("):
-        help = "write one icon for each member, with its numbers in place"
-        return _at(bad, "E120", "families with parameters are designed, but this version does not have them", help)
     if bad.text == "baseline" and case.where in ("icon", "repeat") and case.before is not None:
         whole = Edit(case.pieces[0].start, bad.end, "return")
         return _at(bad, "E120", "baseline is no target in this version", "write: return at 3 °C/s", whole)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from thermicon.icons.family import Family
     from thermicon.icons.icon import Icon
 
 # Dark blue and light orange stay apart in grey and for all common kinds of colour vision.
@@ -47,7 +48,7 @@ def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
     return ax
 
 
-def svg(icons: "Sequence[Icon]") -> str:
+def svg(icons: "Sequence[Icon | Family]") -> str:
     """Return icons as one small inline SVG; of more than 12, the first 12."""
     from matplotlib.figure import Figure
 
@@ -56,11 +57,27 @@ def svg(icons: "Sequence[Icon]") -> str:
     rows = -(-len(shown) // columns)
     figure = Figure(figsize=(3.2 * columns, 2.2 * rows), layout="constrained")
     for place, icon in enumerate(shown):
-        plot_icon(icon, figure.add_subplot(rows, columns, place + 1))
+        icon.plot(figure.add_subplot(rows, columns, place + 1))
     out = StringIO()
     figure.savefig(out, format="svg", metadata={"Date": None})
     more = f"<p>and {len(icons) - len(shown)} more</p>" if len(icons) > len(shown) else ""
     return re.sub(r"^.*?(?=<svg)", "", out.getvalue(), flags=re.DOTALL) + more
+
+
+def plot_family(family: "Family", ax: "Axes | None" = None) -> "Axes":
+    """Draw up to 24 members of a family, evenly chosen, over one another, and return the Axes."""
+    step = max(1, len(family) // 24)
+    axes = plot_icons([family[place] for place in range(0, len(family), step)][:24], ax)
+    axes.set_title(f"{family.name}: {len(family):,} icons")
+    return axes
+
+
+def plot_icons(icons: "Sequence[Icon]", ax: "Axes | None" = None) -> "Axes":
+    """Draw several icons over one another, and return the Axes."""
+    for icon in icons:
+        ax = plot_icon(icon, ax)
+    assert ax is not None
+    return ax
 
 
 def _label(icon: "Icon") -> str:

@@ -56,6 +56,17 @@ TITLES: dict[str, str] = {
     "E219": "level out of range",
     "E220": "too many corners",
     "E221": "too long",
+    "E222": "total not kept",
+    "E223": "icon without duration",
+    "E224": "play away from baseline",
+    "E225": "not whole periods",
+    "E226": "unknown parameter",
+    "E227": "parameter never used",
+    "E228": "impossible range",
+    "E229": "total inside a repeat",
+    "E230": "unknown icon to play",
+    "E231": "too many members",
+    "E232": "icons that play each other",
 }
 WIDEST = 110
 # Errors shown, and errors behind which reading stops: nobody mends a thousand in one go.

@@ -2,7 +2,7 @@
 
 from thermicon.icons.assemble import analyse
 from thermicon.icons.errors import MOST_ERRORS, CueError, CueErrors
-from thermicon.icons.icon import IconSet
+from thermicon.icons.iconset import IconSet
 from thermicon.icons.source import Finding, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.

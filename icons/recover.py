@@ -97,6 +97,8 @@ class _Reader:
             return False
         after = self.text[token.end_pos or 0]
         if token.type == "NUMBER":
+            if self.heading:  # the values of a parameter: 1..3, or [1,2]
+                return after == "_" or after.isdigit()
             return after in ".,_" or after.isdigit()
         last = token[-1]
         return (last.isalnum() or last == "-") and (after.isalnum() or after in "_-/°")

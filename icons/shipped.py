@@ -5,7 +5,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from thermicon.icons.errors import whole_file
-from thermicon.icons.icon import IconSet
+from thermicon.icons.iconset import IconSet
 from thermicon.icons.parse import parse
 from thermicon.icons.source import MOST_BYTES
 from thermicon.icons.words import nearest

@@ -1,0 +1,92 @@
+"""Corner times and levels in as few decimals as a recording allows: rounding may cost as much as its noise does."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.icons.settle import Path, Tube, settle
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+Corners = tuple[tuple[float, ...], tuple[float, ...]]
+# Decimals of seconds, from short to exact; 0 stands for the time of the nearest reading.
+_TIMES = (1, 2, 0, 3, 4, 5, 6, 9)
+_READING = _TIMES.index(0)
+_MOST_ROUNDS = 12
+
+
+def rounded(path: Path, tube: Tube, time: Array, apart: Array) -> Corners:
+    """Return times (s) and values of the corners of a path, rounded as far as it then stays in the tube.
+
+    `time` holds the readings' times as recorded, `apart` as the tube has them, where no two are the same.
+    """
+    deviation = float((tube.excess(path) + tube.room)[tube.room == tube.tolerance].max())
+    cost = min(max(deviation / 2, tube.tolerance / 100), tube.tolerance / 5)
+    path = _levels(path, tube, cost)
+    true = np.interp(path.time, apart, time)
+    times = _times(path, tube, true, time, cost)
+    same = np.diff(path.value) == 0
+    kept = np.concatenate(([True], ~(same[1:] & same[:-1]), [True]))
+    return tuple(times[kept].tolist()), tuple((path.value[kept] + 0.0).tolist())
+
+
+def _levels(path: Path, tube: Tube, cost: float) -> Path:
+    """Return the path with rounded levels and times that fit these."""
+    finer = np.zeros(len(path.level), dtype=int)
+    first = max(0, -math.floor(math.log10(tube.tolerance / 2)))
+    for _ in range(_MOST_ROUNDS):
+        level = [
+            _level(value, first, extra, cost) for value, extra in zip(path.level.tolist(), finer.tolist(), strict=True)
+        ]
+        if path.given:
+            level[path.which[0]] = float(path.value[0])
+        trial = replace(path, level=np.array(level))
+        settled = settle(trial, tube, levels=False)
+        for made in (settled, trial):
+            if tube.holds(made):
+                return made
+        finer[path.which[tube.at_fault(settled)]] += 1
+    return path
+
+
+def _level(value: float, first: int, extra: int, cost: float) -> float:
+    decimals = next((n for n in range(first, first + 8) if abs(round(value, n) - value) <= cost), first + 8)
+    return round(value, decimals + extra)
+
+
+def _times(path: Path, tube: Tube, true: Array, time: Array, cost: float) -> Array:
+    """Return rounded times; `true` are the path's own, without what keeps readings at one time apart."""
+    shift = path.time - true
+    slope = np.abs(np.diff(path.value) / np.diff(path.time))
+    steepest = np.maximum(np.append(slope, 0), np.append(0, slope))
+    nearest = time[np.clip(np.searchsorted(time, true), 1, len(time) - 1)[:, None] + [-1, 0]]
+    nearest = np.take_along_axis(nearest, np.abs(nearest - true[:, None]).argmin(axis=1)[:, None], axis=1)[:, 0]
+    ladder = np.stack([_decimals(true, n) if n else nearest for n in _TIMES] + [true])
+    cheap = np.abs(ladder - true) * steepest <= cost
+    cheap[-1] = True
+    # How long an icon lasts is not rounded away, whatever the slope; a step stays where it was recorded.
+    exact = path.pinned.copy()
+    exact[[0, -1]] = True
+    cheap[:_READING, exact] = False
+    rung = cheap.argmax(axis=0)
+    for _ in range(len(ladder) + _MOST_ROUNDS):
+        times = ladder[rung, np.arange(len(true))]
+        made = replace(path, time=times + shift)
+        if tube.holds(made):
+            return np.asarray(times)
+        fault = tube.at_fault(made)
+        crowded = np.flatnonzero(np.diff(made.time) <= 0)
+        rung[np.union1d(fault, np.union1d(crowded, crowded + 1))] += 1
+        rung = np.minimum(rung, len(ladder) - 1)
+    return true
+
+
+def _decimals(values: Array, decimals: int) -> Array:
+    return np.array([round(value, decimals) for value in values.tolist()])
