@@ -127,8 +127,9 @@ def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]
 
 
 def _body(icon: "Icon | Family") -> tuple[Statement, ...]:
-    found: tuple[Statement, ...] = getattr(icon, "template", None) or getattr(icon, "statements", ())
-    return found
+    from thermicon.icons.icon import Icon
+
+    return icon.statements if isinstance(icon, Icon) else icon.template
 
 
 def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:

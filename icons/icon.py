@@ -132,11 +132,14 @@ def content_hash(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
-def all_played(body: "tuple[Statement, ...]") -> Iterator[Icon]:
-    """Yield the icons that statements play, and those that these play in turn."""
-    for icon in dict.fromkeys(played_icons(body)):
-        yield icon
-        yield from all_played(icon.statements)
+def all_played(body: "tuple[Statement, ...]", seen: set[int] | None = None) -> Iterator[Icon]:
+    """Yield the icons that statements play, and those that these play in turn, each object once."""
+    seen = set() if seen is None else seen
+    for icon in played_icons(body):
+        if id(icon) not in seen:
+            seen.add(id(icon))
+            yield icon
+            yield from all_played(icon.statements, seen)
 
 
 def _sound(part: object) -> bool:

@@ -23,6 +23,7 @@ MOST_CORNERS = 500
 _INSTANT_S = 1e-9
 # The fit keeps a thousandth of the tolerance for its last digits.
 _SPARE = 1e-3
+_SHARES, _MORE = (0.8, 0.9), 1.15
 _MOST_TRIES = 20
 
 
@@ -50,10 +51,10 @@ def fit_corners(
     tube = _tube(apart, reading, tolerance, start)
     twice = (np.diff(time) == 0) & (np.abs(np.diff(reading)) > 2 * tolerance * (1 - _SPARE))
     path = _first_path(tube, apart[:-1][twice], start)
-    plain = path
-    path = settle(path, tube)
-    if not tube.holds(path):
-        path = plain
+    if path is None:
+        raise ValueError(_too_many(reading, tolerance))
+    settled = settle(path, tube)
+    path = settled if tube.holds(settled) else path
     path = _joined(path, tube, _holds(path, tube.tolerance))
     path = _joined(path, tube, _recurring(path, tube.tolerance))
     return rounded(path, tube, time, apart)
@@ -125,21 +126,33 @@ def _tube(time: Array, reading: Array, tolerance: float, start: float | None) ->
     )
 
 
-def _first_path(tube: Tube, steps: Array, start: float | None) -> Path:
-    """Return the path of fewest corners; `steps` are the times, apart, before which the recording steps."""
-    room = tube.room * (1 - _SPARE)
-    low, high = tube.reading - room, tube.reading + room
-    if start is not None:
-        low[0] = high[0] = start
-    found = fewest_links(tube.time.tolist(), low.tolist(), high.tolist(), MOST_CORNERS - 1)
+def _first_path(tube: Tube, steps: Array, start: float | None) -> Path | None:
+    """Return a path of few corners, or None; `steps` are the times, apart, before which the recording steps."""
+    found = _fewest(tube, 1 - _SPARE, start, MOST_CORNERS - 1)
     if found is None:
-        raise ValueError(_too_many(tube))
+        return None
+    # A path that hugs the tube leaves no room for holds and short decimals: a few corners more are well spent.
+    for share in _SHARES:
+        roomy = _fewest(tube, share, start, int(_MORE * len(found[0])) - 1)
+        if roomy is not None:
+            found = roomy
+            break
     times, values = np.array(found[0]), np.array(found[1])
+    apart = np.append(np.diff(times) > 0, True)
+    times, values = times[apart], values[apart]
     pinned = np.zeros(len(times), dtype=bool)
     before = np.searchsorted(times, steps + _INSTANT_S / 2) - 1
     times[before], times[before + 1] = steps, steps + _INSTANT_S
     pinned[before] = pinned[before + 1] = True
     return Path(times, values, np.arange(len(times)), pinned, start is not None)
+
+
+def _fewest(tube: Tube, share: float, start: float | None, most: int) -> tuple[list[float], list[float]] | None:
+    room = tube.room * share
+    low, high = tube.reading - room, tube.reading + room
+    if start is not None:
+        low[0] = high[0] = start
+    return fewest_links(tube.time.tolist(), low.tolist(), high.tolist(), most)
 
 
 def _joined(path: Path, tube: Tube, pairs: list[tuple[int, int]]) -> Path:
@@ -182,9 +195,10 @@ def _recurring(path: Path, tolerance: float) -> list[tuple[int, int]]:
     return [pair for pair in pairs if path.which[pair[0]] != path.which[pair[1]]]
 
 
-def _too_many(tube: Tube) -> str:
-    scatter = noise(tube.reading[tube.weight > 0])
-    return (
-        f"{MOST_CORNERS} corners are not enough to stay within {tube.tolerance:g} of every reading; the readings "
-        f"scatter by about {scatter:.2g} (standard deviation), so try a tolerance of {float(f'{6 * scatter:.1g}'):g}"
-    )
+def _too_many(reading: Array, tolerance: float) -> str:
+    scatter = noise(reading)
+    said = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
+    if 3 * scatter > tolerance:
+        better = float(f"{6 * scatter:.1g}")
+        said += f"; the readings scatter by about {scatter:.2g} (standard deviation), so try a tolerance of {better:g}"
+    return said

@@ -19,6 +19,7 @@ Corners = tuple[tuple[float, ...], tuple[float, ...]]
 # Decimals of seconds, from short to exact; 0 stands for the time of the nearest reading.
 _TIMES = (1, 2, 0, 3, 4, 5, 6, 9)
 _READING = _TIMES.index(0)
+_BESIDE = 0.02
 _MOST_ROUNDS = 12
 
 
@@ -66,10 +67,13 @@ def _times(path: Path, tube: Tube, true: Array, time: Array, cost: float) -> Arr
     shift = path.time - true
     slope = np.abs(np.diff(path.value) / np.diff(path.time))
     steepest = np.maximum(np.append(slope, 0), np.append(0, slope))
-    nearest = time[np.clip(np.searchsorted(time, true), 1, len(time) - 1)[:, None] + [-1, 0]]
-    nearest = np.take_along_axis(nearest, np.abs(nearest - true[:, None]).argmin(axis=1)[:, None], axis=1)[:, 0]
+    after = np.clip(np.searchsorted(time, true), 1, len(time) - 1)
+    gap = time[after] - time[after - 1]
+    nearest = np.where(true - time[after - 1] < gap / 2, time[after - 1], time[after])
     ladder = np.stack([_decimals(true, n) if n else nearest for n in _TIMES] + [true])
     cheap = np.abs(ladder - true) * steepest <= cost
+    # Beside a reading a corner is meant to be at it, however steep the piece: so a jump between two readings stays one.
+    cheap[_READING] |= np.abs(nearest - true) <= _BESIDE * gap
     cheap[-1] = True
     # How long an icon lasts is not rounded away, whatever the slope; a step stays where it was recorded.
     exact = path.pinned.copy()
