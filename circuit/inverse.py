@@ -47,6 +47,12 @@ def target_at(icon: Icon, start: float, times_s: Array) -> Array:
     return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
 
 
+def steps_at(icon: Icon, start: float) -> tuple[float, ...]:
+    """Times in s at which a cue makes a step."""
+    corners = icon.lower(start)
+    return tuple(corners.time_s[place] for place in corners.steps)
+
+
 def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     """Return the current that plays a cue on a rig until `end_s`; raises RigError for a baseline that cannot be held.
 
@@ -68,9 +74,9 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     currents, reached, why = run_follow(
         bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
     )
-    outcome = judge(target, reached[0], period, _limits(why[0], period))
+    outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
     plan = Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
-    return plan if rig.controller is None else close_loop(rig, plan, control, base, target)
+    return plan if rig.controller is None else close_loop(rig, plan, icon, target)
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
@@ -96,7 +102,7 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
         states = bank.states([rest[base][1] for base in bases])
         results = run_follow(bank, np.zeros_like(lanes), lanes, period, targets, control == "skin", states)
         for icon, base, target, currents, reached, why in zip(cues, bases, targets, *results, strict=True):
-            outcome = judge(target, reached, period, _limits(why, period))
+            outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
             drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
             found[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
     return tuple(found.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
@@ -109,14 +115,14 @@ def gains_of(rig: Rig) -> tuple[float, float, float, float]:
     return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K
 
 
-def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array) -> Design:
+def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
 
     The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
     """
     bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
-    period = 1.0 / rig.driver.update_Hz
+    period, control, base = 1.0 / rig.driver.update_Hz, icon.frame.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
     gains = np.array([gains_of(rig)])
     currents, reached, why = run_regulate(
@@ -125,7 +131,8 @@ def close_loop(rig: Rig, plan: Design, control: str, base: float, target: Array)
     drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
     loop = Design(drive, plan.rest_A, plan.start_C, None)
     controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
-    return replace(loop, outcome=judge(target, controlled, period, _limits(why[0], period)))
+    outcome = judge(target, controlled, period, _limits(why[0], period), steps_at(icon, base))
+    return replace(loop, outcome=outcome)
 
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 from thermicon.circuit.inverse import baseline_C
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.simulate import simulate
-from thermicon.icons import Change, Icon, Repeat, Return, Statement
+from thermicon.icons import Change, Icon, Play, Pulse, Repeat, Return, Statement, Step, Total, Wave
+from thermicon.icons.statements import Broken
 
 SLOWEST = 64.0
 SMALLEST = 1.0 / 64.0
@@ -68,22 +68,35 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
     With `smaller`, a ramp keeps its duration, so that its rate shrinks as its change does.
     """
 
+    def all_of(body: Sequence[Statement | Broken]) -> tuple[Statement, ...]:
+        # A total is what the cue was meant to last: slower, it would only be in the way.
+        return tuple(one(part) for part in body if not isinstance(part, Total | Broken))
+
     def one(statement: Statement) -> Statement:
         if isinstance(statement, Repeat):
-            return replace(statement, body=tuple(one(cast(Statement, part)) for part in statement.body))
+            return replace(statement, body=all_of(statement.body))
+        if isinstance(statement, Play):
+            return Repeat(1, all_of(statement.icon.statements))
+        if isinstance(statement, Wave):
+            period, time = statement.period_s * slower, statement.duration_s * slower
+            return replace(statement, by_K=smaller * (statement.by_K or 0.0), period_s=period, duration_s=time)
+        if isinstance(statement, Step | Pulse):
+            if isinstance(statement, Step) and statement.to_C is not None:
+                return replace(statement, to_C=base_C + smaller * (statement.to_C - base_C))
+            return replace(statement, by_K=smaller * (statement.by_K or 0.0))
         if isinstance(statement, Change):
             to = None if statement.to_C is None else base_C + smaller * (statement.to_C - base_C)
             by = None if statement.by_K is None else smaller * statement.by_K
             rate = None if statement.rate_K_per_s is None else statement.rate_K_per_s * smaller / slower
-            time = None if statement.duration_s is None else statement.duration_s * slower
-            return replace(statement, by_K=by, to_C=to, rate_K_per_s=rate, duration_s=time)
+            span = None if statement.duration_s is None else statement.duration_s * slower
+            return replace(statement, by_K=by, to_C=to, rate_K_per_s=rate, duration_s=span)
         if isinstance(statement, Return):
             rate = None if statement.rate_per_s is None else statement.rate_per_s * smaller / slower
-            time = None if statement.duration_s is None else statement.duration_s * slower
-            return replace(statement, rate_per_s=rate, duration_s=time)
+            span = None if statement.duration_s is None else statement.duration_s * slower
+            return replace(statement, rate_per_s=rate, duration_s=span)
         return statement
 
-    return replace(icon, statements=tuple(one(statement) for statement in icon.statements))
+    return replace(icon, statements=all_of(icon.statements))
 
 
 def _reached(icon: Icon, rig: Rig) -> bool:

@@ -11,7 +11,7 @@ from thermicon.circuit.network import COLD, HOT, network_of
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.rigfile import RigError
 from thermicon.circuit.steady import hold, holding_current_A, steady_state
-from thermicon.icons import Icon
+from thermicon.icons import Corners, Icon
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
@@ -49,7 +49,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
                 f"rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
             )
     if control == "display" and not found:
-        found += _too_fast(icon, rig, list(zip(corners.time_s, corners.value, strict=True)))
+        found += _too_fast(icon, rig, corners)
     return tuple(found)
 
 
@@ -101,10 +101,13 @@ def _within(current: float, allowed: Callable[[float], bool]) -> float:
     return good
 
 
-def _too_fast(icon: Icon, rig: Rig, points: list[tuple[float, float]]) -> list[str]:
+def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
     """Sentences for the ramps that are steeper than the driver can begin them from rest at their first level."""
     found = []
-    for (time, level), (later, to) in itertools.pairwise(points):
+    points = zip(corners.time_s, corners.value, strict=True)
+    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
+        if place in corners.steps:  # as fast as the driver can, whatever that is
+            continue
         rate = (to - level) / (later - time)
         limit = _steepest(rig, level, cooling=rate < 0)
         if abs(rate) > limit:

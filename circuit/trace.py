@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +23,7 @@ COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *PROBES)
 CLOSE_K = 0.1
 BRIEF_K = 0.25
 BRIEF_S = 0.2
+LAST_S = 2.0
 """A cue is reached within 0.1 K, or within 0.25 K for at most 0.2 s: a corner in a skin ramp saturates any driver."""
 
 
@@ -29,7 +32,9 @@ class Outcome:
     """Whether the controlled temperature reached its target, judged at the end of every driver period.
 
     Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits met with
-    the times in s at which each was first met.
+    the times in s at which each was first met. A step is as fast as the driver can make it: from its beginning until
+    it arrives nothing is missed. `slowest_step_s` is the longest that one took; None where the cue has no step.
+    `late_s` are the times of steps that had not arrived when the next one began, or at the end.
     """
 
     reached: bool
@@ -37,6 +42,8 @@ class Outcome:
     largest_miss_s: float
     rms_miss_K: float
     limits: tuple[tuple[str, float], ...]
+    slowest_step_s: float | None = None
+    late_s: tuple[float, ...] = ()
 
     @property
     def reason(self) -> str | None:
@@ -44,8 +51,9 @@ class Outcome:
         if self.reached:
             return None
         held = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
+        late = f"; its step at {self.late_s[0]:.2f} s does not arrive in time" if self.late_s else ""
         return (
-            f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s"
+            f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s{late}"
             f"{f', held back by the {held}' if held else ''}"
         )
 
@@ -149,12 +157,36 @@ def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
         table.to_csv(path, index=False, float_format="%.9g")
 
 
-def judge(target_C: Array, reached_C: Array, period_s: float, limits: tuple[tuple[str, float], ...]) -> Outcome:
-    """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period."""
+def judge(
+    target_C: Array,
+    reached_C: Array,
+    period_s: float,
+    limits: tuple[tuple[str, float], ...],
+    steps_s: tuple[float, ...] = (),
+) -> Outcome:
+    """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period.
+
+    `steps_s` are the times at which the cue makes a step. One with less than 2 s left to arrive in, at the end of the
+    run, is not held against the rig.
+    """
     miss = reached_C - target_C
-    worst = int(np.argmax(np.abs(miss)))
-    over = np.abs(miss) > CLOSE_K
+    close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
+    ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []
+    for begin, until in itertools.pairwise((*steps_s, math.inf)):
+        window = np.flatnonzero((ends > begin + 1e-9) & (ends <= until + 1e-9))
+        arrived = window[close[window]]
+        asked[window[window < arrived[0]] if len(arrived) else window] = False
+        if len(arrived):
+            took = max(took, float(ends[arrived[0]]) - begin)
+        elif len(window) and (math.isfinite(until) or ends[-1] - begin >= LAST_S):
+            late.append(begin)
+            asked[window[-1]] = True
+    if not asked.any():
+        return Outcome(not late, 0.0, 0.0, 0.0, limits, took, tuple(late))
+    worst = int(np.argmax(np.where(asked, np.abs(miss), -1.0)))
+    over = asked & ~close
     largest = float(miss[worst])
-    close = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
-    rms = float(np.sqrt(np.mean(miss**2)))
-    return Outcome(bool(close), largest, (worst + 1) * period_s, rms, limits)
+    reached = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
+    rms = float(np.sqrt(np.mean(miss[asked] ** 2)))
+    slowest = took if steps_s else None
+    return Outcome(bool(reached and not late), largest, (worst + 1) * period_s, rms, limits, slowest, tuple(late))

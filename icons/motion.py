@@ -64,7 +64,7 @@ def pieces(leaf: Leaf, level: Fraction, rest: Fraction, tolerance: float = TOLER
         yield target, exact(leaf.duration_s, "time")
         yield level, Fraction(0)
     elif isinstance(leaf, Wave):
-        size, period = amplitude(leaf) * leaf.sign, exact(leaf.period_s, "time")
+        size, period = amplitude(leaf) * leaf.sign, exact(leaf.duration_s, "time") / periods_of(leaf)
         for before, point in pairwise(_wave_points(leaf, tolerance)):
             yield level + size * point[1], (point[0] - before[0]) * period
     elif not isinstance(leaf, Total):
@@ -83,8 +83,7 @@ def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fracti
 def piece_count(leaf: Leaf, tolerance: float = TOLERANCE) -> int:
     """Return how many straight pieces and steps a statement has, at most."""
     if isinstance(leaf, Wave):
-        periods = exact(leaf.duration_s, "time") / exact(leaf.period_s, "time")
-        return math.ceil(periods) * len(one_period(leaf.shape, _ratio(leaf, tolerance)))
+        return math.ceil(periods_of(leaf)) * len(one_period(leaf.shape, _ratio(leaf, tolerance)))
     return 3 if isinstance(leaf, Pulse) else 1
 
 
@@ -93,9 +92,16 @@ def amplitude(wave: Wave) -> Fraction:
     return exact(wave.by_K, "difference") if wave.by_K is not None else exact(wave.by_A or 0.0, "current")
 
 
+def periods_of(wave: Wave) -> Fraction:
+    """Return how many periods a wave has; a whole number unless it is cut."""
+    periods = exact(wave.duration_s, "time") / exact(wave.period_s, "time")
+    return periods if wave.cut else Fraction(max(1, round(periods)))
+
+
 def whole_periods(wave: Wave) -> bool:
-    """Tell whether the duration of a wave holds whole periods."""
-    return (exact(wave.duration_s, "time") / exact(wave.period_s, "time")).denominator == 1
+    """Tell whether the duration of a wave holds whole periods, to one part in 10^9."""
+    periods = exact(wave.duration_s, "time") / exact(wave.period_s, "time")
+    return round(periods) > 0 and abs(periods - round(periods)) <= periods / _FINE
 
 
 @lru_cache(maxsize=256)
@@ -163,8 +169,7 @@ def _worst(phases: list[float], values: list[float]) -> float:
 
 def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
     """Yield periods passed and value (±1) of the corners of a wave that starts upwards."""
-    unit = one_period(wave.shape, _ratio(wave, tolerance))
-    periods = exact(wave.duration_s, "time") / exact(wave.period_s, "time")
+    unit, periods = one_period(wave.shape, _ratio(wave, tolerance)), periods_of(wave)
     yield unit[0]
     for n in range(math.ceil(periods)):
         for phase, value in unit[1:]:
@@ -176,7 +181,7 @@ def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
 
 def _cut_value(wave: Wave) -> Fraction:
     """Value (±1) at which a wave that starts upwards is cut."""
-    periods = exact(wave.duration_s, "time") / exact(wave.period_s, "time")
+    periods = periods_of(wave)
     phase = periods - math.ceil(periods) + 1
     if wave.shape == "sine":
         return Fraction(round(math.sin(2 * math.pi * float(phase)) * _FINE), _FINE)

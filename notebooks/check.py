@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.notebooks.cues import warn_of_site
-from thermicon.notebooks.door import fail
+from thermicon.notebooks.cues import MOST_ICONS, warn_of_site
+from thermicon.notebooks.door import fail, note
 from thermicon.notebooks.wording import number, span
 
 if TYPE_CHECKING:
@@ -50,33 +50,22 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     from thermicon.circuit import check_static
 
     warn_of_site(file, icons, rig)
-    return [f"{file}: {message}" for icon in icons for message in check_static(icon, rig)]
+    count = len(icons)
+    chosen: Sequence[Icon] = icons.icons
+    if count > MOST_ICONS:
+        chosen = [chosen[place * count // MOST_ICONS] for place in range(MOST_ICONS)]
+        note(f"{file}: {MOST_ICONS:,} of its {count:,} icons, evenly chosen, were held against the rig")
+    return [f"{file}: {message}" for icon in chosen for message in check_static(icon, rig)]
 
 
 def summary(icons: IconSet, start_C: float) -> str:
     """Say how many icons there are, how long, from what to what and how steep, for example ``2 icons, 8–10 s, …``."""
-    count = f"{len(icons)} icon{'' if len(icons) == 1 else 's'}"
-    parts = [count]
-    by_current = [icon for icon in icons if icon.frame.control == "current"]
-    by_temperature = [icon for icon in icons if icon.frame.control != "current"]
-    for group, unit, digits in ((by_temperature, "°C", 1), (by_current, "A", 2)):
-        if group:
-            parts += _levels(group, unit, digits, start_C)
-    return ", ".join(parts)
-
-
-def _levels(icons: Sequence[Icon], unit: str, digits: int, start_C: float) -> list[str]:
-    corners = [icon.lower(_start(icon, start_C)) for icon in icons]
-    durations = [corner.duration_s for corner in corners]
-    steepest = max(corner.steepest_per_s for corner in corners)
-    return [
-        span(min(durations), max(durations), "s"),
-        span(min(corner.lowest for corner in corners), max(corner.highest for corner in corners), unit, digits),
-        f"steepest {number(steepest, 2)} {unit}/s",
+    current = icons.frame.control == "current"
+    unit, digits = ("A", 2) if current else ("°C", 1)
+    found = icons.summary(0.0 if current else start_C)
+    parts = [
+        f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}",
+        span(found.shortest_s, found.longest_s, "s"),
+        span(found.lowest, found.highest, unit, digits),
     ]
-
-
-def _start(icon: Icon, start_C: float) -> float:
-    if icon.frame.control == "current":
-        return 0.0
-    return start_C if icon.frame.baseline_C is None else icon.frame.baseline_C
+    return ", ".join([*parts, f"steepest {number(found.steepest_per_s, 2)} {unit}/s"])

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
 
+MOST_ICONS = 2000
+"""More icons at once than anyone reads about; families may have a million."""
+
+
 class JoinError(Exception):
     """Files that cannot be one set, since an icon's name stands in two of them."""
 
@@ -98,15 +102,25 @@ def warn_of_site(file: str, icons: IconSet, rig: Rig) -> None:
         note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
 
 
-def pick(icons: IconSet, name: str | None) -> list[Icon]:
-    """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest."""
-    return list(icons) if name is None else [icons[name]]
+def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:
+    """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest.
+
+    More than ``most`` icons, as a family may have, are a usage error.
+    """
+    if name is not None:
+        return [icons[name]]
+    if len(icons) > most:
+        first = next(iter(icons)).name
+        raise usage(
+            f"there are {len(icons):,} icons, at most {most:,} are taken at once; name one, such as {first}", "--icon"
+        )
+    return list(icons)
 
 
 def only(icons: IconSet, name: str | None, where: str) -> Icon:
     """Return the icon of this name, or the only one there is; a usage error that lists them where there are more."""
     found = pick(icons, name)
     if len(found) > 1:
-        names = ", ".join(icon.name for icon in found)
+        names = ", ".join([icon.name for icon in found[:20]] + ["…"] * (len(found) > 20))
         raise usage(f"{where} has {len(found)} icons; name one of {names}", "--icon")
     return found[0]

@@ -170,7 +170,10 @@ def headline(trace: Trace) -> str:
     if not trace.outcome.reached:
         return f"{start}, NOT reached: {trace.outcome.reason}"
     miss = abs(trace.outcome.largest_miss_K)
-    return f"{start}, reached ({'everywhere within 1 mK' if miss < 1e-3 else f'largest miss {number(miss, 3)} K'})"
+    told = "everywhere within 1 mK" if miss < 1e-3 else f"largest miss {number(miss, 3)} K"
+    slowest = trace.outcome.slowest_step_s
+    steps = "" if slowest is None else f", slowest step {number(slowest, 2)} s"
+    return f"{start}, reached ({told}{steps})"
 
 
 def describe(trace: Trace) -> str:

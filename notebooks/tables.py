@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
+WIDEST = 160
+
+
 def show(*parts: object) -> None:
     """Print tables and lines on stdout; colours only on a terminal, never markup taken from people's text."""
     from rich.console import Console
@@ -19,7 +22,10 @@ def show(*parts: object) -> None:
     console = Console(markup=False, highlight=False, emoji=False)
     with console.capture() as captured:
         for part in parts:
-            console.print(hanging(part, console.width) if isinstance(part, str) else part)
+            if isinstance(part, str):
+                console.print(hanging(part, console.width))
+            else:  # a pipe has no width: long names then stay on one line, as a script expects
+                console.print(part, width=None if console.is_terminal else max(console.width, WIDEST))
     for line in captured.get().splitlines():
         typer.echo(line.rstrip())
 
