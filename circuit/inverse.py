@@ -47,10 +47,18 @@ def target_at(icon: Icon, start: float, times_s: Array) -> Array:
     return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
 
 
-def steps_at(icon: Icon, start: float) -> tuple[float, ...]:
-    """Times in s at which a cue makes a step."""
-    corners = icon.lower(start)
-    return tuple(corners.time_s[place] for place in corners.steps)
+def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
+    """Times in s at which a cue makes a step, and until when it must have arrived.
+
+    That is the end of the hold behind it, or, where a ramp follows at once, the next step: the rig may catch up.
+    """
+    corners, found = icon.lower(start), []
+    times, levels = corners.time_s, corners.value
+    begins = [times[place] for place in corners.steps]
+    for place, begin, following in zip(corners.steps, begins, [*begins[1:], math.inf][: len(begins)], strict=True):
+        held = place + 2 < len(levels) and levels[place + 2] == levels[place + 1]
+        found.append((begin, times[place + 2] if held else following))
+    return tuple(found)
 
 
 def design(icon: Icon, rig: Rig, end_s: float) -> Design:

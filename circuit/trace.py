@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,7 +33,7 @@ class Outcome:
     Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits met with
     the times in s at which each was first met. A step is as fast as the driver can make it: from its beginning until
     it arrives nothing is missed. `slowest_step_s` is the longest that one took; None where the cue has no step.
-    `late_s` are the times of steps that had not arrived when the next one began, or at the end.
+    `late_s` are the times of steps that had not arrived when the level moved on, or at the end.
     """
 
     reached: bool
@@ -162,17 +161,17 @@ def judge(
     reached_C: Array,
     period_s: float,
     limits: tuple[tuple[str, float], ...],
-    steps_s: tuple[float, ...] = (),
+    steps_s: tuple[tuple[float, float], ...] = (),
 ) -> Outcome:
     """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period.
 
-    `steps_s` are the times at which the cue makes a step. One with less than 2 s left to arrive in, at the end of the
-    run, is not held against the rig.
+    `steps_s` are the times at which steps begin, and until when each must have arrived. One with less than 2 s left, at
+    the end of the run, is not held against the rig.
     """
     miss = reached_C - target_C
     close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
     ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []
-    for begin, until in itertools.pairwise((*steps_s, math.inf)):
+    for begin, until in steps_s:
         window = np.flatnonzero((ends > begin + 1e-9) & (ends <= until + 1e-9))
         arrived = window[close[window]]
         asked[window[window < arrived[0]] if len(arrived) else window] = False

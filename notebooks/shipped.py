@@ -23,15 +23,16 @@ def show_rigs() -> None:
 
 def show_library() -> None:
     """Print the shipped icon sets: icons, what they prescribe, what they are for, and their source."""
-    from thermicon.icons import library_names, load_library
+    from thermicon.icons import Family, library_names, load_library
 
     for position, name in enumerate(library_names()):
         icons = load_library(name)
         made = table("", "", "")
         made.show_header = False
-        for icon in icons:
+        for icon in icons.entries:
             tags = f"({', '.join(icon.metadata.tags)})" if icon.metadata.tags else ""
-            made.add_row(f"  {icon.name}", icon.metadata.means or "", tags)
+            count = f", {len(icon):,} icons" if isinstance(icon, Family) else ""
+            made.add_row(f"  {icon.name}{count}", icon.metadata.means or "", tags)
         source = "; ".join(text for text in (icons.metadata.by, icons.metadata.doi) if text)
         show(
             *([""] if position else []),

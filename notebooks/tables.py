@@ -20,14 +20,14 @@ def show(*parts: object) -> None:
     from rich.console import Console
 
     console = Console(markup=False, highlight=False, emoji=False)
-    with console.capture() as captured:
-        for part in parts:
-            if isinstance(part, str):
-                console.print(hanging(part, console.width))
-            else:  # a pipe has no width: long names then stay on one line, as a script expects
-                console.print(part, width=None if console.is_terminal else max(console.width, WIDEST))
-    for line in captured.get().splitlines():
-        typer.echo(line.rstrip())
+    # A pipe has no width: long names stay on one line there, as a script expects.
+    wide = console if console.is_terminal else Console(markup=False, highlight=False, emoji=False, width=WIDEST)
+    for part in parts:
+        one = console if isinstance(part, str) else wide
+        with one.capture() as captured:
+            one.print(hanging(part, console.width) if isinstance(part, str) else part)
+        for line in captured.get().splitlines():
+            typer.echo(line.rstrip())
 
 
 def hanging(text: str, width: int) -> str:
