@@ -10,12 +10,21 @@ from thermicon.icons.errors import CueError, CueErrors
 from thermicon.icons.frame import Frame, Metadata
 from thermicon.icons.parameter import Parameter
 from thermicon.icons.icon import Icon
-from thermicon.icons.family import Family, Slot
+from thermicon.icons.family import Family
+from thermicon.icons.slots import Slot
 from thermicon.icons.iconset import IconSet, Members
 from thermicon.icons.shipped import library_names, load_library, read_cue
+from thermicon.icons.gallery import Library, library
 from thermicon.icons.parse import parse
+from thermicon.icons.layout import format_text
+from thermicon.icons.exchange import from_json, to_json
+from thermicon.icons.hjif import to_hjif
+from thermicon.icons.recorded import from_csv
+from thermicon.icons.cite import bibtex, methods
 from thermicon.icons.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
 from thermicon.icons.shapes import Pulse, Step, Wave
+from thermicon.icons.write import back, cool, drive, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
+from thermicon.icons.write import total, triangle, warm
 
 # In the order of the flow, not of the alphabet.
 __all__ = [
@@ -23,6 +32,15 @@ __all__ = [
     "read_cue",
     "library_names",
     "load_library",
+    "library",
+    "Library",
+    "format_text",
+    "from_json",
+    "to_json",
+    "to_hjif",
+    "from_csv",
+    "methods",
+    "bibtex",
     "CueError",
     "CueErrors",
     "IconSet",
@@ -45,6 +63,22 @@ __all__ = [
     "Repeat",
     "Play",
     "Total",
+    "cool",
+    "warm",
+    "ramp",
+    "drive",
+    "hold",
+    "rest",
+    "back",
+    "step",
+    "pulse",
+    "sine",
+    "square",
+    "triangle",
+    "sawtooth",
+    "repeat",
+    "play",
+    "total",
     "ASSUMED_BASELINE_C",
     "Corners",
     "plot_icon",

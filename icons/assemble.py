@@ -9,12 +9,13 @@ from thermicon.icons.bodies import IconDraft, icon_draft
 from thermicon.icons.build import Builder, Place, span
 from thermicon.icons.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, problems
 from thermicon.icons.expand import trusted
-from thermicon.icons.family import MOST_MEMBERS, Family, path_of, statement_at
+from thermicon.icons.family import MOST_MEMBERS, Family
 from thermicon.icons.faults import Control
 from thermicon.icons.frame import Frame, Metadata
 from thermicon.icons.icon import Icon
 from thermicon.icons.iconset import IconSet
 from thermicon.icons.recover import DEEPEST, read
+from thermicon.icons.slots import path_of, statement_at
 from thermicon.icons.source import Edit, Finding, Source
 from thermicon.icons.statements import Broken, Repeat, Return, Statement
 from thermicon.icons.units import exact
@@ -228,6 +229,7 @@ class _Assembler:
         if self.control is None:
             return None
         self.returns(draft.body)
+        self.return_slots(draft)
         if draft.over is not None:
             return self.family(draft, before)
         for problem in problems(draft.body, self.control, self.rest()):
@@ -292,6 +294,14 @@ class _Assembler:
                 self.builder.add(
                     "E210", place, what, f'a rate in {right}, such as "return at 1 {right}"', Edit(*place, f"1 {right}")
                 )
+
+    def return_slots(self, draft: IconDraft) -> None:
+        wrong, right = ("rate", "A/s") if self.control == "current" else ("current_rate", "°C/s")
+        for slot in draft.slots:
+            if slot.field == "rate_per_s" and slot.kind == wrong:
+                place = self.builder.places[id(statement_at(cast(tuple[Statement, ...], draft.body), slot.path))]
+                what = f"{slot.parameter} is no rate in {right}; this set controls the {self.control}"
+                self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
 
     def add(self, problem: Problem, draft: IconDraft) -> None:
         # A statement of an icon that is played is told where that icon stands.

@@ -6,12 +6,12 @@ from typing import Any, cast
 
 from thermicon.icons.build import Builder, Place, rule_of, short, span
 from thermicon.icons.expand import HOLE
-from thermicon.icons.family import Path, Slot, value_fault
 from thermicon.icons.frame import Metadata
 from thermicon.icons.icon import Icon
 from thermicon.icons.over import Over, parameters_of
 from thermicon.icons.parameter import Parameter
 from thermicon.icons.shapes import Pulse, Shape, Start, Step, Wave
+from thermicon.icons.slots import Path, Slot, value_fault
 from thermicon.icons.source import Edit
 from thermicon.icons.statements import (
     Bound,
@@ -27,7 +27,7 @@ from thermicon.icons.statements import (
     Statement,
     Total,
 )
-from thermicon.icons.units import KIND_WORDS, UNITS, Kind
+from thermicon.icons.units import UNITS, Kind
 from thermicon.icons.words import nearest
 
 _USES: dict[str, tuple[Kind, ...]] = {
@@ -39,6 +39,8 @@ _USES: dict[str, tuple[Kind, ...]] = {
     "every_use": ("time",),
     "count_use": ("count",),
 }
+# Which rate a ramp takes; that of a return is told by what the set controls.
+_RATES: dict[str, tuple[Kind, ...]] = {"change": ("rate",), "shift": ("rate",), "drive": ("current_rate",)}
 # Which rule gives which value of a statement; what a parameter may stand for is among them.
 _VALUES = {
     **dict.fromkeys(("difference", "signed"), "by_K"),
@@ -160,7 +162,7 @@ class _Scope:
         """Return a wave; None, and a finding, for an amplitude or a start that does not fit."""
         by_K, by_A, start = values.get("by_K"), values.get("by_A"), words.get("START")
         if by_A is not None and by_A <= 0:
-            self.builder.add("E202", span(tree.children[1]), "an amplitude is positive", "write: starting down")
+            self.builder.add("E202", span(tree.children[1]), "an amplitude is positive", 'add "starting down"')
             return None
         up, down = ("warm", "cool") if by_A is None else ("up", "down")
         if start not in (None, up, down):
@@ -177,7 +179,7 @@ class _Scope:
         """Return which value of a statement a part of it is, and the value; NaN, and a finding, when it cannot be."""
         rule = rule_of(part)
         if rule not in _USES:
-            return _VALUES[rule], self.builder.quantity(part)
+            return _VALUES[rule], self.builder.quantity(part, wave=rule_of(tree) == "wave")
         signed = rule_of(tree) in ("shift", "step", "pulse") and "DIRECTION" not in words
         kind, value = self.use(part, tree, signed)
         if kind is None:
@@ -198,7 +200,7 @@ class _Scope:
         if own is None:
             self.broken = True
             return None, float("nan")
-        kinds = _USES[rule_of(part)]
+        kinds = _RATES.get(rule_of(tree), _USES[rule_of(part)]) if rule_of(part) == "at_use" else _USES[rule_of(part)]
         kind = next((kind for kind in kinds if own.unit in UNITS[kind]), kinds[0])
         kind = "difference" if kind == "change" and not signed else kind
         found = value_fault(own, kind)
@@ -207,34 +209,29 @@ class _Scope:
             if negative or own.place("0") is not None:
                 found = "E202", "an amplitude is positive" if negative else "a change of nothing is no change"
         if found:
-            noun = KIND_WORDS[kind]
-            help = f"say the unit once, behind the values: {own.name} in [...] {next(iter(UNITS[kind]))}".strip()
-            self.builder.add(found[0], span(token), f"{own.name}: {found[1]}", help if found[0] == "E104" else noun)
+            what, help = f"{own.name}: {found[1]}", f"its values: {str(own)[:80]}"
+            if found[0] == "E104":
+                what = found[1]
+                help = f"the unit stands once, behind the values: {own.name} in [...] {next(iter(UNITS[kind]))}".strip()
+            elif found[0] == "E202" and rule_of(tree) == "wave":
+                what = f"{own.name}: an amplitude is positive"
+            self.builder.add(found[0], span(token), what, help)
             return None, float("nan")
         return kind, own.si(0, kind)
 
     def parameter(self, token: Any) -> Parameter | None:
-        """Return the parameter of this name; None, and a finding, when the icon has none."""
+        """Return the parameter of this name; None when it could not be read."""
         name = str(token)
         known = {} if self.over is None else self.over.named
         self.used.add(name)
-        if name in known or not self.known or (self.over is not None and self.over.unread):
-            return known.get(name)
-        if self.over is None:
-            what = f'a number is needed, not "{short(name)}"'
-            self.builder.add("E106", span(token), what, "numbers look like 6, 0.5 or 1e-3, each with its unit")
-        else:
-            close = nearest(name, list(known))
-            cures = (Edit(*span(token), close),) if close else ()
-            help = f"parameters of this icon are: {', '.join(known)}"
-            self.builder.add("E226", span(token), f'"{short(name)}" is not a parameter', help, *cures)
-        return None
+        return known.get(name)
 
     def repeat(self, tree: Any, path: Path) -> Repeat | None:
         """Return a repeat; an impossible count counts as one, so that its body is checked."""
         head, *parts = tree.children
         body = self.body(parts, path)
         count = 1
+        self.broken |= getattr(head, "type", "") == "BROKEN"
         if rule_of(head):
             kind, value = self.use(head, tree, signed=False)
             if kind is not None:
@@ -252,6 +249,8 @@ class _Scope:
                 help = "put it directly between the braces of the icon"
                 self.builder.add("E229", span(part), "a total concerns the whole icon, not a repeat", help)
         body = tuple(Broken() if isinstance(part, Total) else part for part in body)
+        if not body and getattr(head, "type", "") == "BROKEN":
+            return None
         if not body:
             what = "there is nothing between the braces of this repeat"
             self.builder.add("E217", span(tree), what, "put the statements that repeat between them")
@@ -261,14 +260,18 @@ class _Scope:
     def finish(self, over: Over, keys: list[Any], metadata: Metadata) -> None:
         """Tell which parameters are never used, and which names in the intent are none."""
         for name, place in over.places.items():
-            if name not in self.used and not self.broken:
+            if name in over.named and name not in self.used and not self.broken:
                 what = f"{name} is never used, so that members would be equal"
                 self.builder.add("E227", place, what, "use it in the body, or take it away")
         for hole in HOLE.findall(metadata.means or ""):
             if hole not in over.named and not over.unread:
                 token = next(tree.children[1] for tree in keys if str(tree.children[0]) == "means")
                 help = f"in the intent of a family, {{...}} names one of: {', '.join(over.named)}"
-                self.builder.add("E226", span(token), f'"{short(hole)}" is not a parameter', help)
+                start = span(token)[0] + str(token).find(f"{{{hole}}}")
+                close = nearest(hole, list(over.named)) or (next(iter(over.named)) if len(over.named) == 1 else None)
+                place = (start, start + len(hole) + 2)
+                cures = (Edit(*place, f"{{{close}}}"),) if close else ()
+                self.builder.add("E226", place, f'"{short(hole)}" is not a parameter', help, *cures)
 
 
 def _field(rule: str, name: str, kind: Kind) -> str:

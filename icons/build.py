@@ -46,16 +46,16 @@ class Builder:
             found["count"] = (start, span(tree.children[0])[1])
         return found
 
-    def quantity(self, tree: Any) -> float:
+    def quantity(self, tree: Any, wave: bool = False) -> float:
         """Return the SI value of a number with its unit; NaN, and a finding, when no statement may have it."""
         rule = str(tree.data)
         kind = _KINDS.get(rule) or cast(Kind, rule)
         number, unit = tree.children
-        place = span(tree)
+        place, help = span(tree), EXAMPLES["difference" if kind == "change" else kind]
         try:
             value = to_si(str(number), str(unit), kind)
         except ValueError as error:
-            self.add("E218", span(number), str(error), EXAMPLES[kind])
+            self.add("E218", span(number), str(error), help)
             return float("nan")
         found = fault(value, kind)
         if not found and rule == "current_change" and value == 0:
@@ -64,7 +64,10 @@ class Builder:
             positive = str(number).lstrip("-−")
             signed = ("absolute", "change", "current")
             cures = (Edit(*span(number), positive),) if value < 0 and kind not in signed else ()
-            self.add(found[0], place, found[1], EXAMPLES[kind], *cures)
+            if wave and kind == "difference" and found[0] == "E202":
+                found = "E202", "an amplitude is positive"
+                help = 'what swings goes both ways; to begin downwards, add "starting cool"'
+            self.add(found[0], place, found[1], help, *cures)
             return float("nan")
         return value
 

@@ -63,14 +63,14 @@ def problems(body: Sequence[Statement | Broken], control: Control, rest: Fractio
         part = "count" if isinstance(worst, Repeat) else "whole"
         return [Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")]
     walker = _Walker(control, rest)
-    level, duration = walker.run(body, rest)
+    _, duration = walker.run(body, rest)
     if duration > Fraction(LONGEST_S):
         what = f"this icon lasts {float(duration):,.6g} s"
         walker.found.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
-    if level is not None and duration == 0 and not walker.found:
+    if walker.timed and duration == 0 and body and not walker.found:
         help = 'a step takes no time of its own; follow it with a line such as "hold for 2 s"'
         walker.found.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
-    if level is not None:
+    if walker.timed:
         walker.totals(body, duration)
     return walker.found
 
@@ -82,6 +82,8 @@ class _Walker:
     found: list[Problem] = field(default_factory=list)
     blamed: set[int] = field(default_factory=set)
     played: dict[int, tuple[Fraction | None, Fraction]] = field(default_factory=dict)
+    # Behind a statement that could not be read, nobody knows how long the icon lasts.
+    timed: bool = True
 
     def run(self, body: Sequence[Statement | Broken], level: Fraction | None) -> tuple[Fraction | None, Fraction]:
         total = Fraction(0)
@@ -95,6 +97,7 @@ class _Walker:
             else:
                 level, duration = self.leaf(part, level)
             total += duration
+            self.timed &= level is not None and self.rest is not None
         return level, total
 
     def repeat(self, part: Repeat, level: Fraction | None) -> tuple[Fraction | None, Fraction]:
@@ -169,9 +172,10 @@ class _Walker:
                 if (off > least and part.bound != "at least") or (off < -least and part.bound != "at most"):
                     bound = "" if part.bound == "exactly" else f"{part.bound} "
                     what = f"this icon lasts {float(duration):.6g} s, not {bound}{decimal_text(part.duration_s)} s"
-                    few = f'"hold" or "rest" for {float(-off):.6g} s more' if off < 0 else "less, or say: total at most"
+                    few = f"it is {float(abs(off)):.6g} s too {'short' if off < 0 else 'long'}"
                     text = f"{decimal_text(float(f'{float(duration):.9g}'))} s"
-                    self.blame(part, "E222", "time", what, f"a total is checked, not made: {few}", ("time", text))
+                    help = f"a total is checked, nothing is filled up or cut: {few}"
+                    self.blame(part, "E222", "time", what, help, ("time", text))
 
     def blind(self, part: Leaf) -> Fraction | None:
         # Behind a statement that could not be read only an absolute target tells where the icon is.
@@ -210,6 +214,11 @@ class _Walker:
         if id(part) not in self.blamed:
             self.blamed.add(id(part))
             self.found.append(Problem(part, code, where, what, help, cures))
+
+
+def fits(part: Leaf, control: Control) -> bool:
+    """Tell whether a statement moves what the set controls."""
+    return _Walker(control, None).fits(part)
 
 
 def advance_blind(part: Leaf) -> Fraction:

@@ -130,6 +130,7 @@ def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolera
     """
     times, levels = [Fraction(0)], [start]
     slope: Fraction | None = None
+    before = slope
     level = start
     for leaf in written_out(body):
         for target, duration in pieces(leaf, level, start, tolerance):
@@ -138,10 +139,11 @@ def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolera
                 if len(times) > 1 and times[-1] == times[-2]:  # two steps in one moment are one
                     times.pop()
                     levels.pop()
+                    slope = before
                 if target != levels[-1]:
                     times.append(times[-1])
                     levels.append(target)
-                    slope = None
+                    before, slope = slope, None
             elif (steepness := (target - levels[-1]) / duration) == slope:
                 times[-1] += duration
                 levels[-1] = target
@@ -153,12 +155,18 @@ def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolera
 
 
 def _spread(times: list[Fraction], levels: list[Fraction], quantity: Quantity) -> Corners:
-    """Corners with the two ends of every step drawn apart: the later end moves, or the earlier at the very end."""
+    """Corners with the two ends of every step drawn apart: the later end moves, or the earlier at the very end.
+
+    Neither passes its neighbour: beside a piece that is shorter than the step, a step is shorter still.
+    """
     apart = Fraction(STEP_S).limit_denominator(10**9)
     steps = [n for n, (a, b) in enumerate(pairwise(times)) if a == b]
     for n in steps:
         if times[n] == times[-1]:
-            times[n] -= apart
+            times[n] -= min(apart, (times[n] - times[n - 1]) / 2)
         else:
-            times[n + 1] += apart
-    return Corners(tuple(map(float, times)), tuple(map(float, levels)), quantity, tuple(steps))
+            times[n + 1] += min(apart, (times[n + 2] - times[n + 1]) / 2)
+    rising = [0.0]
+    for time in times[1:]:
+        rising.append(max(float(time), math.nextafter(rising[-1], math.inf)))
+    return Corners(tuple(rising), tuple(map(float, levels)), quantity, tuple(steps))

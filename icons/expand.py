@@ -10,7 +10,7 @@ from thermicon.icons.parameter import Parameter
 from thermicon.icons.statements import Repeat, Statement
 
 if TYPE_CHECKING:
-    from thermicon.icons.family import Slot
+    from thermicon.icons.slots import Slot
 
 HOLE = re.compile(r"\{([^{}\s]*)\}")
 Places = Sequence[int]

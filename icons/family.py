@@ -1,47 +1,37 @@
 """A family: one icon text with parameters, that stands for as many icons as they have values, made when asked for."""
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import prod
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.errors import CueErrors
-from thermicon.icons.expand import Expander, trusted
-from thermicon.icons.faults import fault
+from thermicon.icons.expand import HOLE, Expander, trusted
 from thermicon.icons.frame import Frame, Metadata, name_fault
 from thermicon.icons.icon import Icon, problem_error
 from thermicon.icons.parameter import Parameter
-from thermicon.icons.statements import Repeat, Statement
-from thermicon.icons.units import KIND_WORDS, UNITS, Kind
+from thermicon.icons.slots import Slot, in_order, slot_fault
+from thermicon.icons.statements import Statement
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Path = tuple[int, ...]
 MOST_MEMBERS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is no step."""
+    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is no step.
+
+    The rate of a sine is that of the curve, and a level between two steps in one moment counts.
+    """
 
     shortest_s: float
     longest_s: float
     lowest: float
     highest: float
     steepest_per_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class Slot:
-    """Where a parameter stands: the path of the statement (places, through repeats), its field, the name."""
-
-    path: Path
-    field: str
-    kind: Kind
-    parameter: str
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -70,8 +60,9 @@ class Family:
     _expander: Expander = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        for name in ("parameters", "template", "slots"):
+        for name in ("parameters", "template"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "slots", in_order(self.slots))
         wrong = name_fault(self.name) or ("a member's name is no family's name" if "_" in self.name else None)
         if wrong:
             raise ValueError(f"family: {wrong}")
@@ -87,8 +78,9 @@ class Family:
     @classmethod
     def unproven(cls, values: dict[str, Any]) -> "Family":
         """Return a family of these fields without its proof, which the caller runs."""
-        made = Expander(values["parameters"], values["template"], values["slots"], values["metadata"])
-        return trusted(cls, {**values, "_expander": made})
+        slots = in_order(values["slots"])
+        made = Expander(values["parameters"], values["template"], slots, values["metadata"])
+        return trusted(cls, {**values, "slots": slots, "_expander": made})
 
     def _fault(self) -> str | None:
         names = [parameter.name for parameter in self.parameters]
@@ -101,8 +93,14 @@ class Family:
             if not slots:
                 return f"parameter {parameter.name} is never used"
             for slot in slots:
-                if found := value_fault(parameter, slot.kind):
-                    return f"parameter {parameter.name}: {found[1]}"
+                if wrong := slot_fault(self.template, slot, parameter, self.frame.control):
+                    return f"parameter {parameter.name}: {wrong}"
+        if unknown := next((slot.parameter for slot in self.slots if slot.parameter not in names), None):
+            return f"no parameter is called {unknown}, which a slot names"
+        if len({(slot.path, slot.field) for slot in self.slots}) < len(self.slots):
+            return "two parameters stand in one place"
+        if hole := next((hole for hole in HOLE.findall(self.metadata.means or "") if hole not in names), None):
+            return f"{{{hole}}} in the intent names no parameter"
         return None
 
     def __len__(self) -> int:
@@ -163,10 +161,13 @@ class Family:
         return tuple(self[index] for index in drawn)
 
     def summary(self, start: float | None = None) -> Summary:
-        """Return durations, extremes and steepest rate over all members; ``start`` as in ``Icon.lower``."""
+        """Return durations, extremes and steepest rate over all members; ``start`` and errors as in ``Icon.lower``."""
         from thermicon.icons.sweep import sweep
 
-        return sweep(self, start).summary
+        found = sweep(self, start)
+        if found.problem is not None:
+            raise CueErrors((problem_error(found.problem, found.member or self.name, self.frame),))
+        return found.summary
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw up to 24 members, evenly chosen, over one another; returns the Axes."""
@@ -184,9 +185,9 @@ class Family:
         return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.frame.control}>"
 
     def _repr_html_(self) -> str:
-        from thermicon.icons.draw import svg
+        from thermicon.icons.picture import picture
 
-        return svg([self])
+        return picture(self)
 
     def _at(self, places: list[int]) -> Icon:
         made = self._expander
@@ -195,36 +196,3 @@ class Family:
 
     def __reduce__(self) -> tuple[object, ...]:
         return Family, (self.name, self.parameters, self.template, self.slots, self.frame, self.metadata)
-
-
-def value_fault(parameter: Parameter, kind: Kind) -> tuple[str, str] | None:
-    """Return error code and words for the first value of a parameter that this kind of quantity may not have."""
-    if parameter.unit not in UNITS[kind]:
-        unit = f"{parameter.name} is in {parameter.unit}" if parameter.unit else f"{parameter.name} has no unit"
-        return "E104", f"{unit}; {KIND_WORDS[kind]} is needed here"
-    places: Sequence[int] = range(len(parameter))
-    if parameter.span is not None:  # values rise evenly: the ends, and those about 0, stand for all
-        zero = round(-parameter.span[0] / parameter.span[2])
-        places = [place for place in (0, zero - 1, zero, zero + 1, len(parameter) - 1) if 0 <= place < len(parameter)]
-    return next((found for place in places if (found := fault(parameter.si(place, kind), kind))), None)
-
-
-def statement_at(template: tuple[Statement, ...], path: Path) -> Statement:
-    """Return the statement at a path of places through repeats; IndexError where there is none."""
-    part = template[path[0]]
-    for place in path[1:]:
-        if not isinstance(part, Repeat):
-            raise IndexError(f"no statement at {path}")
-        part = part.body[place]  # type: ignore[assignment]
-    return part
-
-
-def path_of(template: tuple[Statement, ...], wanted: Statement) -> Path:
-    """Return the path of a statement, by identity; LookupError when it is not there."""
-    for place, part in enumerate(template):
-        if part is wanted:
-            return (place,)
-        if isinstance(part, Repeat):
-            with suppress(LookupError):
-                return (place, *path_of(part.body, wanted))  # type: ignore[arg-type]
-    raise LookupError("the statement is not in this template")

@@ -1,6 +1,6 @@
 """Canonical text: a model object written as cue text that reads back to an equal object."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.faults import Control
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 Path = tuple[int, ...]
 Holes = Mapping[tuple[Path, str], str]
+WIDEST = 120
+"""Headers longer than this take several lines."""
 
 
 def statement_text(
@@ -138,12 +140,30 @@ def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
         blocks.append("\n".join(set_lines))
     for icon in icons:
         slots = getattr(icon, "slots", ())
-        over = f"({', '.join(map(str, getattr(icon, 'parameters', ())))})" if slots else ""
-        header = " ".join(["icon", icon.name + over, *metadata_texts(icon.metadata), "{"])
+        parameters = list(map(str, getattr(icon, "parameters", ())))
+        header = header_lines(f"icon {icon.name}", parameters, metadata_texts(icon.metadata))
         holes = {(slot.path, slot.field): slot.parameter for slot in slots}
         body = [statement_text(part, icon.frame.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
-        blocks.append("\n".join([header, *body, "}"]))
+        blocks.append("\n".join([*header, *body, "}"]))
     return "\n\n".join(blocks) + "\n"
+
+
+def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> list[str]:
+    """Return the header of an icon, its brace included: one line, or one for each part where that is too long.
+
+    >>> header_lines("icon dip", ["size in [3, 6] K"], ['means "{size} down"'])
+    ['icon dip(size in [3, 6] K) means "{size} down" {']
+    """
+    listed = f"{head}({', '.join(parameters)})" if parameters else head
+    whole = " ".join([listed, *keys, "{"])
+    if len(whole) <= WIDEST or len(parameters) + len(keys) < 2:
+        return [whole]
+    rows = [listed]
+    if len(listed) > WIDEST and len(parameters) > 1:
+        rows = [f"{head}(", *(f"  {text}," for text in parameters[:-1]), f"  {parameters[-1]}", ")"]
+    if keys:
+        return [*rows, *(f"  {key}" for key in keys), "{"]
+    return [*rows[:-1], f"{rows[-1]} {{"]
 
 
 def _set_lines(name: str, title: str, frame: "Frame", metadata: "Metadata | None") -> list[str]:

@@ -95,9 +95,9 @@ class Icon:
         )
 
     def _repr_html_(self) -> str:
-        from thermicon.icons.draw import svg
+        from thermicon.icons.picture import picture
 
-        return svg([self])
+        return picture(self)
 
     def _prove(self, level: Fraction) -> None:
         found = problems(self.statements, self.frame.control, level)

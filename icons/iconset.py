@@ -168,10 +168,10 @@ class IconSet:
         return None
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw the first 24 icons over one another against time, and return the Axes."""
-        from thermicon.icons.draw import plot_icons
+        """Draw up to 24 icons, evenly chosen, over one another against time, and return the Axes."""
+        from thermicon.icons.draw import plot_set
 
-        return plot_icons(self.icons[:24], ax)
+        return plot_set(self, ax)
 
     def __str__(self) -> str:
         return set_text(self)
@@ -187,6 +187,6 @@ class IconSet:
         return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.frame.control}{rest}>"
 
     def _repr_html_(self) -> str:
-        from thermicon.icons.draw import svg
+        from thermicon.icons.picture import picture
 
-        return svg(self.entries)
+        return picture(self)

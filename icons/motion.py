@@ -170,18 +170,21 @@ def _worst(phases: list[float], values: list[float]) -> float:
 def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
     """Yield periods passed and value (±1) of the corners of a wave that starts upwards."""
     unit, periods = one_period(wave.shape, _ratio(wave, tolerance)), periods_of(wave)
+    cut = wave.cut and periods.denominator > 1
     yield unit[0]
     for n in range(math.ceil(periods)):
         for phase, value in unit[1:]:
-            if n + phase >= periods and wave.cut:
+            if n + phase >= periods and cut:
                 yield periods, _cut_value(wave)
                 return
             yield n + phase, value
 
 
 def _cut_value(wave: Wave) -> Fraction:
-    """Value (±1) at which a wave that starts upwards is cut."""
+    """Value (±1) at which a wave that starts upwards is cut: 0 behind whole periods, of which nothing is cut."""
     periods = periods_of(wave)
+    if periods.denominator == 1:
+        return Fraction(0)
     phase = periods - math.ceil(periods) + 1
     if wave.shape == "sine":
         return Fraction(round(math.sin(2 * math.pi * float(phase)) * _FINE), _FINE)

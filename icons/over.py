@@ -74,9 +74,9 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
     for place, number in enumerate(known):
         if number in known[:place]:
             here = span(values.children[place])
-            builder.add(
-                "E213", here, f"{short(values.children[place])} stands in this list already", "keep one of them"
-            )
+            cure = Edit(span(values.children[place - 1])[1], here[1], "")
+            what = f"{short(values.children[place])} stands in this list already"
+            builder.add("E213", here, what, "keep one of them", cure)
             return None
     return Parameter(name, unit, tuple(known))
 

@@ -26,9 +26,9 @@ def unit_fault(unit: str) -> str | None:
 class Parameter:
     """What varies in a family: ``listed`` values, or a ``span`` of (low, high, step), as numbers in ``unit``.
 
-    The unit is one of the language's, or ``""`` for a count. A span includes both ends, and its step must lead from
-    one to the other. Raises ValueError for a bad name or unit, no value, one value twice, or a span that does not
-    come out.
+    The unit is one of the language's (``degC`` becomes ``°C``), or ``""`` for a count. A span includes both ends, and
+    its step must lead from one to the other. Raises ValueError for a bad name or unit, no value, one value twice, or a
+    span that does not come out.
 
     >>> Parameter("rate", "°C/s", span=(1, 3, 0.5)).texts()
     ('1', '1.5', '2', '2.5', '3')
@@ -41,6 +41,7 @@ class Parameter:
     numbers: tuple[tuple[int, ...], int, int] = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "unit", self.unit.replace("degC", "°C"))
         object.__setattr__(self, "listed", tuple(float(value) + 0.0 for value in self.listed))
         if self.span is not None:
             low, high, step = (float(value) + 0.0 for value in self.span)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.links import fewest_links
+from thermicon.icons.fewest import fewest_links
 from thermicon.icons.rounding import rounded
-from thermicon.icons.settle import Path, Tube, settle
+from thermicon.icons.settle import Path, settle
+from thermicon.icons.tube import SPARE, Tube, tube_about
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -19,10 +21,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 MOST_CORNERS = 500
-# Readings at one time are told apart by this much while fitting; a step has this length there, and none outside.
-_INSTANT_S = 1e-9
-# The fit keeps a thousandth of the tolerance for its last digits.
-_SPARE = 1e-3
 _SHARES, _MORE = (0.8, 0.9), 1.15
 _MOST_TRIES = 20
 
@@ -46,18 +44,14 @@ def fit_corners(
     ((0.0, 1.0, 3.0, 5.0), (32.0, 32.0, 26.0, 26.0))
     """
     time, reading = _proved(time_s, value, tolerance, start)
-    # All readings apart in time: a step becomes a piece as short as an instant, which the fit need not know about.
-    apart = time + _INSTANT_S * np.concatenate(([0.0], np.cumsum(np.diff(time) == 0)))
-    tube = _tube(apart, reading, tolerance, start)
-    twice = (np.diff(time) == 0) & (np.abs(np.diff(reading)) > 2 * tolerance * (1 - _SPARE))
-    path = _first_path(tube, apart[:-1][twice], start)
+    tube = tube_about(time, reading, tolerance, start)
+    path = _first_path(tube, start)
     if path is None:
         raise ValueError(_too_many(reading, tolerance))
-    settled = settle(path, tube)
-    path = settled if tube.holds(settled) else path
+    path = _settled_inside(path, tube)
     path = _joined(path, tube, _holds(path, tube.tolerance))
     path = _joined(path, tube, _recurring(path, tube.tolerance))
-    return rounded(path, tube, time, apart)
+    return rounded(path, tube, start is not None)
 
 
 def noise(value: Array) -> float:
@@ -82,6 +76,8 @@ def _proved(
         raise ValueError("times and values must be finite numbers")
     if (np.diff(time) < 0).any() or time[0] == time[-1]:
         raise ValueError("times must not fall, and must not all be the same")
+    if (three := np.flatnonzero(time[2:] == time[:-2])).size:
+        raise ValueError(f"the time {time[three[0]]:g} s stands more than twice; two readings at one time are a step")
     if not (math.isfinite(tolerance) and tolerance > 0):
         raise ValueError(f"tolerance must be positive, not {tolerance!r}")
     if start is not None and not abs(start - reading[0]) <= tolerance:
@@ -91,88 +87,87 @@ def _proved(
     return time, reading
 
 
-def _tube(time: Array, reading: Array, tolerance: float, start: float | None) -> Tube:
-    """Return the readings with points between them wherever the recording bends, where it counts as straight.
-
-    A corner may lie off that straight line where three readings on each side lie on the two lines that meet in it.
-    """
-    gap = np.diff(time)
-    slope = np.diff(reading) / gap
-    turn = np.concatenate(([0.0], np.diff(slope), [0.0]))
-    before, after = turn[:-1], turn[1:]
-    straight = np.abs(turn[1:-1]) * np.minimum(gap[1:], gap[:-1]) <= 4 * tolerance
-    left = np.concatenate(([False, False], straight[:-1])) if len(gap) > 1 else np.array([False])
-    right = np.concatenate((straight[1:], [False, False])) if len(gap) > 1 else np.array([False])
-    known = left & right & (before * after > 0)
-    depth = np.zeros_like(gap)
-    depth[known] = 2 * gap[known] / (1 / np.abs(before[known]) + 1 / np.abs(after[known]))
-    bent = np.flatnonzero((np.maximum(np.abs(before), np.abs(after)) * gap > tolerance / 2) & (gap > 2 * _INSTANT_S))
-    share = np.arange(1, (many := min(max(2000 // len(time), 1), 8)) + 1) / (many + 1)
-    between = (time[bent, None] + gap[bent, None] * share).ravel()
-    order = np.argsort(np.concatenate((time, between)), kind="stable")
-
-    def with_those(own: Array, others: Array) -> Array:
-        return np.asarray(np.concatenate((own, others))[order])
-
-    level = (reading[bent, None] + slope[bent, None] * gap[bent, None] * share).ravel()
-    wide = np.repeat(tolerance + depth[bent], many)
-    weight = np.repeat(np.where(depth[bent] > 0, 0.0, 1.0), many)
-    return Tube(
-        with_those(time, between),
-        with_those(reading, level),
-        with_those(np.full_like(time, tolerance), wide),
-        with_those(np.ones_like(time), weight),
-        tolerance,
-    )
-
-
-def _first_path(tube: Tube, steps: Array, start: float | None) -> Path | None:
-    """Return a path of few corners, or None; `steps` are the times, apart, before which the recording steps."""
-    found = _fewest(tube, 1 - _SPARE, start, MOST_CORNERS - 1)
+def _first_path(tube: Tube, start: float | None) -> Path | None:
+    """Return a path of few corners, or None; at a step of the recording it has a corner on each side."""
+    found = _fewest(tube, 1 - SPARE, start, MOST_CORNERS)
     if found is None:
         return None
-    # A path that hugs the tube leaves no room for holds and short decimals: a few corners more are well spent.
     for share in _SHARES:
-        roomy = _fewest(tube, share, start, int(_MORE * len(found[0])) - 1)
-        if roomy is not None:
-            found = roomy
-            break
-    times, values = np.array(found[0]), np.array(found[1])
-    apart = np.append(np.diff(times) > 0, True)
-    times, values = times[apart], values[apart]
-    pinned = np.zeros(len(times), dtype=bool)
-    before = np.searchsorted(times, steps + _INSTANT_S / 2) - 1
-    times[before], times[before + 1] = steps, steps + _INSTANT_S
-    pinned[before] = pinned[before + 1] = True
-    return Path(times, values, np.arange(len(times)), pinned, start is not None)
+        if (roomy := _fewest(tube, share, start, len(found.time))) is not None:
+            return roomy
+    if tube.holds(settle(found, tube)):
+        return found
+    # A path that hugs the tube leaves no room for holds and short decimals: a few corners more are well spent.
+    tried = (_fewest(tube, share, start, int(_MORE * len(found.time))) for share in _SHARES)
+    return next((roomy for roomy in tried if roomy is not None), found)
 
 
-def _fewest(tube: Tube, share: float, start: float | None, most: int) -> tuple[list[float], list[float]] | None:
+def _fewest(tube: Tube, share: float, start: float | None, most: int) -> Path | None:
     room = tube.room * share
     low, high = tube.reading - room, tube.reading + room
     if start is not None:
         low[0] = high[0] = start
-    return fewest_links(tube.time.tolist(), low.tolist(), high.tolist(), most)
+    times, values = list[float](), list[float]()
+    pinned = list[bool]()
+    for first, end in pairwise([*tube.begins.tolist(), len(tube.time)]):
+        time, bottom, top = (array[first:end].tolist() for array in (tube.time, low, high))
+        if (found := fewest_links(time, bottom, top, most - len(times) - 1)) is None:
+            return None
+        alone = end - first == 1
+        times += found[0][alone:]
+        values += found[1][alone:]
+        pinned += [True, *[False] * (len(found[0]) - 2), True][alone:]
+    held = np.zeros(len(times), dtype=bool)
+    if start is not None:
+        held[0], values[0] = True, start
+    path = Path(np.array(times), np.array(values), np.arange(len(times)), np.array(pinned), held)
+    return path.without(np.flatnonzero(np.diff(times) <= 0) + 1)
+
+
+def _settled_inside(path: Path, tube: Tube) -> Path:
+    """Return the path that fits best, where that keeps to the tube; elsewhere the path stays as it is, and is kept."""
+    best, stay = settle(path, tube), np.zeros(len(path.time), dtype=bool)
+    while True:
+        level, time = np.where(stay, path.level, best.level), np.where(stay, path.time, best.time)
+        mixed = replace(path, time=time, level=level, pinned=path.pinned | stay, held=path.held | stay)
+        fault = tube.at_fault(mixed)
+        if stay[fault].all():
+            return mixed
+        stay[fault] = True
 
 
 def _joined(path: Path, tube: Tube, pairs: list[tuple[int, int]]) -> Path:
     """Return the path with as many pairs of corners on one level as the tube allows; earlier pairs are preferred."""
-    wanted, left_over = pairs, []
+    wanted, left_over = pairs, list[tuple[int, int]]()
     while wanted:
-        trial = settle(path.joined(wanted), tube)
-        if tube.holds(trial):
-            path = trial
+        made, fault = _on_one_level(path, tube, wanted)
+        if made is not None:
+            path = made
             break
-        worst = set(tube.at_fault(trial).tolist())
-        kept = [pair for pair in wanted if not worst.intersection(pair)]
+        kept = [pair for pair in wanted if not fault.intersection(pair)]
         kept = kept if len(kept) < len(wanted) else wanted[: len(wanted) // 2]
         left_over += [pair for pair in wanted if pair not in kept]
         wanted = kept
     for pair in sorted(left_over, key=pairs.index)[:_MOST_TRIES]:
-        trial = settle(path.joined([pair]), tube)
-        path = trial if tube.holds(trial) else path
+        path = _on_one_level(path, tube, [pair])[0] or path
     same = np.diff(path.which) == 0
     return path.without(np.flatnonzero(same[1:] & same[:-1]) + 1)
+
+
+def _on_one_level(path: Path, tube: Tube, pairs: list[tuple[int, int]]) -> tuple[Path | None, set[int]]:
+    """Return the path with pairs of corners on one level, or None and the corners that leave the tube then."""
+    joined = path.joined(pairs)
+    settled = settle(joined, tube)
+    if tube.holds(settled):
+        return settled, set()
+    # What fits best on the whole leaves the tube somewhere: move nothing but the levels that became one.
+    members = np.bincount(path.which, minlength=len(path.level))[path.which]
+    changed = np.bincount(joined.which)[joined.which] != members
+    held = joined.held.copy()
+    held[joined.which[~changed]] = True
+    settled = settle(replace(joined, pinned=np.ones_like(joined.pinned), held=held), tube)
+    settled = replace(settled, pinned=joined.pinned, held=joined.held)
+    return (settled, set()) if tube.holds(settled) else (None, set(tube.at_fault(settled).tolist()))
 
 
 def _holds(path: Path, tolerance: float) -> list[tuple[int, int]]:
@@ -183,7 +178,7 @@ def _holds(path: Path, tolerance: float) -> list[tuple[int, int]]:
 
 
 def _recurring(path: Path, tolerance: float) -> list[tuple[int, int]]:
-    """Return pairs of corners that may share a level: the two ends, any corner and the first, holds at nearly one level."""
+    """Return pairs of corners that may share a level: the two ends, any corner and the first, holds close together."""
     value, last = path.value, len(path.time) - 1
     pairs = [(0, last)] if abs(value[last] - value[0]) <= tolerance else []
     pairs += [(0, j) for j in range(1, last) if abs(value[j] - value[0]) <= tolerance / 2]

@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.settle import Path, Tube, settle
+from thermicon.icons.settle import Path, settle
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from thermicon.icons.tube import Tube
 
     Array = NDArray[np.float64]
 
@@ -23,22 +25,20 @@ _BESIDE = 0.02
 _MOST_ROUNDS = 12
 
 
-def rounded(path: Path, tube: Tube, time: Array, apart: Array) -> Corners:
+def rounded(path: Path, tube: Tube, given: bool) -> Corners:
     """Return times (s) and values of the corners of a path, rounded as far as it then stays in the tube.
 
-    `time` holds the readings' times as recorded, `apart` as the tube has them, where no two are the same.
+    With `given`, the first value is prescribed.
     """
-    deviation = float((tube.excess(path) + tube.room)[tube.room == tube.tolerance].max())
-    cost = min(max(deviation / 2, tube.tolerance / 100), tube.tolerance / 5)
-    path = _levels(path, tube, cost)
-    true = np.interp(path.time, apart, time)
-    times = _times(path, tube, true, time, cost)
+    cost = min(max(tube.deviation(path) / 2, tube.tolerance / 100), tube.tolerance / 5)
+    path = _levels(path, tube, cost, given)
+    times = _times(path, tube, cost)
     same = np.diff(path.value) == 0
     kept = np.concatenate(([True], ~(same[1:] & same[:-1]), [True]))
     return tuple(times[kept].tolist()), tuple((path.value[kept] + 0.0).tolist())
 
 
-def _levels(path: Path, tube: Tube, cost: float) -> Path:
+def _levels(path: Path, tube: Tube, cost: float, given: bool) -> Path:
     """Return the path with rounded levels and times that fit these."""
     finer = np.zeros(len(path.level), dtype=int)
     first = max(0, -math.floor(math.log10(tube.tolerance / 2)))
@@ -46,7 +46,7 @@ def _levels(path: Path, tube: Tube, cost: float) -> Path:
         level = [
             _level(value, first, extra, cost) for value, extra in zip(path.level.tolist(), finer.tolist(), strict=True)
         ]
-        if path.given:
+        if given:
             level[path.which[0]] = float(path.value[0])
         trial = replace(path, level=np.array(level))
         settled = settle(trial, tube, levels=False)
@@ -62,8 +62,9 @@ def _level(value: float, first: int, extra: int, cost: float) -> float:
     return round(value, decimals + extra)
 
 
-def _times(path: Path, tube: Tube, true: Array, time: Array, cost: float) -> Array:
-    """Return rounded times; `true` are the path's own, without what keeps readings at one time apart."""
+def _times(path: Path, tube: Tube, cost: float) -> Array:
+    """Return rounded times, without the instants that steps take in the tube."""
+    true, time = np.interp(path.time, tube.time, tube.recorded), tube.recorded[tube.own]
     shift = path.time - true
     slope = np.abs(np.diff(path.value) / np.diff(path.time))
     steepest = np.maximum(np.append(slope, 0), np.append(0, slope))
@@ -74,22 +75,20 @@ def _times(path: Path, tube: Tube, true: Array, time: Array, cost: float) -> Arr
     cheap = np.abs(ladder - true) * steepest <= cost
     # Beside a reading a corner is meant to be at it, however steep the piece: so a jump between two readings stays one.
     cheap[_READING] |= np.abs(nearest - true) <= _BESIDE * gap
-    cheap[-1] = True
     # How long an icon lasts is not rounded away, whatever the slope; a step stays where it was recorded.
-    exact = path.pinned.copy()
-    exact[[0, -1]] = True
-    cheap[:_READING, exact] = False
-    rung = cheap.argmax(axis=0)
-    for _ in range(len(ladder) + _MOST_ROUNDS):
+    step = np.diff(true) == 0
+    exact = np.append(step, True) | np.append(True, step)
+    ladder[:, exact] = nearest[exact]
+    off = np.abs(ladder - true)
+    while True:
+        cheap[-1] = True
+        rung = cheap.argmax(axis=0)
         times = ladder[rung, np.arange(len(true))]
         made = replace(path, time=times + shift)
-        if tube.holds(made):
+        finer = tube.at_fault(made)
+        if (rung[finer] == len(ladder) - 1).all():
             return np.asarray(times)
-        fault = tube.at_fault(made)
-        crowded = np.flatnonzero(np.diff(made.time) <= 0)
-        rung[np.union1d(fault, np.union1d(crowded, crowded + 1))] += 1
-        rung = np.minimum(rung, len(ladder) - 1)
-    return true
+        cheap[:, finer] &= off[:, finer] < off[rung[finer], finer]
 
 
 def _decimals(values: Array, decimals: int) -> Array:

@@ -10,54 +10,26 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from thermicon.icons.tube import Tube
+
     Array = NDArray[np.float64]
 
-_MOST_STEPS = 40
-# Beyond this share of the room a deviation costs more, step by step, until it is inside.
-_SHARE = 0.9
-_COSTS = (0.0, 1e2, 1e4)
-
-
-@dataclass(frozen=True, slots=True)
-class Tube:
-    """What a path must keep to: shapes (points,); ``time`` rises, deviations stay within ``room``.
-
-    ``weight`` says how much a point draws the path, ``tolerance`` is the room that a reading leaves.
-    """
-
-    time: Array
-    reading: Array
-    room: Array
-    weight: Array
-    tolerance: float
-
-    def excess(self, path: Path) -> Array:
-        """Return by how much the path leaves the tube at each point, negative inside."""
-        return np.asarray(np.abs(np.interp(self.time, path.time, path.value) - self.reading) - self.room)
-
-    def holds(self, path: Path) -> bool:
-        """Tell whether the path stays in the tube."""
-        return bool((np.diff(path.time) > 0).all() and (self.excess(path) <= 0).all())
-
-    def at_fault(self, path: Path) -> NDArray[np.intp]:
-        """Return the corners of the pieces that leave the tube, rising."""
-        piece = np.searchsorted(path.time, self.time[self.excess(path) > 0], side="right") - 1
-        piece = np.clip(piece, 0, len(path.time) - 2)
-        return np.union1d(piece, piece + 1)
+_MOST_STEPS = 30
+_SPARSE = 100
 
 
 @dataclass(frozen=True, slots=True)
 class Path:
     """A polyline: corner times (corners,), rising; levels (levels,); which level each corner has.
 
-    Corners that are ``pinned`` keep their time; with ``given``, the level of the first corner is prescribed.
+    Corners that are ``pinned`` keep their time, levels that are ``held`` stay when a path settles, shape (levels,).
     """
 
     time: Array
     level: Array
     which: NDArray[np.intp]
     pinned: NDArray[np.bool_]
-    given: bool = False
+    held: NDArray[np.bool_]
 
     @property
     def value(self) -> Array:
@@ -65,48 +37,37 @@ class Path:
         return np.asarray(self.level[self.which])
 
     def joined(self, pairs: list[tuple[int, int]]) -> Path:
-        """Return the path with the levels of pairs of corners made one, at their mean or at the prescribed level."""
-        which = self.which.copy()
-        for one, other in pairs:
-            which[which == which[other]] = which[one]
+        """Return the path with the levels of pairs of corners made one: the held one, or else the mean."""
+        which, held = self.which.copy(), self.held.copy()
+        for pair in pairs:
+            one, other = (int(which[corner]) for corner in pair)
+            if held[one] and held[other]:
+                continue
+            one, other = (other, one) if held[other] else (one, other)
+            which[which == other] = one
         kept, which = np.unique(which, return_inverse=True)
-        level = np.bincount(which, self.value) / np.bincount(which)
-        if self.given:
-            level[which[0]] = self.value[0]
-        return replace(self, level=level, which=which)
+        mean = np.bincount(which, self.value) / np.bincount(which)
+        return replace(self, level=np.where(held[kept], self.level[kept], mean), which=which, held=held[kept])
 
     def without(self, corners: NDArray[np.intp]) -> Path:
         """Return the path without some of its corners."""
         kept, which = np.unique(np.delete(self.which, corners), return_inverse=True)
         pinned, time = np.delete(self.pinned, corners), np.delete(self.time, corners)
-        return Path(time, self.level[kept], which, pinned, self.given)
+        return Path(time, self.level[kept], which, pinned, self.held[kept])
 
 
 def settle(path: Path, tube: Tube, levels: bool = True) -> Path:
-    """Return the path of the same corners that fits best, by least squares, or that one which keeps to the tube.
+    """Return the path of the same corners that fits best, by least squares; it may leave the tube.
 
-    With ``levels`` False only times move. The path returned may leave the tube; ``Tube.holds`` tells.
+    With ``levels`` False only times move. Levenberg and Marquardt's method: a piece knows only of its two corners.
     """
-    for cost in _COSTS:
-        path = _least_squares(path, tube, levels, cost)
-        if tube.holds(path):
-            break
-    return path
-
-
-def _least_squares(path: Path, tube: Tube, levels: bool, cost: float) -> Path:
-    """Levenberg and Marquardt's method on all levels and times at once; a piece knows only of its two corners."""
     slot, count = _unknowns(path, levels)
     if count == 0:
         return path
-    damping, error, system = 1e-4, *_system(path, tube, slot, count, cost)
+    damping, error, system = 1e-4, *_system(path, tube, slot, count)
     for _ in range(_MOST_STEPS):
-        matrix, pull = system
-        scale = np.diag(matrix).copy()
-        scale[scale <= 0] = 1.0
-        step = np.append(np.linalg.solve(matrix + np.diag(damping * scale), pull), 0.0)
-        moved = _moved(path, step, slot)
-        trial, trial_system = _system(moved, tube, slot, count, cost)
+        moved = _moved(path, np.append(_solved(*system, damping), 0.0), slot)
+        trial, trial_system = _system(moved, tube, slot, count)
         if trial > error:
             damping *= 10
             if damping > 1e6:
@@ -123,10 +84,8 @@ def _least_squares(path: Path, tube: Tube, levels: bool, cost: float) -> Path:
 
 
 def _unknowns(path: Path, levels: bool) -> tuple[NDArray[np.intp], int]:
-    """Return, for each corner's level (row 0) and time (row 1), the place of its unknown; the last place is for none."""
-    free = np.full(len(path.level), levels)
-    if path.given:
-        free[path.which[0]] = False
+    """Return the place of the unknown of each corner's level (row 0) and time (row 1); the last place is for none."""
+    free = ~path.held & levels
     moving = ~path.pinned
     moving[[0, -1]] = False
     count = int(free.sum() + moving.sum())
@@ -137,40 +96,48 @@ def _unknowns(path: Path, levels: bool) -> tuple[NDArray[np.intp], int]:
 def _moved(path: Path, step: Array, slot: NDArray[np.intp]) -> Path:
     level = path.level.copy()
     level[path.which] = path.value + step[slot[0]]
-    # No corner passes another: each moves by at most two fifths of the shorter piece beside it.
-    length = np.diff(path.time)
+    # No corner passes another: each moves by at most two fifths of the shorter piece beside it, above a microsecond.
+    length = np.maximum(np.diff(path.time) - 1e-6, 0.0)
     most = 0.4 * np.minimum(np.append(length, np.inf), np.append(np.inf, length))
     return replace(path, level=level, time=path.time + np.clip(step[slot[1]], -most, most))
 
 
-def _system(
-    path: Path, tube: Tube, slot: NDArray[np.intp], count: int, cost: float
-) -> tuple[float, tuple[Array, Array]]:
+def _solved(matrix: Array, pull: Array, damping: float) -> Array:
+    scale = np.diag(matrix).copy()
+    scale[scale <= 0] = 1.0
+    matrix = matrix + np.diag(damping * scale)
+    if len(pull) < _SPARSE:
+        return np.asarray(np.linalg.solve(matrix, pull), dtype=np.float64)
+    from scipy.sparse import csc_array
+    from scipy.sparse.linalg import spsolve
+
+    return np.asarray(spsolve(csc_array(matrix), pull))
+
+
+def _system(path: Path, tube: Tube, slot: NDArray[np.intp], count: int) -> tuple[float, tuple[Array, Array]]:
     """Return the error of a path, and the matrix and right side whose solution is the best small move."""
     value, length = path.value, np.diff(path.time)
-    pieces = len(length)
     slope = np.diff(value) / length
-    piece = np.clip(np.searchsorted(path.time, tube.time, side="right") - 1, 0, pieces - 1)
-    share = (tube.time - path.time[piece]) / length[piece]
-    missing = tube.reading - value[piece] - share * (value[piece + 1] - value[piece])
-    beyond = np.abs(missing) - _SHARE * tube.room
-    outside = np.where(beyond > 0, cost, 0.0)
-    error = float((tube.weight * missing**2).sum() + (outside * beyond**2).sum())
-    pull = tube.weight * missing + outside * np.copysign(beyond, missing)
-    stiff = tube.weight + outside
+    begins = np.concatenate(([0], np.searchsorted(tube.time, path.time[1:-1])))
+    points = np.diff(begins, append=len(tube.time))
+    # Points stand piece by piece, so that sums over pieces are sums over stretches; an empty stretch has no sum.
+    share = tube.time * np.repeat(1 / length, points) - np.repeat(path.time[:-1] / length, points)
+    missing = tube.reading - np.repeat(value[:-1], points) - share * np.repeat(np.diff(value), points)
+    stiff, pull = tube.weight, tube.weight * missing
 
-    def over(points: Array) -> Array:
-        return np.bincount(piece, points, minlength=pieces)
+    def over(terms: Array) -> Array:
+        return np.asarray(np.where(points > 0, np.add.reduceat(np.append(terms, 0.0), begins), 0.0))
 
     # Derivatives by level and time at the left corner are (1 - share)(1, -slope), at the right one share (1, -slope).
-    left, right = 1 - share, share
-    both = np.stack((over(stiff * left * left), over(stiff * left * right), over(stiff * right * right)))
+    once, twice, whole = over(stiff * share), over(stiff * share * share), over(stiff)
+    both = np.stack((whole - 2 * once + twice, once - twice, twice))
     ends = both[[[0, 1], [1, 2]]]
-    turn = np.stack((np.ones(pieces), -slope))
+    turn = np.stack((np.ones(len(length)), -slope))
     local = np.einsum("abp,cp,dp->pcadb", ends, turn, turn)
-    side = np.einsum("ap,cp->pca", np.stack((over(pull * left), over(pull * right))), turn)
+    pulled = over(pull * share)
+    side = np.einsum("ap,cp->pca", np.stack((over(pull) - pulled, pulled)), turn)
     places = np.stack((slot[:, :-1], slot[:, 1:]), axis=-1).transpose(1, 0, 2)
     matrix, vector = np.zeros((count + 1, count + 1)), np.zeros(count + 1)
     np.add.at(matrix, (places[:, :, :, None, None], places[:, None, None, :, :]), local)
     np.add.at(vector, places, side)
-    return error, (matrix[:-1, :-1], vector[:-1])
+    return float(pull @ missing), (matrix[:-1, :-1], vector[:-1])

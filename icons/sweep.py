@@ -7,18 +7,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.icons.check import MOST_CORNERS, Problem, absolute, problems
-from thermicon.icons.family import Family, Path, Summary
+from thermicon.icons.check import MOST_CORNERS, Problem, absolute, corner_count, fits, problems
+from thermicon.icons.family import Family, Summary
 from thermicon.icons.faults import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S
 from thermicon.icons.icon import rest_level
 from thermicon.icons.motion import TOLERANCE, one_period
 from thermicon.icons.shapes import Pulse, Shape, Step, Wave
+from thermicon.icons.slots import Path
 from thermicon.icons.statements import Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
 
 Array = NDArray[np.float64]
 CHUNK = 65_536
 # Levels are sums of few decimals: closer than this they are the same, and times are held to a microsecond.
 _SAME = 1e-9
+# What floats leave of a quotient that is whole, or of quarters, in exact numbers.
+_ROUNDING = 1e-12
 _MOST_TRIED = 50
 # Phases at which a wave that starts upwards has been at its crest and in its trough.
 _CREST: dict[Shape, float] = {"sine": 0.25, "triangle": 0.25, "sawtooth": 0.5, "square": 0.0}
@@ -151,6 +154,8 @@ class _Run:
     def leaf(self, part: Any, path: Path, level: Array, where: NDArray[np.bool_]) -> tuple[Array, Array]:
         still = np.zeros(self.size)
         self.corners = self.corners + 1
+        if not isinstance(part, Play) and not fits(part, self.family.frame.control):
+            self.flag(True, where)
         match part:
             case Hold() | Rest():
                 if isinstance(part, Rest):
@@ -161,7 +166,7 @@ class _Run:
             case Play():
                 self.flag(np.abs(level - self.rest) > _SAME, where)
                 played = part.icon.lower(self.rest)
-                self.corners = self.corners + len(played)
+                self.corners = self.corners + corner_count(part.icon.statements)
                 self.see(np.full(self.size, played.lowest), where)
                 self.see(np.full(self.size, played.highest), where)
                 self.steepest = np.maximum(self.steepest, played.steepest_per_s)
@@ -203,12 +208,13 @@ class _Run:
         size = self.value(part, path, "by_K" if part.by_K is not None else "by_A")
         period, time = self.value(part, path, "period_s"), self.value(part, path, "duration_s")
         periods = time / period
+        quarters = np.round(periods * 4) / 4
+        periods = np.where(np.abs(periods - quarters) <= _ROUNDING * periods, quarters, periods)
         if not part.cut:
-            self.flag((np.abs(periods - np.round(periods)) > 1e-9 * periods) | (np.round(periods) < 1), where)
-        points = len(one_period(part.shape, TOLERANCE / float(size.max())))
-        self.corners = self.corners + np.ceil(periods) * points
+            self.flag(periods != np.round(periods), where)
+        self.corners = self.corners + np.ceil(periods) * _points(part.shape, size)
         phase = periods - np.ceil(periods) + 1
-        value = _value(part.shape, phase)
+        value = np.where(phase == 1, 0.0, _value(part.shape, phase))
         if part.cut:
             crest = np.where(periods > _CREST[part.shape], 1.0, np.maximum(value, 0.0))
             trough = np.where(periods > _TROUGH[part.shape], -1.0, np.minimum(value, 0.0))
@@ -222,6 +228,24 @@ class _Run:
 
 
 _RATES = ("rate_K_per_s", "rate_A_per_s", "rate_per_s")
+
+
+def _points(shape: Shape, size: Array) -> Array:
+    """How many corners one period has at each amplitude; few of them need counting, as the number only rises."""
+    sizes, which = np.unique(size, return_inverse=True)
+    counts = np.zeros(len(sizes))
+    todo = [(0, len(sizes) - 1)]
+    for end in todo[0]:
+        counts[end] = len(one_period(shape, TOLERANCE / float(sizes[end])))
+    while todo:
+        first, last = todo.pop()
+        if counts[first] == counts[last]:
+            counts[first : last + 1] = counts[first]
+        elif last > first + 1:
+            middle = (first + last) // 2
+            counts[middle] = len(one_period(shape, TOLERANCE / float(sizes[middle])))
+            todo += [(first, middle), (middle, last)]
+    return np.asarray(counts[which])
 
 
 def _value(shape: Shape, phase: Array) -> Array:

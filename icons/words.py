@@ -73,6 +73,25 @@ WORD_ALIASES: dict[str, str] = {
     "tag": "tags",
     "version": "cue",
     "pattern": "icon",
+    "each": "every",
+    "sinus": "sine",
+    "ramp": "change",
+    "total-time": "total",
+    "duration": "total",
+}
+# What a wave or a step may have been meant to do first.
+STARTS: dict[str, str] = {
+    **dict.fromkeys(("warm", "hot", "warming", "heating", "up", "upwards", "high", "rising"), "warm"),
+    **dict.fromkeys(("cool", "cold", "cooling", "down", "downwards", "low", "falling"), "cool"),
+}
+BOUNDS: dict[str, str] = {
+    **dict.fromkeys(("most", "<", "<=", "≤", "under", "below", "max", "maximum", "up"), "at most"),
+    **dict.fromkeys(("least", ">", ">=", "≥", "over", "above", "min", "minimum"), "at least"),
+}
+NUMBER_WORDS: dict[str, str] = {
+    **{"one": "1", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6", "seven": "7", "eight": "8"},
+    **{"nine": "9", "ten": "10", "eleven": "11", "twelve": "12", "twenty": "20", "half": "0.5", "zero": "0"},
+    **{"a": "1", "an": "1", "once": "1", "twice": "2", "thrice": "3"},
 }
 _UNIT_ALIASES: dict[str, str] = {
     "c": "°C",
@@ -83,6 +102,7 @@ _UNIT_ALIASES: dict[str, str] = {
     "degree": "°C",
     "degrees": "°C",
     "kelvin": "K",
+    "kelvins": "K",
     "k": "K",
     "c/s": "°C/s",
     "°c/s": "°C/s",
@@ -154,4 +174,4 @@ def unit_kinds(unit: str) -> list[Kind]:
     >>> unit_kinds("K"), unit_kinds("ms")
     (['difference'], ['time'])
     """
-    return [kind for kind, units in UNITS.items() if unit in units and kind != "change"]
+    return [kind for kind, units in UNITS.items() if unit in units and kind not in ("change", "count")]

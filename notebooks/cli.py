@@ -1,4 +1,4 @@
-"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``, and those of ``whatif``.
+"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs`` …, and those of ``whatif`` and ``handing``.
 
 Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
 command, beside this one.
@@ -14,9 +14,9 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks import whatif
+from thermicon.notebooks import handing, whatif
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
-from thermicon.notebooks.options import Changes, Files, IconName, RigName, check_tail
+from thermicon.notebooks.options import Changes, CueFiles, Files, IconName, RigName, check_tail
 
 TRACKING = ("replay", "display", "ideal")
 
@@ -73,6 +73,20 @@ def check_command(
     from thermicon.notebooks.check import check
 
     check(files, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+@app.command("fmt")
+def fmt_command(
+    files: CueFiles,
+    check: Annotated[bool, typer.Option("--check", help="Only print the names of files that would change.")] = False,
+) -> None:
+    """Bring cue files into canonical layout, in place; comments, numbers and units stay as they are.
+
+    With --check nothing is written, and the exit code is 1 when a file would change.
+    """
+    from thermicon.notebooks.formatting import format_files
+
+    format_files(files, check)
 
 
 @app.command("simulate")
@@ -171,6 +185,8 @@ def rank_command(
 app.command("sweep")(whatif.sweep_command)
 app.command("compare")(whatif.compare_command)
 app.command("netlist")(whatif.netlist_command)
+app.command("convert")(handing.convert_command)
+app.command("cite")(handing.cite_command)
 
 
 @app.command("rigs")

@@ -10,6 +10,7 @@ import typer
 from thermicon.notebooks.door import usage
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
+CueFiles = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files of your own.")]
 OneFile = Annotated[str, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")]
 IconName = Annotated[str | None, typer.Option("--icon", metavar="NAME", help="Only this icon of the file.")]
 RigName = Annotated[

@@ -77,24 +77,131 @@ SYNTAX = [
     Mistake(f'cue 1\nicon x means "" {{ {DOWN} }}', "E117", 2, 14, "the text is empty"),
 ]
 
-NOT_YET = [
-    *(
-        Mistake(body(line), "E120", 3, 3, words)
-        for line, words in [
-            ("sine by 3 °C every 4 s for 12 s", "write its corners"),
-            ("square by 3 °C every 4 s for 12 s", "wave-shapes"),
-            ("triangle by 3 °C every 4 s for 12 s", "wave-shapes"),
-            ("sawtooth by 3 °C every 4 s for 12 s", "wave-shapes"),
-            ("step by 3 °C", "over 100 ms"),
-            ("pulse by 3 °C for 1 s", "three lines"),
-            ("play other-icon", "write the statements"),
-            ("change by 3 °C at 1 °C/s", "write the direction"),
-            ("total 10 s", "rest for 2 s"),
-            ("on thumb { hold for 1 s }", "several elements"),
-        ]
-    ),
-    Mistake(f"cue 1\nicon x(a in [1, 2] °C) {{ {DOWN} }}", "E120", 2, 7, "families"),
+SINE = "sine by 3 °C every 4 s for 12 s"
+
+SHAPES = [
+    Mistake(body("on thumb { hold for 1 s }"), "E120", 3, 3, "several elements"),
     Mistake(body("warm to baseline at 3 °C/s", DOWN), "E120", 3, 11, "no target", "return at 3 °C/s"),
+    Mistake(body("step to baseline", DOWN, "hold for 1 s"), "E120", 3, 11, "such as: step to 32 °C"),
+    Mistake(body("hold for a while"), "E106", 3, 12, 'a number is needed, not "a"'),
+    Mistake(body("hold for a second"), "E106", 3, 12, 'a time such as "4 s"', "hold for 1 s"),
+    Mistake(body("cool by six °C at 3 °C/s"), "E106", 3, 11, 'a number is needed, not "six"', DOWN),
+    Mistake(body("cool by 6 °C at speed"), "E106", 3, 19, 'a rate such as "3 °C/s"'),
+    Mistake(body("sine by 3 °C for 12 s"), "E116", 3, 16, '"every" is needed', "sine by 3 °C every 3 s for 12 s"),
+    Mistake(body("sine 3 °C every 4 s for 12 s"), "E116", 3, 8, '"by" is needed', SINE),
+    Mistake(body("sine by 3 °C every 4 s"), "E116", 3, 3, '"for" is missing', SINE),
+    Mistake(body("sine by 3 °C each 4 s for 12 s"), "E116", 3, 16, '"every" is needed, not "each"', SINE),
+    Mistake(body("sine by 3 °C at 0.25 Hz for 12 s"), "E116", 3, 16, '"every" is needed, not "at"', SINE),
+    Mistake(body("sine by 3 °C every 0.25 Hz for 12 s"), "E103", 3, 27, "a wave has a period", SINE),
+    Mistake(body("sine by 3 °C every 4 s for 3 periods"), "E103", 3, 32, "a wave lasts a time", SINE),
+    Mistake(body("sine cool by 3 °C every 4 s for 12 s"), "E116", 3, 8, 'not "cool"', SINE + " starting cool"),
+    Mistake(body(SINE + " starting hot"), "E116", 3, 44, '"warm" or "cool" is needed', SINE + " starting warm"),
+    Mistake(body(SINE + " starting"), "E116", 3, 3, '"warm" or "cool" is missing', SINE + " starting warm"),
+    Mistake(body(SINE + " cold"), "E116", 3, 35, '"starting" is missing', SINE + " starting cool"),
+    Mistake(body(SINE + " cutt"), "E116", 3, 35, 'may stand here, not "cutt"', SINE + " cut"),
+    Mistake(body(SINE + " cut starting cool"), "E214", 3, 39, 'before "cut"', SINE + " starting cool cut"),
+    Mistake(body("sinus by 3 °C every 4 s for 12 s"), "E101", 3, 3, '"sinus" is not understood', SINE),
+    Mistake(body("pulse by 3 °C"), "E116", 3, 3, '"for" is missing', "pulse by 3 °C for 500 ms"),
+    Mistake(body("pulse by 3 °C over 1 s"), "E116", 3, 17, '"for" is needed, not "over"', "pulse by 3 °C for 1 s"),
+    Mistake(body("step 3 °C; hold for 1 s"), "E116", 3, 8, 'for example: "step by', "step by 3 °C; hold for 1 s"),
+    Mistake(body("step down by 3 °C; hold for 1 s"), "E116", 3, 8, 'not "down"', "step cool by 3 °C; hold for 1 s"),
+    Mistake(body("step by 3 °C at 3 °C/s"), "E108", 3, 16, 'takes no "at"', "change by 3 °C at 3 °C/s"),
+    Mistake(body("step cool by 3 °C for 1 s"), "E108", 3, 21, 'takes no "for"', "pulse cool by 3 °C for 1 s"),
+    Mistake(body("change cool by 6 °C at 3 °C/s"), "E116", 3, 10, 'not "cool"', DOWN),
+    Mistake(body(DOWN + " over 2 s"), "E108", 3, 26, 'either "at" a rate or "over" a time', DOWN),
+    Mistake(body("total at 10 s", "hold for 10 s"), "E116", 3, 12, '"most" or "least" is needed', "total 10 s"),
+    Mistake(body("total most 10 s", "hold for 9 s"), "E116", 3, 9, '"at" is missing before', "total at most 10 s"),
+    Mistake(body("total <= 10 s", "hold for 9 s"), "E116", 3, 9, '"<=" does not fit', "total at most 10 s"),
+    Mistake(body("total of 10 s", "hold for 10 s"), "E106", 3, 9, 'needed, not "of"', "total 10 s"),
+    Mistake(body("play"), "E113", 3, 7, 'a name is missing after "play"'),
+    Mistake(body("play y") + "\nicon yy { hold for 1 s }", "E230", 3, 8, "names an icon of this file", "play yy"),
+    Mistake(body('play "y"') + "\nicon y { hold for 1 s }", "E113", 3, 8, "without quotation marks", "play y"),
+    Mistake(body("play y 3 times") + "\n" + STEP.replace("x", "y"), "E108", 3, 10, "3 {", "repeat 3 { play y }"),
+    Mistake(body("play big dip") + "\n" + STEP.replace("x", "big-dip"), "E113", 3, 12, "no blanks", "play big-dip"),
+]
+
+
+def family(parameters: str, statement: str = "change by a at 1 K/s") -> str:
+    """A family whose line 2 holds the parameters, from column 8 on, and line 3 a statement."""
+    return f"cue 1\nicon x({parameters} {{\n  {statement}\n  hold for 1 s\n}}"
+
+
+def header(parameters: str, *rest: object) -> Mistake:
+    code, column, words, *cured = rest
+    suggestion = f"icon x({cured[0]} {{" if cured else None
+    return Mistake(family(parameters), str(code), 2, int(str(column)), str(words), suggestion)
+
+
+FAMILIES = [
+    header("a in 1, 2 °C)", "E118", 13, "a list of values has brackets", "a in [1, 2] °C)"),
+    header("a [1,2] °C)", "E118", 10, '"in" is missing before the values', "a in [1,2] °C)"),
+    header("a = [1, 2] °C)", "E118", 10, '"in" is needed, not "="', "a in [1, 2] °C)"),
+    header("a from 1..3 step 1 K)", "E118", 10, '"in" is needed, not "from"', "a in 1..3 step 1 K)"),
+    header("a in [1 2] °C)", "E118", 16, "a comma is missing between", "a in [1, 2] °C)"),
+    header("a in [1, 2, ] °C)", "E118", 20, "a value is missing behind the comma", "a in [1, 2] °C)"),
+    header("a in [] °C)", "E118", 14, "this list is empty"),
+    header("a in °C)", "E118", 13, "no list and no range"),
+    header("a in)", "E118", 12, "the values are missing"),
+    header("a in [1 °C, 2 °C])", "E118", 16, "the unit stands once, behind the list", "a in [1, 2] °C)"),
+    header("a in [1, 2], °C)", "E118", 21, "without a comma", "a in [1, 2] °C)"),
+    header("a in [1, 2 °C)", "E118", 19, '"]" is missing before "°C"', "a in [1, 2] °C)"),
+    header("a in [1, 2) °C)", "E118", 18, 'a list ends with "]"', "a in [1, 2] °C)"),
+    header("a in (1, 2) °C)", "E118", 13, 'stands in "[ ... ]", not in "("', "a in [1, 2] °C)"),
+    header("a in {1, 2} °C)", "E118", 13, 'stands in "[ ... ]", not in "{"', "a in [1, 2] °C)"),
+    header("a in [1, x] K)", "E106", 17, 'a number is needed, not "x"'),
+    header("a in 1..3 °C)", "E118", 13, 'this range has no "step"', "a in 1..3 step 1 °C)"),
+    header("a in 1 to 3 step 1 °C)", "E118", 15, 'a range has ".." between', "a in 1..3 step 1 °C)"),
+    header("a in 1..3 by 1 °C)", "E118", 18, '"step" is needed, not "by"', "a in 1..3 step 1 °C)"),
+    header("a in [1] K", "E118", 17, '")" is missing', "a in [1] K)"),
+    header("a in [1] K]", "E118", 18, 'the parameters end with ")"', "a in [1] K)"),
+    header("a in [1] K b in [2] K)", "E118", 19, "a comma is missing before this parameter"),
+    header("a in [1] K, )", "E118", 20, "no parameter follows", "a in [1] K)"),
+    header(")", "E118", 8, "there is no parameter"),
+    header("a in [1] foo)", "E103", 17, '"foo" is not a unit'),
+    header("a in [1] kelvin)", "E103", 17, "values without one are counts", "a in [1] K)"),
+    header("my_a in [1] K)", "E113", 8, '"my_a" is not a name'),
+    header("big a in [1] K)", "E113", 12, "no blanks in it"),
+    header("a in [1] K, s in [1] s)", "E113", 20, '"s" is a unit, and no name'),
+    header("a in [1] K, a in [2] K)", "E213", 20, '"a" stands on line 2, column 8 already'),
+    header("a in [1, 1] K)", "E213", 17, "1 stands in this list already", "a in [1] K)"),
+    header("a in [1e99] K)", "E218", 14, "at most 1e+09"),
+    header("a in 3..1 step 1 K)", "E228", 13, "1 does not lie above 3", "a in 1..3 step 1 K)"),
+    header("a in 1..3 step 0.7 K)", "E228", 13, "3 is not reached from 1 in steps of 0.7"),
+    header("a in 1..3 step 0 K)", "E228", 13, "a step is positive"),
+    header("a in 0..9999999 step 1e-3 K)", "E228", 13, "more than 10,000,000 values"),
+    header("a in [1] K, b in [1] s)", "E227", 20, "b is never used"),
+    header('a in [1] K) means "{b} x"', "E226", 27, '"b" is not a parameter', 'a in [1] K) means "{a} x"'),
+    Mistake("cue 1\nicon x(a\n in [1] K) { " + DOWN + " }", "E118", 2, 8, "a parameter stands on one line"),
+    Mistake("cue 1\nicon x[a in [1] K] { warm by a at 1 K/s }", "E118", 2, 7, 'in "( ... )", not in "["'),
+    Mistake('cue 1\nicon x means "y" (a in [1] K) { hold for 1 s }', "E118", 2, 18, "directly behind the name"),
+    Mistake(family("a in [1] K)", "change by b at 1 K/s"), "E226", 3, 13, "are: a", "change by a at 1 K/s"),
+    Mistake(family("rate in [1] K/s)", "cool by 6 K at rat"), "E226", 3, 18, '"rat"', "cool by 6 K at rate"),
+    Mistake(family("a in [1] K)", "warm by a K at 1 K/s"), "E104", 3, 13, "has its unit already"),
+    Mistake(family("a in [1] K)", "warm by 2 a at 1 K/s"), "E103", 3, 13, "no arithmetic", "warm by a at 1 K/s"),
+    Mistake(family("a in [1] K)", "warm by -a at 1 K/s"), "E105", 3, 11, "no sign before it"),
+    Mistake(family("a in [1] K)", "warm by {a} at 1 K/s"), "E105", 3, 11, "these braces", "warm by a at 1 K/s"),
+    Mistake(family("a in [1] K)", "hold for a"), "E104", 3, 12, "a is in K; a time is needed here"),
+    Mistake(family("a in [1])", "hold for a"), "E104", 3, 12, "a has no unit; a time is needed"),
+    Mistake(family("n in [1, 2] s)", "repeat n { hold for 1 s }"), "E104", 3, 10, "a count is needed here"),
+    Mistake(family("n in [1, 2.5])", "repeat n { hold for 1 s }"), "E207", 3, 10, "2.5 is not a positive whole"),
+    Mistake(family("n in [1, 2])", "repeat m { hold for 1 s }"), "E226", 3, 10, '"m" is not a parameter'),
+    Mistake(family("a in [0, 1] K)", "step by a"), "E202", 3, 11, "its values: a in [0, 1] K"),
+    Mistake(family("a in [-1, 1] K)", "sine by a every 1 s for 1 s"), "E202", 3, 11, "an amplitude is positive"),
+    Mistake(family("a in [-6, 6] K)", "warm by a at 1 K/s"), "E202", 3, 11, "a change has a positive size"),
+    Mistake(family("a in 1..40 step 1 K)"), "E219", 3, 13, "leads to 61 °C (with a=29, one of 12 such members of 40)"),
+    Mistake(family("a in [30, 34] °C)", "warm to a at 1 K/s"), "E201", 3, 11, "30 °C is below the 32 °C"),
+    Mistake(family("t in [1, 2] s)", "hold for t; total 2 s"), "E222", 3, 21, "with t=2"),
+    Mistake(family("a in [1, 2] K)") + "\nicon y { play x }", "E230", 6, 15, "family of 2", "icon y { play x_a=1 }"),
+    Mistake(family("a in [1, 2] K)") + "\nicon y { play x_a=3 }", "E230", 6, 15, "this is none of them"),
+    Mistake(family("a in [1, 2] K)") + "\n" + STEP.replace("x", "x_a=1"), "E211", 6, 6, "a member of family x"),
+    Mistake("cue 1\nicon y_a=1(a in [1] K) { warm by a at 1 K/s }", "E113", 2, 6, "a name for a member"),
+    Mistake(
+        family("a in 0.001..3 step 1e-3 K, b in 1..10 step 1e-3 s)", "warm by a over b"),
+        "E231",
+        2,
+        7,
+        "27,003,000 members",
+    ),
 ]
 
 MEANING = [
@@ -149,6 +256,22 @@ MEANING = [
     Mistake(body("repeat 1000000 { repeat 1000000 { hold for 1 s } }"), "E220", 3, 3, "1,000,000,000,000 corners"),
     Mistake(body("hold for 61 min"), "E221", 3, 12, "the hour that an icon may last"),
     Mistake(body("repeat 70 { hold for 1 min }"), "E221", 2, 6, "this icon lasts 4,200 s"),
+    Mistake(
+        body("step cool to 36 °C; hold for 1 s"), "E201", 3, 16, "above the 32 °C", "step warm to 36 °C; hold for 1 s"
+    ),
+    Mistake(body("step by 0 K; hold for 1 s"), "E202", 3, 11, "a change of nothing"),
+    Mistake(body("sine by -3 °C every 4 s for 12 s"), "E202", 3, 11, "an amplitude is positive", SINE),
+    Mistake(body("sine by 3 A every 4 s for 12 s"), "E210", 3, 11, "controls the skin"),
+    Mistake(AMPS + "step by 1 A; sine by 1 A every 1 s for 2 s starting cool\n}", "E210", 4, 55, '"up" or "down"'),
+    Mistake(body("total 10 s; hold for 3 s"), "E222", 3, 9, "it is 7 s too short", "total 3 s; hold for 3 s"),
+    Mistake(body("total at most 2 s", "hold for 3 s"), "E222", 3, 17, "it is 1 s too long", "total at most 3 s"),
+    Mistake(body("step by 3 °C"), "E223", 2, 6, "a step takes no time of its own"),
+    Mistake(body("play y", DOWN) + "\n" + STEP.replace("x", "y"), "E224", 3, 3, "y begins at baseline"),
+    Mistake(body("sine by 3 °C every 4 s for 11 s"), "E225", 3, 30, "2.75 periods", SINE),
+    Mistake(body("repeat 2 { hold for 1 s; total 2 s }"), "E229", 3, 28, "the whole icon, not a repeat"),
+    Mistake(body("play unknwon"), "E230", 3, 8, 'no icon is called "unknwon"'),
+    Mistake(body("play x"), "E232", 3, 8, "x plays x"),
+    Mistake(body("play y") + "\nicon y { play x }", "E232", 5, 15, "x plays y plays x"),
 ]
 
-ALL = [*SYNTAX, *NOT_YET, *MEANING]
+ALL = [*SYNTAX, *SHAPES, *FAMILIES, *MEANING]

@@ -95,6 +95,7 @@ def test_levels_between_corners() -> None:
         ((0, 1, 1), (1, 2, 3), "temperature_C", "rise strictly"),
         ((0, 1), (1, math.nan), "temperature_C", "finite"),
         ((0, 1), (1, 2), "warmth", "quantity must be"),
+        ((1, 0), (1, 2), "temperature_C", "begin at 0 s and rise"),
     ],
 )
 def test_corners_prove_themselves(
@@ -102,6 +103,12 @@ def test_corners_prove_themselves(
 ) -> None:
     with pytest.raises(ValueError, match=message):
         Corners(times, values, quantity)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("steps", [(1,), (-1,), (0, 2)])
+def test_a_step_has_a_corner_behind_it(steps: tuple[int, ...]) -> None:
+    with pytest.raises(ValueError, match="must each be a corner that another one follows"):
+        Corners((0, 1), (1, 2), "temperature_C", steps)
 
 
 def test_everything_is_frozen() -> None:

@@ -1,7 +1,10 @@
 """Objects built in Python prove themselves, say who they are, and compare by value."""
 
+import copy
 import math
+import pickle
 from collections.abc import Callable
+from dataclasses import FrozenInstanceError, fields
 
 import pytest
 
@@ -14,21 +17,38 @@ from thermicon.icons import (
     Icon,
     IconSet,
     Metadata,
+    Play,
+    Pulse,
     Repeat,
     Rest,
     Return,
+    Step,
+    Total,
+    Wave,
     load_library,
     parse,
 )
 from thermicon.icons.statements import Broken
 
 HOLD = (Hold(1),)
+WAIT = Icon("wait", (Rest(1),))
+EVERYTHING = (
+    Change("change", by_K=-1, duration_s=1),
+    Return(duration_s=1),
+    Step("cool", by_K=1),
+    Step(to_C=32),
+    Pulse(by_K=1, duration_s=0.5),
+    Wave("sawtooth", by_K=1, period_s=1, duration_s=2, start="cool"),
+    Repeat(2, (Play(WAIT), Hold(1))),
+    Total(20, "at most"),
+)
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Change("up", by_K=1, duration_s=1), 'direction must be "warm" or "cool"'),
+        (lambda: Change("up", by_K=1, duration_s=1), 'direction must be "warm", "cool" or "change", not \'up\''),
+        (lambda: Change("change", by_K=0, duration_s=1), "a change of nothing is no change"),
         (lambda: Change("warm", duration_s=1), "either by_K or to_C"),
         (lambda: Change("warm", by_K=1, to_C=40, duration_s=1), "and not both"),
         (lambda: Change("warm", by_K=1), "either rate_K_per_s or duration_s"),
@@ -48,6 +68,28 @@ HOLD = (Hold(1),)
         (lambda: Repeat(True, HOLD), "not True"),
         (lambda: Repeat(2, ()), "at least one statement"),
         (lambda: Repeat(2, ("hold",)), "nothing else"),
+        (lambda: Repeat(2, (Total(1),)), "may not hold a Total, which concerns the whole icon"),
+        (lambda: Total(1, "about"), 'bound must be "exactly", "at most" or "at least", not \'about\''),
+        (lambda: Play("x"), "Play.icon must be an Icon, not 'x'"),
+        (lambda: Step(), "Step needs either by_K or to_C or by_A or to_A, and not both"),
+        (lambda: Step("up", by_K=1), 'Step.direction must be "warm", "cool" or "change", not \'up\''),
+        (lambda: Step("warm", by_K=-1), "a change has a positive size"),
+        (lambda: Step("warm", by_A=1), 'Step: a current is changed, not "warm"ed'),
+        (lambda: Step(by_A=0), "Step.by_A = 0: a change of nothing is no change"),
+        (lambda: Pulse(by_K=1, by_A=1), "Pulse needs either by_K or by_A, and not both"),
+        (lambda: Pulse(by_K=0), "a change of nothing is no change"),
+        (lambda: Wave("saw", by_K=1), "Wave.shape must be one of sine, square, triangle, sawtooth, not 'saw'"),
+        (lambda: Wave("sine", by_A=-1), "Wave.by_A = -1.0: an amplitude is positive"),
+        (lambda: Wave("sine", by_K=1, start="up"), 'Wave.start must be "warm" or "cool" here, not \'up\''),
+        (lambda: Wave("sine", by_A=1, start="cool"), 'Wave.start must be "up" or "down" here, not \'cool\''),
+        (lambda: Wave("sine", by_K=1, cut=1), "Wave.cut must be True or False, not 1"),
+        (lambda: Icon("x", (Wave("sine", by_K=1, period_s=2),)), "E225 not whole periods"),
+        (lambda: Icon("x", (Wave("sine", by_A=1),)), "E210 unit does not fit the control"),
+        (lambda: Icon("x", (Step(by_K=1),)), "E223 icon without duration"),
+        (lambda: Icon("x", (*HOLD, Total(2))), "E222 total not kept"),
+        (lambda: Icon("x", (Change("warm", by_K=1, duration_s=1), Play(WAIT))), "E224 play away from baseline"),
+        (lambda: Icon("x", (Play(WAIT),), Frame("display")), "plays wait, whose frame differs"),
+        (lambda: Icon("wait", (Play(WAIT),)), "plays two different icons that are both called wait"),
         (lambda: Frame("heat"), "control must be one of skin, display, current, not 'heat'"),
         (lambda: Frame(baseline_C=99), "baseline_C: 99 °C is outside"),
         (lambda: Frame(site="left thumb"), "site: 'left thumb' is not a name"),
@@ -117,3 +159,29 @@ def test_errors_of_an_icon_show_its_canonical_text() -> None:
     ) as caught:
         Icon("x", (Change("cool", by_K=1, duration_s=1), Rest(2)))
     assert len(caught.value.errors) == 1
+
+
+def test_statements_are_frozen_and_travel() -> None:
+    icon = Icon("x", EVERYTHING)
+    for part in (*EVERYTHING, icon, IconSet("", "", Frame(), Metadata(), (WAIT, icon))):
+        for again in (pickle.loads(pickle.dumps(part)), copy.copy(part), copy.deepcopy(part)):
+            assert again == part
+            assert hash(again) == hash(part)
+            assert "\n" not in repr(again)
+        name = fields(part)[0].name
+        with pytest.raises(FrozenInstanceError, match=f"cannot assign to field '{name}'"):
+            setattr(part, name, None)
+
+
+def test_a_wave_says_which_way_it_starts() -> None:
+    assert Wave("sine", by_K=1).start == "warm"
+    assert Wave("sine", by_A=1).start == "up"
+    assert [Wave("sine", by_K=1, start=way).sign for way in ("warm", "cool")] == [1, -1]  # type: ignore[arg-type]
+    assert Wave("sine", by_K=1) == Wave("sine", by_K=1, start="warm")
+
+
+def test_a_statement_that_could_not_be_read_draws_no_words_about_durations() -> None:
+    for body in ("cool by 6 at 3 °C/s; return at 3 °C/s", "hold for 1; step by 1 K; return over 1 s; total 6 s"):
+        with pytest.raises(CueErrors, match="E102 missing unit") as caught:
+            parse(f"cue 1; icon x {{ {body} }}")
+        assert [error.code for error in caught.value.errors] == ["E102"]

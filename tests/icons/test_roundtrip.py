@@ -1,7 +1,8 @@
 """Whatever can be built can be written and read back, equal to the last digit."""
 
+from dataclasses import replace
 from fractions import Fraction
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 from hypothesis import assume, given, settings
@@ -11,17 +12,26 @@ from thermicon.icons import (
     Change,
     CueErrors,
     Drive,
+    Family,
     Frame,
     Hold,
     Icon,
     IconSet,
     Metadata,
+    Parameter,
+    Play,
+    Pulse,
     Repeat,
     Rest,
     Return,
+    Slot,
     Statement,
+    Step,
+    Total,
+    Wave,
     parse,
 )
+from thermicon.icons.shapes import Shape
 from thermicon.icons.units import exact, quantity, to_si
 
 TIMES = st.one_of(st.floats(1e-6, 50), st.integers(1, 999).map(lambda n: n / 1000), st.integers(1, 50).map(float))
@@ -41,23 +51,66 @@ def pace(rate: str) -> st.SearchStrategy[dict[str, float]]:
 
 
 @st.composite
-def bodies(draw: Any, control: str, depth: int = 2) -> tuple[Statement, ...]:
+def waves(draw: Any, current: bool) -> tuple[Statement, ...]:
+    """A wave in whole periods, or a cut one that goes back."""
+    period, count = draw(st.integers(1, 40)) / 10, draw(st.integers(1, 3))
+    size = {"by_A" if current else "by_K": draw(STEPS)}
+    start = draw(st.sampled_from((None, "up", "down") if current else (None, "warm", "cool")))
+    shape, cut = draw(st.sampled_from(get_args(Shape))), draw(st.booleans())
+    whole = float(Fraction(str(period)) * count)
+    wave = Wave(shape, **size, period_s=period, duration_s=draw(TIMES) if cut else whole, start=start, cut=cut)
+    return (wave, Return(**draw(pace("rate_per_s")))) if cut else (wave,)
+
+
+@st.composite
+def moves(draw: Any, current: bool) -> tuple[Statement, ...]:
+    """A statement that leads away from baseline and one that leads back."""
+    if current:
+        away = draw(
+            st.sampled_from(
+                [Drive(draw(st.floats(0.1, 2)), **draw(pace("rate_A_per_s"))), Step(by_A=-0.5), Step(to_A=draw(STEPS))]
+            )
+        )
+    else:
+        warm = {"to_C": draw(st.floats(33.0, 40.0))}
+        by = {"by_K": draw(STEPS)}
+        how = draw(pace("rate_K_per_s"))
+        away = draw(
+            st.sampled_from(
+                [
+                    Change(draw(st.sampled_from(["warm", "cool"])), **by, **how),
+                    Change("change", by_K=-by["by_K"], **how),
+                    Change(draw(st.sampled_from(["warm", "change"])), **warm, **how),
+                    Step(draw(st.sampled_from(["warm", "cool", "change"])), **by),
+                    Step(draw(st.sampled_from(["warm", "change"])), **warm),
+                ]
+            )
+        )
+    return away, Hold(draw(TIMES)), Return(**draw(pace("rate_per_s")))
+
+
+@st.composite
+def bodies(draw: Any, control: str, depth: int = 2, known: tuple[Icon, ...] = ()) -> tuple[Statement, ...]:
     parts: list[Statement] = []
+    current = control == "current"
     for _ in range(draw(st.integers(1, 3))):
-        kind = draw(st.sampled_from(["hold", "dip", "repeat"] if depth else ["hold", "dip"]))
+        kind = draw(
+            st.sampled_from(["hold", "move", "pulse", "wave", *["repeat"] * (depth > 0), *["play"] * bool(known)])
+        )
         if kind == "hold":
             parts.append(draw(st.builds(draw(st.sampled_from([Hold, Rest])), TIMES)))
         elif kind == "repeat":
-            parts.append(Repeat(draw(st.integers(1, 3)), draw(bodies(control, depth - 1))))
-        elif control == "current":
-            parts.append(Drive(draw(st.floats(0.1, 2)), **draw(pace("rate_A_per_s"))))
-            parts.append(Return(**draw(pace("rate_per_s"))))
+            parts.append(Repeat(draw(st.integers(1, 3)), draw(bodies(control, depth - 1, known))))
+        elif kind == "play":
+            parts.append(Play(draw(st.sampled_from(known))))
+        elif kind == "pulse":
+            size = draw(STEPS) * draw(st.sampled_from([-1, 1]))
+            pulse = Pulse(**{"by_A" if current else "by_K": size}, duration_s=draw(TIMES))
+            parts.append(pulse if current else draw(st.sampled_from([pulse, Pulse("cool", by_K=1, duration_s=1)])))
         else:
-            size = draw(st.sampled_from([{"by_K": draw(STEPS)}, {"to_C": draw(st.floats(33.0, 40.0))}]))
-            direction = "warm" if "to_C" in size else draw(st.sampled_from(["warm", "cool"]))
-            parts.append(Change(direction, **size, **draw(pace("rate_K_per_s"))))
-            parts.append(Hold(draw(TIMES)))
-            parts.append(Return(**draw(pace("rate_per_s"))))
+            parts += draw(moves(current) if kind == "move" else waves(current))
+    if depth == 2 and draw(st.booleans()):
+        parts.append(draw(st.sampled_from([Total(3600, "at most"), Total(1e-6, "at least")])))
     return tuple(parts)
 
 
@@ -71,15 +124,18 @@ METADATA = st.builds(
 )
 
 
+FRAMES = st.builds(
+    Frame,
+    st.sampled_from(["skin", "display", "current"]),
+    st.none() | st.floats(28, 32.5),
+    st.none() | NAMES,
+)
+
+
 @st.composite
-def icons(draw: Any, frame: Frame | None = None, name: str | None = None) -> Icon:
-    if frame is None:
-        frame = Frame(
-            draw(st.sampled_from(["skin", "display", "current"])),
-            draw(st.none() | st.floats(28, 32.5)),
-            draw(st.none() | NAMES),
-        )
-    body = draw(bodies(frame.control))
+def icons(draw: Any, frame: Frame | None = None, name: str | None = None, known: tuple[Icon, ...] = ()) -> Icon:
+    frame = draw(FRAMES) if frame is None else frame
+    body = draw(bodies(frame.control, known=known))
     try:
         return Icon(name or draw(NAMES), body, frame, draw(METADATA))
     except CueErrors:
@@ -87,25 +143,119 @@ def icons(draw: Any, frame: Frame | None = None, name: str | None = None) -> Ico
         raise
 
 
-@settings(max_examples=150, deadline=None)
+TEMPLATE = (
+    Change("warm", by_K=1, rate_K_per_s=1),
+    Hold(1),
+    Return(1),
+    Repeat(2, (Pulse(by_K=-1, duration_s=1), Change("change", to_C=36, duration_s=1), Return(duration_s=1))),
+    Wave("sawtooth", by_K=1, period_s=1, duration_s=4, start="cool", cut=True),
+    Step("cool", by_K=1),
+    Step(to_C=40),
+    Total(3600, "at most"),
+)
+SLOTS = {
+    "size": [((0,), "by_K", "difference"), ((4,), "by_K", "difference"), ((5,), "by_K", "difference")],
+    "speed": [((0,), "rate_K_per_s", "rate"), ((2,), "rate_per_s", "rate")],
+    "time": [((1,), "duration_s", "time"), ((3, 0), "duration_s", "time"), ((4,), "period_s", "time")],
+    "count": [((3,), "count", "count")],
+    "step": [((3, 0), "by_K", "change")],
+    "target": [((3, 1), "to_C", "absolute"), ((6,), "to_C", "absolute")],
+}
+KINDS = {
+    "size": (st.floats(0.01, 3), ["K", "°C", "degC"]),
+    "speed": (st.floats(0.05, 90), ["K/s", "°C/s", "°C/min"]),
+    "time": (st.floats(0.01, 50), ["s", "ms", "min"]),
+    "count": (st.integers(1, 9).map(float), [""]),
+    "step": (st.floats(0.01, 5) | st.floats(-5, -0.01), ["K"]),
+    "target": (st.floats(36, 45), ["°C"]),
+}
+
+
+@st.composite
+def families(draw: Any, frame: Frame | None = None, name: str | None = None) -> Family:
+    """A family of one template, in which some of the numbers vary."""
+    frame = draw(FRAMES.filter(lambda made: made.control != "current")) if frame is None else frame
+    parameters, slots, template = [], [], TEMPLATE
+    for each in draw(st.lists(st.sampled_from(list(SLOTS)), min_size=1, max_size=3, unique=True)):
+        values, units = KINDS[each]
+        span = draw(st.none() | st.sampled_from([(1.0, 3.0, 0.5), (1.0, 3.0, 1.0)]))
+        if span is None or each in ("count", "target"):
+            listed = tuple(draw(st.lists(values, min_size=1, max_size=3, unique=True)))
+            own = Parameter(f"{each}-é", draw(st.sampled_from(units)), listed)
+        else:
+            own = Parameter(f"{each}-é", draw(st.sampled_from(units)), span=span)
+        parameters.append(own)
+        for path, field, kind in draw(st.lists(st.sampled_from(SLOTS[each]), min_size=1, unique=True)):
+            slots.append(Slot(path, field, kind, own.name))
+            value = own.si(0, kind)
+            template = changed(template, path, field, int(value) if kind == "count" else value)
+    metadata = draw(METADATA)
+    hole = draw(st.sampled_from(["", f" {{{parameters[0].name}}} ", "{ }"]))
+    metadata = replace(metadata, means="x" + (metadata.means or "").replace("{", "") + hole)
+    try:
+        return Family(
+            name or draw(NAMES), tuple(parameters), template, tuple(draw(st.permutations(slots))), frame, metadata
+        )
+    except CueErrors:
+        assume(False)
+        raise
+
+
+def changed(body: tuple[Any, ...], path: tuple[int, ...], field: str, value: float) -> tuple[Any, ...]:
+    """A body with another value in a field of the statement at a path."""
+    first, *more = path
+    inner = {"body": changed(body[first].body, tuple(more), field, value)} if more else {field: value}
+    return (*body[:first], replace(body[first], **inner), *body[first + 1 :])
+
+
+@st.composite
+def sets(draw: Any) -> IconSet:
+    """A set of icons that play each other, and families."""
+    frame = draw(FRAMES.filter(lambda made: made.control != "current"))
+    names = draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
+    entries: list[Icon | Family] = []
+    for name in names:
+        known = tuple(entry[0] if isinstance(entry, Family) else entry for entry in entries)
+        entries.append(draw(st.one_of(icons(frame, name, known), families(frame, name))))
+    return IconSet(draw(st.just("") | NAMES), draw(st.just("") | TEXTS), frame, draw(METADATA), tuple(entries))
+
+
+@settings(max_examples=200)
 @given(icons())
 def test_an_icon_reads_back_equal(icon: Icon) -> None:
     again = parse(str(icon)).icons[0]
     assert again == icon
     assert str(again) == str(icon)
     assert again.lower() == icon.lower()
+    assert repr(icon).startswith(f"<Icon {icon.name}: ")
+    assert "\n" not in repr(icon)
 
 
-@settings(max_examples=60, deadline=None)
-@given(st.data())
-def test_a_set_reads_back_equal(data: st.DataObject) -> None:
-    frame = Frame(data.draw(st.sampled_from(["skin", "display"])), data.draw(st.none() | st.floats(28, 32.5)))
-    names = data.draw(st.lists(NAMES, min_size=1, max_size=3, unique=True))
-    members = tuple(data.draw(icons(frame, name)) for name in names)
-    title = data.draw(st.just("") | TEXTS)
-    made = IconSet(data.draw(st.just("") | NAMES), title, frame, data.draw(METADATA), members)
-    assert parse(str(made)) == made
-    assert str(parse(str(made))) == str(made)
+@settings(max_examples=100)
+@given(families())
+def test_a_family_and_its_members_read_back_equal(family: Family) -> None:
+    (again,) = parse(str(family)).entries
+    assert again == family
+    assert str(again) == str(family)
+    assert list(again) == list(family)
+    assert "\n" not in repr(family)
+    for member in family.sample(2):
+        assert parse(str(member)).entries == (member,)
+        assert Icon(member.name, member.statements, member.frame, member.metadata) == member
+        assert member in family
+        assert family.find(member.name) == member
+
+
+@settings(max_examples=80)
+@given(sets())
+def test_a_set_reads_back_equal(made: IconSet) -> None:
+    again = parse(str(made))
+    assert again == made
+    assert str(again) == str(made)
+    assert again.content_hash == made.content_hash
+    assert "\n" not in repr(made)
+    for entry in made.entries:  # each stands alone, after those that it plays
+        assert parse(str(entry)).entries[-1] == entry
 
 
 @settings(max_examples=300, deadline=None)

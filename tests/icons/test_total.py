@@ -10,12 +10,17 @@ from hypothesis import strategies as st
 from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
 
 TEXT = """cue 1 icon set { } ; " cool warm by to 6 °C K s ms at over return hold for repeat rest 3 -1 1e999 0 @ # means
-tags site control baseline skin current A A/s on sine ( a-b a_b \\ BROKEN é"""
+tags site control baseline skin current A A/s on sine ( a-b a_b \\ BROKEN é
+change step pulse square triangle sawtooth by every starting up down cut play total most least in ) [ ] , .. . x y
+x_y=1 {x} 1..3 [1,2] (x -6 2.5 °C/s mA"""
 WORDS = [*re.findall(r"\S+", TEXT), "\n", "\u2028", "\t"]
+FAMILY = "change by x at y; step by -1 K; hold for 1 s; return at y; total at most 30 s"
 SOUND = [str(load_library(name)) for name in library_names()] + [
+    f'cue 1\nicon f(x in [-6, 3] °C, y in 1..3 step 0.5 K/s) means "{{x}} at {{y}}" {{ {FAMILY} }}\n'
+    "icon g { play f_x=-6_y=1; sine by 3 °C every 4 s for 10 s starting cool cut; return over 1 s }",
     'cue 1\nset a "x" { control current; site wrist }\n'
     'icon k means "a" tags "b, c" { to 0.5 A at 1 A/s; repeat 2 { to 100 mA over 20 ms; to 0.5 A over 1 s }\n'
-    " return at 500 mA/s }"
+    " return at 500 mA/s }",
 ]
 
 
@@ -30,6 +35,35 @@ def parsed(text: str | bytes) -> IconSet | None:
         return None
     assert parse(str(icons)) == icons
     return icons
+
+
+PARAMETERS = [
+    "x",
+    "y",
+    "in",
+    "[",
+    "]",
+    "(",
+    ")",
+    ",",
+    "..",
+    "step",
+    "1",
+    "-2",
+    "0.5",
+    "K",
+    "°C/s",
+    "s",
+    "\n",
+    "{",
+    "1..3",
+]
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.sampled_from(PARAMETERS), max_size=16), st.lists(st.sampled_from(WORDS), max_size=10))
+def test_any_family(parameters: list[str], words: list[str]) -> None:
+    parsed(f"cue 1\nicon f({' '.join(parameters)}) {{ change by x at 1 K/s; {' '.join(words)} }}")
 
 
 @settings(max_examples=150, deadline=None)

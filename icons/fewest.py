@@ -1,4 +1,4 @@
-"""The fewest straight lines, joined end to end, that pass through a row of gates: one gate at each time of a recording."""
+"""The fewest straight lines, joined end to end, that pass through a row of gates, one at each time of a recording."""
 
 from collections.abc import Sequence
 

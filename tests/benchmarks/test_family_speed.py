@@ -1,0 +1,87 @@
+"""Speed of families, beside building their icons one by one, and of reading and laying out text.
+
+Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
+"""
+
+import time
+from collections.abc import Callable
+from itertools import islice
+
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from thermicon.icons import Family, Icon, back, format_text, hold, parse, ramp
+from thermicon.icons.source import MOST_BYTES
+
+pytestmark = pytest.mark.benchmark
+MILLION = (
+    "cue 1\nicon ramp(amount in 0.1..10 step 0.1 °C, rate in 0.1..10 step 0.1 °C/s, pause in 0.1..10 step 0.1 s)\n"
+    '  means "{amount} at {rate}"\n{ change by amount at rate; hold for pause; return at rate }'
+)
+WAVES = (
+    "cue 1\nicon wave(size in 0.001..5 step 0.001 K, time in 0.1..20 step 0.1 s)\n"
+    "{ sine by size every time for 20 s cut; step to 26 °C; hold for 1 s }"
+)
+ROW = (
+    'icon row-{} means "a row" {{ cool by 6 K at 3 K/s; '
+    "repeat 3 {{ hold for .5 s; pulse warm by 1 K for 1 s }}; return over 2 s }} # c\n"
+)
+
+
+def best_of(run: Callable[[], object], times: int = 3) -> float:
+    """Least wall time in s of some runs."""
+    found = []
+    for _ in range(times):
+        start = time.perf_counter()
+        run()
+        found.append(time.perf_counter() - start)
+    return min(found)
+
+
+def one_by_one(count: int) -> list[Icon]:
+    """The first members of the family of a million, each built and proven by itself."""
+    made = []
+    for n in range(count):
+        amount, rate, pause = (n // 10_000 + 1) / 10, (n // 100 % 100 + 1) / 10, (n % 100 + 1) / 10
+        made.append(Icon(f"ramp-{n}", (ramp(by=amount, at=rate), hold(pause), back(at=rate))))
+    return made
+
+
+def test_a_million_members_are_checked_and_counted(benchmark: BenchmarkFixture) -> None:
+    icons = benchmark.pedantic(lambda: parse(MILLION), rounds=3, warmup_rounds=1)
+    assert len(icons) == 1_000_000
+    alone = best_of(lambda: one_by_one(5_000)) / 5_000
+    took = benchmark.stats["min"]
+    times = alone * 1e6 / took
+    print(f"\n1,000,000 members checked and counted in {took:.3f} s; one by one {alone * 1e6:.0f} s, {times:.0f} times")
+    assert took < 1.0
+
+
+def test_waves_are_checked_as_well(benchmark: BenchmarkFixture) -> None:
+    icons = benchmark.pedantic(lambda: parse(WAVES), rounds=3, warmup_rounds=1)
+    assert len(icons) == 1_000_000
+    print(f"\n1,000,000 members with a sine checked and counted in {benchmark.stats['min']:.2f} s")
+    assert benchmark.stats["min"] < 1.0
+
+
+def test_members_are_made_fast(benchmark: BenchmarkFixture) -> None:
+    family = parse(MILLION).families[0]
+    assert isinstance(family, Family)
+
+    def make() -> int:
+        return sum(1 for _ in islice(family, 100_000))
+
+    assert benchmark.pedantic(make, rounds=3, warmup_rounds=1) == 100_000
+    rate, alone = 100_000 / benchmark.stats["min"], 5_000 / best_of(lambda: one_by_one(5_000))
+    print(f"\n{rate:,.0f} icons a second out of a family, {alone:,.0f} one by one: {rate / alone:.0f} times")
+    assert rate > 1e5
+
+
+def test_reading_and_layout(benchmark: BenchmarkFixture) -> None:
+    text = "cue 1\n" + "".join(ROW.format(n) for n in range(1_500))
+    assert len(text.encode()) < MOST_BYTES
+    benchmark.pedantic(lambda: format_text(text), rounds=3)
+    read, size = best_of(lambda: parse(text)), len(text) / 1e3
+    took = benchmark.stats["min"]
+    print(f"\n1,500 icons, {size:.0f} kB: read in {read:.2f} s, laid out in {took:.2f} s ({size / took:.0f} kB/s)")
+    assert took < 3 * read

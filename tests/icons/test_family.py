@@ -1,0 +1,221 @@
+"""A family is a sequence of icons that are made when asked for; it proves itself on construction."""
+
+import copy
+import pickle
+from collections.abc import Callable
+from dataclasses import FrozenInstanceError
+
+import pytest
+
+from thermicon.icons import (
+    CueErrors,
+    Family,
+    Frame,
+    Hold,
+    Icon,
+    IconSet,
+    Metadata,
+    Parameter,
+    Slot,
+    back,
+    cool,
+    parse,
+    pulse,
+    repeat,
+    step,
+)
+
+TEXT = """cue 1
+set lot { baseline 32 °C }
+icon first { hold for 1 s }
+icon ramp(amount in [-6, -3, 3, 6] °C, rate in 1..3 step 0.5 °C/s) means "ramp {amount} at {rate}" tags "a, b" {
+  change by amount at rate
+  return at rate
+}
+icon last { play ramp_amount=3_rate=1.5; hold for 1 s }
+"""
+SET = parse(TEXT)
+RAMP = SET.families[0]
+AMPERES, AMPERES_PER_S = Slot((0,), "by_A", "current", "a"), Slot((1,), "rate_per_s", "current_rate", "a")
+
+
+def family(
+    values: tuple[float, ...] = (1, 2),
+    unit: str = "K",
+    name: str = "f",
+    slots: tuple[Slot, ...] = (Slot((0,), "by_K", "difference", "a"),),
+    template: tuple[object, ...] = (cool(by=1, at=1),),
+    means: str | None = None,
+    control: str = "skin",
+    parameters: tuple[Parameter, ...] | None = None,
+) -> Family:
+    own = (Parameter("a", unit, values),) if parameters is None else parameters
+    return Family(name, own, template, slots, Frame(control), Metadata(means=means))  # type: ignore[arg-type]
+
+
+def test_it_is_a_sequence() -> None:
+    assert len(RAMP) == 20
+    assert [icon.name for icon in RAMP] == [RAMP[n].name for n in range(20)]
+    assert RAMP[-1] == RAMP[19] == list(RAMP)[-1]
+    assert RAMP[3] in RAMP
+    assert "ramp_amount=6_rate=2.5" in RAMP
+    assert "ramp_amount=6_rate=2.6" not in RAMP
+    assert Icon("ramp_amount=6_rate=1", (Hold(1),), RAMP.frame) not in RAMP
+    assert 3 not in RAMP
+    for index in (20, -21):
+        with pytest.raises(IndexError, match=f"family ramp has 20 members, so there is none at {index}"):
+            RAMP[index]
+
+
+def test_the_last_parameter_runs_fastest() -> None:
+    assert [icon.name for icon in list(RAMP)[:6]] == [
+        "ramp_amount=-6_rate=1",
+        "ramp_amount=-6_rate=1.5",
+        "ramp_amount=-6_rate=2",
+        "ramp_amount=-6_rate=2.5",
+        "ramp_amount=-6_rate=3",
+        "ramp_amount=-3_rate=1",
+    ]
+
+
+def test_members_are_whole_icons() -> None:
+    member = RAMP[6]
+    assert member.name == "ramp_amount=-3_rate=1.5"
+    assert member.metadata == Metadata(means="ramp -3 °C at 1.5 °C/s", tags=("a", "b"))
+    assert member.lower().value == (32.0, 29.0, 32.0)
+    assert Icon(member.name, member.statements, member.frame, member.metadata) == member
+    assert hash(RAMP[6]) == hash(member)
+
+
+def test_members_are_found_by_name_and_by_values() -> None:
+    assert RAMP.find("ramp_amount=6_rate=3") == RAMP[-1]
+    for name in ("ramp", "ramp_amount=6", "ramp_rate=3_amount=6", "ramp_amount=6_rate=3.0", "ramp_amount=x_rate=1"):
+        assert RAMP.find(name) is None
+    assert RAMP.member({"amount": 6, "rate": 3}) == RAMP[-1]
+    with pytest.raises(ValueError, match=r"family ramp: rate = 4 is not in rate in 1\.\.3 step 0\.5 °C/s"):
+        RAMP.member({"amount": 6, "rate": 4})
+    with pytest.raises(ValueError, match="rate = None is not in"):
+        RAMP.member({"amount": 6})
+
+
+def test_a_sample_is_seeded_and_has_no_member_twice() -> None:
+    drawn = RAMP.sample(7, seed=3)
+    assert drawn == RAMP.sample(7, seed=3)
+    assert drawn != RAMP.sample(7, seed=4)
+    assert len(set(drawn)) == 7
+    assert [icon.name for icon in RAMP if icon in drawn] == [icon.name for icon in drawn]
+    assert RAMP.sample(99) == tuple(RAMP)
+
+
+def test_a_set_counts_and_slices_members() -> None:
+    assert len(SET) == len(SET.icons) == 22
+    assert [icon.name for icon in SET.icons[:2]] == ["first", "ramp_amount=-6_rate=1"]
+    assert [icon.name for icon in SET.icons[-2:]] == ["ramp_amount=6_rate=3", "last"]
+    assert SET.icons[::7] == tuple(list(SET)[::7])
+    assert SET.icons[-1].name == "last"
+    assert SET["ramp_amount=-6_rate=1"] == RAMP[0]
+    assert RAMP in SET
+    assert RAMP[5] in SET
+    for index in (22, -23):
+        with pytest.raises(IndexError, match=f"no icon at {index}: the set has 22"):
+            SET.icons[index]
+    with pytest.raises(KeyError, match="ramp is a family of 20, with members such as ramp_amount=-6_rate=1"):
+        SET["ramp"]
+
+
+def test_a_million_members_are_counted_but_not_made() -> None:
+    text = "cue 1; icon x(a in 0.001..10 step 0.001 K, b in 0.1..10 step 0.1 s) { pulse by a for b }"
+    many = parse(text)
+    assert len(many) == 1_000_000
+    assert many.icons[-1].name == "x_a=10_b=10"
+    assert many.families[0].summary().highest == 42.0
+
+
+def test_names_stay_short_decimals() -> None:
+    own = Parameter("a", "s", span=(0.1, 1.2, 0.1))
+    assert own.texts() == ("0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8", "0.9", "1", "1.1", "1.2")
+    assert [own.si(n, "time") for n in range(3)] == [0.1, 0.2, 0.3]
+    assert Parameter("a", "ms", (1, 1e-5)).texts() == ("1", "1e-5")
+    assert repr(own) == "<Parameter a in 0.1..1.2 step 0.1 s: 12 values>"
+    assert Parameter("a", "degC/s", (1,)) == Parameter("a", "°C/s", (1,))
+
+
+def test_repr_is_one_line() -> None:
+    assert repr(RAMP) == (
+        "<Family ramp: 20 icons over amount in [-6, -3, 3, 6] °C, rate in 1..3 step 0.5 °C/s, control skin>"
+    )
+    assert repr(SET) == "<IconSet lot: 22 icons, 1 to 12 s, control skin, baseline 32 °C>"
+
+
+def test_it_is_frozen_and_travels() -> None:
+    with pytest.raises(FrozenInstanceError, match="name"):
+        RAMP.name = "y"  # type: ignore[misc]
+    for made in (RAMP, SET, RAMP[3], SET["last"]):
+        for again in (pickle.loads(pickle.dumps(made)), copy.copy(made), copy.deepcopy(made)):
+            assert again == made
+            assert hash(again) == hash(made)
+            assert str(again) == str(made)
+
+
+def test_a_family_of_python_is_that_of_the_text() -> None:
+    size, count = Parameter("size", "K", (1, 2)), Parameter("n", "", span=(1, 3, 1))
+    slots = (Slot((0, 0), "by_K", "change", "size"), Slot((0,), "count", "count", "n"))
+    made = Family("f", (size, count), (repeat(1, pulse(by=1, duration=1)), Hold(1)), slots)
+    text = "cue 1; icon f(size in [1, 2] K, n in 1..3 step 1) { repeat n { pulse by size for 1 s }; hold for 1 s }"
+    assert made == parse(text).families[0]
+
+
+def test_a_start_that_a_member_cannot_take_is_told() -> None:
+    text = "cue 1; icon x(a in [26, 30] °C) { cool to a at 1 K/s }"
+    assert parse(text).families[0].summary(31).highest == 31.0
+    with pytest.raises(CueErrors, match=r"<icon x_a=30>(?s:.)*E201 (?s:.)*30 °C is above the 28 °C"):
+        parse(text).summary(28)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: family(name="a b"), "family: 'a b' is not a name"),
+        (lambda: family(name="f_a=1"), "family: a member's name is no family's name"),
+        (lambda: family(parameters=()), "family f: parameters are needed"),
+        (lambda: family(parameters=(Parameter("a", "K", (1,)),) * 2), "each with a name of its own"),
+        (lambda: family(slots=()), "parameter a is never used"),
+        (lambda: family(unit="s"), "a is in s; a temperature difference is needed here"),
+        (lambda: family(values=(1, -2)), "a change has a positive size"),
+        (lambda: family(slots=(Slot((5,), "by_K", "difference", "a"),)), r"there is no statement at \(5,\)"),
+        (lambda: family(slots=(Slot((0, 1), "by_K", "difference", "a"),)), r"there is no statement at \(0, 1\)"),
+        (lambda: family(slots=(Slot((0,), "to_C", "absolute", "a"),)), "to_C is not given by Change"),
+        (lambda: family(slots=(Slot((0,), "direction", "count", "a"),)), "direction is not given by Change"),
+        (lambda: family(slots=(Slot((0,), "by_K", "change", "a"),)), "by_K is here of kind difference, not change"),
+        (
+            lambda: family((1, 2), "A/s", slots=(AMPERES_PER_S,), template=(cool(by=1, at=1), back(at=1))),
+            "rate_per_s is here of kind rate, not current_rate",
+        ),
+        (lambda: family(values=(2, 1)), "the template has by_K = 1.0, not the first value"),
+        (
+            lambda: family((1, 0), "A", slots=(AMPERES,), template=(step(by_A=1),), control="current"),
+            "a change of nothing is no change",
+        ),
+        (
+            lambda: family(slots=(Slot((0,), "by_K", "difference", "a"), Slot((0,), "by_K", "difference", "b"))),
+            "no parameter is called b, which a slot names",
+        ),
+        (lambda: family(slots=(Slot((0,), "by_K", "difference", "a"),) * 2), "two parameters stand in one place"),
+        (lambda: family(means="{size} down"), "{size} in the intent names no parameter"),
+        (lambda: family(values=(1, 50)), "E219 level out of range"),
+        (lambda: Parameter("a", "K"), "either listed values or a span, and not both"),
+        (lambda: Parameter("a", "K", (1, 1)), "parameter a has one value twice"),
+        (lambda: Parameter("a", "kg", (1,)), "parameter a: 'kg' is not a unit"),
+        (lambda: Parameter("s", "K", (1,)), "parameter s: this is the name of a unit"),
+        (lambda: Parameter("a b", "K", (1,)), "'a b' is not a name"),
+        (lambda: Parameter("a", "K", span=(1, 3, 0.7)), "3 is not reached from 1 in steps of 0.7"),
+        (lambda: Parameter("a", "K", span=(3, 1, 1)), "1 does not lie above 3"),
+        (lambda: Parameter("a", "K", span=(1, 3, -1)), "a step is positive"),
+        (lambda: Parameter("a", "K", span=(0, 1e8, 1e-3)), "more than 10,000,000 values"),
+        (lambda: IconSet("", "", RAMP.frame, Metadata(), (RAMP, RAMP[0])), "has the name of a member of family ramp"),
+        (lambda: IconSet("", "", RAMP.frame, Metadata(), (SET["last"],)), "plays ramp_.*, which is not in the set"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused(make: Callable[[], object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        make()

@@ -1,0 +1,225 @@
+"""Corners of recordings: those that were there are found again, with few of them, and the tolerance is kept."""
+
+import math
+from itertools import combinations, pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from thermicon.icons.fewest import fewest_links
+from thermicon.icons.polyline import fit_corners, noise
+
+Array = NDArray[np.float64]
+Corners = tuple[tuple[float, ...], tuple[float, ...]]
+
+STEP: Corners = ((0.0, 2.0, 4.0, 8.0, 10.0, 12.0), (32.0, 32.0, 26.0, 26.0, 32.0, 32.0))
+ODD: Corners = ((0.0, 1.03, 2.234, 3.4, 4.125, 6.0), (32.0, 32.0, 26.125, 31.4, 32.0, 32.0))
+RAMPS: Corners = ((0.0, 1.5, 4.5, 6.0), (33.0, 30.2, 35.4, 33.0))
+
+
+def sampled(corners: Corners, rate_Hz: float) -> tuple[Array, Array]:
+    """A course read so many times a second, the end included."""
+    time = np.arange(round(corners[0][-1] * rate_Hz) + 1) / rate_Hz
+    return time, np.interp(time, *corners)
+
+
+def farthest(time: Array, value: Array, corners: Corners) -> float:
+    """Largest distance of a reading from the polyline; at a step, from the nearer side of it."""
+    times, values = (np.array(each) for each in corners)
+    parts = np.split(np.arange(len(times)), np.flatnonzero(np.diff(times) == 0) + 1)
+    off = np.full(len(time), np.inf)
+    for part in parts:
+        inside = (time >= times[part[0]] - 1e-9) & (time <= times[part[-1]] + 1e-9)
+        off[inside] = np.minimum(off[inside], np.abs(np.interp(time, times[part], values[part]) - value)[inside])
+    return float(off.max())
+
+
+# The fewest pieces
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.integers(0, 6), min_size=2, max_size=7), st.sampled_from([0.25, 0.6, 1.0]))
+def test_no_path_with_corners_on_a_grid_has_fewer_pieces(levels: list[int], room: float) -> None:
+    from scipy.optimize import linprog
+
+    time = [float(n) for n in range(len(levels))]
+    low, high = [level - room for level in levels], [level + room for level in levels]
+    found = fewest_links(time, low, high, 99)
+    assert found is not None
+    course = np.interp(time, *found)
+    assert (course >= np.array(low) - 1e-9).all() and (course <= np.array(high) + 1e-9).all()
+    assert all(a <= b for a, b in pairwise(found[0]))
+    fewer = len(found[0]) - 3
+    for inner in combinations(np.arange(0.25, time[-1], 0.25).tolist(), fewer) if 0 <= fewer <= 2 else ():
+        knots = np.array([0.0, *inner, time[-1]])
+        # Values at readings are linear in values at corners: is there a choice of these within all gates?
+        hats = np.stack([np.interp(time, knots, unit) for unit in np.eye(len(knots))], axis=1)
+        tried = linprog(
+            np.zeros(len(knots)), np.vstack((hats, -hats)), [*high, *(-v for v in low)], bounds=(None, None)
+        )
+        assert not tried.success
+
+
+def test_more_pieces_than_allowed_are_none() -> None:
+    assert fewest_links([0, 1, 2, 3], [0, 5, 0, 5], [0, 5, 0, 5], 2) is None
+
+
+# Corners of arrays
+
+
+@pytest.mark.parametrize("rate_Hz", [10, 100, 1000])
+@pytest.mark.parametrize("corners", [STEP, ODD, RAMPS])
+def test_a_course_without_noise_is_found_exactly(corners: Corners, rate_Hz: float) -> None:
+    assert fit_corners(*sampled(corners, rate_Hz), 0.05) == corners
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("corners", [STEP, ODD, RAMPS])
+@pytest.mark.parametrize("size", [0.02, 0.04])
+def test_a_course_is_found_under_noise(corners: Corners, size: float, seed: int) -> None:
+    time, value = sampled(corners, 100)
+    found = fit_corners(time, value + np.random.default_rng(seed).uniform(-size, size, len(value)), 0.05)
+    assert len(found[0]) == len(corners[0])
+    assert found[0] == pytest.approx(corners[0], abs=0.02)
+    assert found[1] == pytest.approx(corners[1], abs=0.02)
+    # Holds are flat and levels that return are one level, to the last digit.
+    assert np.array_equal(np.diff(found[1]) == 0, np.diff(corners[1]) == 0)
+    assert (found[1][-1] == found[1][0]) == (corners[1][-1] == corners[1][0])
+
+
+def test_a_noisy_hold_is_one_flat_piece() -> None:
+    time = np.arange(3000) / 100
+    readings = 31.7 + np.random.default_rng(1).uniform(-0.049, 0.049, len(time))
+    assert fit_corners(time, readings, 0.05) == ((0.0, 29.99), (31.7, 31.7))
+
+
+def test_a_smooth_course_takes_few_corners() -> None:
+    time = np.arange(6001) / 100
+    value = 32 - 6 * (1 - np.exp(-time / 5))
+    found = fit_corners(time, value, 0.05)
+    assert farthest(time, value, found) <= 0.05
+    # Straight pieces within ±e of a curve: the integral of √(|v''| / 16 e), here 5.5, and one more corner than pieces.
+    assert len(found[0]) == 7
+
+
+def test_a_time_that_stands_twice_is_a_step() -> None:
+    time, value = [0, 1, 1, 2, 7, 7, 9], [32, 32, 26, 26, 26, 32, 32]
+    assert fit_corners(time, value, 0.05) == ((0.0, 1.0, 1.0, 7.0, 7.0, 9.0), (32.0, 32.0, 26.0, 26.0, 32.0, 32.0))
+    assert fit_corners([0, 0, 5, 5], [32, 30, 30, 31], 0.05) == ((0.0, 0.0, 5.0, 5.0), (32.0, 30.0, 30.0, 31.0))
+
+
+def test_two_readings_at_one_time_that_agree_are_one() -> None:
+    assert fit_corners([0, 1, 1, 2], [32.01, 32.03, 31.97, 31.99], 0.05) == ((0.0, 2.0), (32.0, 32.0))
+
+
+def test_a_jump_between_two_readings_takes_one_interval() -> None:
+    time = np.arange(1001) / 100
+    value = np.where((time >= 2) & (time < 8), 26.0, 32.0)
+    expected = (0.0, 1.99, 2.0, 7.99, 8.0, 10.0), (32.0, 32.0, 26.0, 26.0, 32.0, 32.0)
+    assert fit_corners(time, value, 0.05) == expected
+    shaken = value + np.random.default_rng(0).uniform(-0.03, 0.03, len(time))
+    assert fit_corners(time, shaken, 0.05) == expected
+
+
+def test_between_few_readings_a_course_is_straight() -> None:
+    # With corners anywhere, a spike between the two readings of the hold would need fewer of them.
+    time, value = [0, 1, 3, 7, 9, 10], [32, 32, 26, 26, 32, 32]
+    assert fit_corners(time, value, 0.05) == (tuple(map(float, time)), tuple(map(float, value)))
+
+
+def test_a_corner_between_readings_is_one_corner() -> None:
+    corners: Corners = ((0.0, 3.05, 6.0), (32.0, 36.575, 32.0))
+    assert fit_corners(*sampled(corners, 10), 0.05) == corners
+
+
+def test_levels_close_to_one_another_become_one() -> None:
+    bumpy: Corners = ((0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10), (32, 29, 29, 32.01, 32.01, 29.01, 29.01, 32, 32.0, 30, 31.96))
+    values = fit_corners(*sampled(bumpy, 50), 0.05)[1]
+    assert len(set(values)) == 3
+    assert values[0] == values[-1] == values[3]
+
+
+def test_the_first_value_can_be_prescribed() -> None:
+    time, value = sampled(STEP, 100)
+    found = fit_corners(time, value + 0.03, 0.05, start=32)
+    assert found[1][0] == found[1][1] == found[1][-1] == 32
+    assert farthest(time, value + 0.03, found) <= 0.05
+
+
+@st.composite
+def recordings(draw: st.DrawFn) -> tuple[Corners, Array, Array, float]:
+    """A random course of up to eight pieces, read at a steady rate, with noise below the tolerance."""
+    lengths = draw(st.lists(st.integers(20, 300), min_size=1, max_size=8))
+    levels = draw(st.lists(st.integers(220, 400), min_size=len(lengths) + 1, max_size=len(lengths) + 1))
+    still = draw(st.lists(st.booleans(), min_size=len(lengths), max_size=len(lengths)))
+    for n, stays in enumerate(still):
+        levels[n + 1] = levels[n] if stays else levels[n + 1]
+    corners: Corners = (tuple(np.cumsum([0, *lengths]) / 100), tuple(level / 10 for level in levels))
+    tolerance = draw(st.sampled_from([0.02, 0.05, 0.1, 0.5]))
+    time, value = sampled(corners, draw(st.sampled_from([20, 50, 100, 200])))
+    size = draw(st.sampled_from([0.0, 0.2, 0.6, 0.9])) * tolerance
+    random = np.random.default_rng(draw(st.integers(0, 10_000)))
+    return corners, time, value + random.uniform(-size, size, len(value)), tolerance
+
+
+@settings(max_examples=150, deadline=None)
+@given(recordings())
+def test_the_tolerance_is_kept_with_no_more_corners_than_there_were(
+    recording: tuple[Corners, Array, Array, float],
+) -> None:
+    corners, time, value, tolerance = recording
+    found = fit_corners(time, value, tolerance)
+    assert farthest(time, value, found) <= tolerance * (1 + 1e-9)
+    assert all(a < b for a, b in pairwise(found[0]))
+    assert found[0][0] == time[0] and found[0][-1] == pytest.approx(time[-1], abs=1e-9)
+    assert len(found[0]) <= len(corners[0]) + 2
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.lists(st.tuples(st.integers(0, 50), st.integers(2000, 4000)), min_size=2, max_size=40),
+    st.sampled_from([0.01, 0.3, 2.0]),
+)
+def test_any_recording_is_followed_within_the_tolerance(rows: list[tuple[int, int]], tolerance: float) -> None:
+    rows = sorted(rows, key=lambda row: row[0])
+    rows = [row for n, row in enumerate(rows) if n < 2 or rows[n - 2][0] != row[0]]
+    time, value = (np.array(column) for column in zip(*rows, strict=True))
+    time, value = time / 8, value / 100
+    if time[0] == time[-1]:
+        return
+    found = fit_corners(time, value, tolerance)
+    assert farthest(time, value, found) <= tolerance * (1 + 1e-9)
+    assert all(a <= b for a, b in pairwise(found[0]))
+
+
+def test_the_scatter_of_readings_is_told_from_their_course() -> None:
+    time = np.arange(20_000) / 1000
+    readings = 32 + 3 * np.sin(time) + np.random.default_rng(0).normal(0, 0.03, len(time))
+    assert noise(readings) == pytest.approx(0.03, rel=0.05)
+
+
+READINGS = [32.0, 31.0]
+
+
+@pytest.mark.parametrize(
+    ("time", "value", "more", "message"),
+    [
+        ([0, 1, 2], READINGS, {}, r"one value is needed for each time; got shapes \(3,\) and \(2,\)"),
+        ([0], [32.0], {}, "1 readings; at least two are needed"),
+        ([0, math.nan], READINGS, {}, "must be finite numbers"),
+        ([1, 0], READINGS, {}, "times must not fall"),
+        ([1, 1], READINGS, {}, "must not all be the same"),
+        ([0, 1, 1, 1], READINGS * 2, {}, "the time 1 s stands more than twice"),
+        ([0, 1], READINGS, {"tolerance": 0.0}, "tolerance must be positive, not 0.0"),
+        ([0, 1], READINGS, {"tolerance": math.inf}, "tolerance must be positive, not inf"),
+        ([0, 1], READINGS, {"start": 32.2}, "start 32.2 is further than the tolerance 0.05 from the first value 32"),
+    ],
+)
+def test_arrays_that_cannot_be_fitted(
+    time: list[float], value: list[float], more: dict[str, float], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        fit_corners(time, value, **{"tolerance": 0.05, **more})
