@@ -8,6 +8,7 @@ from typing import Any, cast
 from thermicon.icons.bodies import IconDraft, icon_draft
 from thermicon.icons.build import Builder, Place, span
 from thermicon.icons.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, problems
+from thermicon.icons.errors import MOST_ERRORS
 from thermicon.icons.expand import trusted
 from thermicon.icons.family import MOST_MEMBERS, Family
 from thermicon.icons.faults import Control
@@ -22,6 +23,8 @@ from thermicon.icons.units import exact
 from thermicon.icons.words import CONTROLS, nearest
 
 MOST_CORNERS_A_FILE = 200_000
+# Members times statements, some two seconds' work.
+MOST_EFFORT = 200_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +58,7 @@ class _Assembler:
         self.drafts: dict[int, IconDraft] = {}
         self.icons: dict[int, Icon | Family | None] = {}
         self.playing: list[int] = []
-        self.corners = self.members = 0
+        self.corners = self.members = self.effort = 0
 
     def run(self, tree: Any, syntax: tuple[Finding, ...], more: int) -> Analysis:
         parts = tree.children
@@ -186,7 +189,8 @@ class _Assembler:
         family, _, values = name.partition("_")
         known = name if name in self.index else family if values and family in self.index else None
         if known is None:
-            close = nearest(name, list(self.index))
+            few = len(self.builder.findings) < MOST_ERRORS  # beyond, errors are only counted
+            close = nearest(name, list(self.index)) if few else None
             cures = (Edit(*place, close),) if close else ()
             self.builder.add(
                 "E230", place, f'no icon is called "{name[:60]}"', "play names an icon of this file", *cures
@@ -219,12 +223,13 @@ class _Assembler:
     def meaning(self, draft: IconDraft) -> Icon | Family | None:
         """Check what a draft means; return the icon or family, or None and findings."""
         before = len(self.builder.findings)
+        if self.corners > MOST_CORNERS_A_FILE:
+            return None
         corners = corner_count(draft.body)
         self.corners += corners if corners <= MOST_CORNERS else 0
         if self.corners > MOST_CORNERS_A_FILE:
-            if self.corners - corners <= MOST_CORNERS_A_FILE:
-                what = f"written out, the icons up to here have {self.corners:,} corners"
-                self.builder.add("E220", draft.place, what, f"a file has at most {MOST_CORNERS_A_FILE:,} corners")
+            what = f"written out, the icons up to here have {self.corners:,} corners"
+            self.builder.add("E220", draft.place, what, f"a file has at most {MOST_CORNERS_A_FILE:,} corners")
             return None
         if self.control is None:
             return None
@@ -259,8 +264,15 @@ class _Assembler:
                 what = f"the families up to here have {self.members:,} members"
                 self.builder.add("E231", draft.place, what, f"a file has at most {MOST_MEMBERS:,}")
             return None
-        from thermicon.icons.sweep import sweep
+        from thermicon.icons.sweep import effort, sweep
 
+        self.effort += effort(family)
+        if self.effort > MOST_EFFORT:
+            if self.effort - effort(family) <= MOST_EFFORT:
+                what = f"{self.members:,} members with so many statements take too long to check"
+                help = "fewer members, statements or repeats; or split the set"
+                self.builder.add("E231", draft.place, what, help)
+            return None
         found = sweep(family)
         if found.problem is None:
             return family

@@ -1,5 +1,6 @@
 """One statement that stopped making sense, as the rules of diagnosis see it, and how they say what they found."""
 
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from thermicon.icons.source import Edit, Finding, Piece
@@ -19,7 +20,7 @@ class Case:
     at: int
     accepts: frozenset[str]
     where: str
-    names: frozenset[str] | None = frozenset()
+    names: AbstractSet[str] | None = frozenset()
     listing: bool = False
 
     @property

@@ -57,10 +57,10 @@ def explain(code: str) -> str:
     >>> print(explain("E205").split("\\n\\n")[0])
     E205 rest away from baseline
     `rest` is a pause at baseline, and the icon is somewhere else. To stay at a level, `hold`.
-    >>> explain("E25")
+    >>> explain("missing units")
     Traceback (most recent call last):
       ...
-    ValueError: there is no error E25; the nearest are E205 rest away from baseline, E225 not whole periods
+    ValueError: there is no error missing units; the nearest are E102 missing unit, E117 missing text
     """
     wanted = code.strip().upper()
     wanted = f"E{wanted}" if wanted.isdigit() else wanted

@@ -17,6 +17,10 @@ TITLES: dict[str, str] = {
     "E010": "unknown version",
     "E011": "not valid JSON",
     "E012": "not a cue set in JSON",
+    "E013": "not a recording",
+    "E014": "not a reading",
+    "E015": "times out of order",
+    "E016": "begins away from baseline",
     # words, numbers and units
     "E101": "not understood",
     "E102": "missing unit",

@@ -39,7 +39,9 @@ class Expander:
     ) -> None:
         self.parameters = parameters
         self.order = {parameter.name: place for place, parameter in enumerate(parameters)}
-        self.slots = slots
+        self.slots: dict[tuple[int, ...], list[Slot]] = {}
+        for slot in slots:
+            self.slots.setdefault(slot.path, []).append(slot)
         self.makers = [self.kept(*self.maker(part, (place,))) for place, part in enumerate(template)]
         self.metadata = self.intent(metadata)
         self.labels = [self.kept(self.label(place), (place,)) for place in range(len(parameters))]
@@ -86,7 +88,7 @@ class Expander:
 
     def maker(self, part: Statement, path: tuple[int, ...]) -> tuple[Callable[[Places], Any], tuple[int, ...]]:
         """Return what makes one statement, and which parameters it depends on."""
-        mine = [slot for slot in self.slots if slot.path == path]
+        mine = self.slots.get(path, [])
         values = {item.name: getattr(part, item.name) for item in fields(part)}
         varied = [(slot.field, slot.kind, self.order[slot.parameter]) for slot in mine]
         used = {place for _, _, place in varied}

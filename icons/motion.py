@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from functools import lru_cache
-from itertools import pairwise
+from functools import cache, lru_cache
+from itertools import accumulate, pairwise
 
 from thermicon.icons.shapes import Pulse, Shape, Step, Wave
 from thermicon.icons.statements import Change, Drive, Leaf, Return, Total
@@ -143,11 +143,8 @@ def _quarter_sine(ratio: float) -> list[Point]:
 
 def _bends(count: int) -> list[float]:
     """Phases from 0 to π/2 that cut the integral of √sin, and with it the error of chords, into equal parts."""
-    grid = 512
-    total, sums = 0.0, [0.0]
-    for n in range(grid):
-        total += math.sqrt(math.sin((n + 0.5) / grid * math.pi / 2))
-        sums.append(total)
+    sums = _root_sums()
+    grid, total = len(sums) - 1, sums[-1]
     found, place = [], 0
     for n in range(count + 1):
         wanted = total * n / count
@@ -155,6 +152,13 @@ def _bends(count: int) -> list[float]:
             place += 1
         found.append((place + (wanted - sums[place]) / (sums[place + 1] - sums[place])) / grid * math.pi / 2)
     return [0.0, *found[1:-1], math.pi / 2]
+
+
+@cache
+def _root_sums() -> list[float]:
+    """The integral of √sin from 0 to π/2, summed up on a grid."""
+    grid = 512
+    return [0.0, *accumulate(math.sqrt(math.sin((n + 0.5) / grid * math.pi / 2)) for n in range(grid))]
 
 
 def _worst(phases: list[float], values: list[float]) -> float:

@@ -71,13 +71,15 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
             )
             return None
         return Parameter(name, unit, span=(low, high, step))
+    seen: set[float] = set()
     for place, number in enumerate(known):
-        if number in known[:place]:
+        if number in seen:
             here = span(values.children[place])
             cure = Edit(span(values.children[place - 1])[1], here[1], "")
             what = f"{short(values.children[place])} stands in this list already"
             builder.add("E213", here, what, "keep one of them", cure)
             return None
+        seen.add(number)
     return Parameter(name, unit, tuple(known))
 
 

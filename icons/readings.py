@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from thermicon.icons.errors import TITLES
+from thermicon.icons.errors import whole_file
 from thermicon.icons.faults import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from thermicon.icons.words import nearest
 
@@ -26,14 +26,6 @@ MOST_ROWS, MOST_MB = 1_000_000, 200
 _FEW = 8
 # Comments, and the line by which spreadsheets tell one another the separator.
 _ASIDE = ("#", "sep=")
-
-# Codes that errors.TITLES does not have yet.
-_TITLES = {
-    "E013": "not a recording",
-    "E014": "not a reading",
-    "E015": "times out of order",
-    "E016": "begins away from baseline",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +73,22 @@ def _read(path: Path, file: str, column: str | None) -> tuple[str, list[float], 
             if len(cells) > len(header) and any(cell.strip() for cell in cells[len(header) :]):
                 what = f"{len(cells)} cells, where the first line names {len(header)}"
                 help = "write decimal points, not commas; or put semicolons between the cells"
-                raise wrong_file("E013", place, what, help)
+                raise whole_file("E013", place, what, help)
             first = not rows
             times.append(_number(place, TIME, cells, at[0], mark, first))
             levels.append(_number(place, chosen, cells, at[1], mark, first))
             rows.append(lines.line_num)
             if len(rows) > MOST_ROWS:
-                raise wrong_file("E004", file, f"more than {MOST_ROWS:,} rows", "keep every tenth row, or cut the file")
+                raise whole_file("E004", file, f"more than {MOST_ROWS:,} rows", "keep every tenth row, or cut the file")
     except csv.Error as problem:
-        raise wrong_file(
+        raise whole_file(
             "E013", f"{file}:{lines.line_num}", f"this row cannot be read ({problem})", "save it as CSV"
         ) from None
     if not header:
-        raise wrong_file("E013", file, "no line names the columns", f"the first line is such as: {TIME},temperature_C")
+        raise whole_file("E013", file, "no line names the columns", f"the first line is such as: {TIME},temperature_C")
     if len(rows) < 2:
         what = f"{len(rows) or 'no'} row{'s' * (not rows)} below the names of the columns"
-        raise wrong_file("E013", file, what, "at least two are needed, a start and an end")
+        raise whole_file("E013", file, what, "at least two are needed, a start and an end")
     return chosen, times, levels, rows
 
 
@@ -106,25 +98,25 @@ def _text(path: Path, file: str) -> str:
         size = 0 if folder else path.stat().st_size
         data = b"" if folder or size > MOST_MB * 1e6 else path.read_bytes()
     except FileNotFoundError:
-        raise wrong_file("E001", file, "no file has this name", "check its folder and its spelling") from None
+        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling") from None
     except (OSError, ValueError) as problem:
         said = getattr(problem, "strerror", None) or problem
-        raise wrong_file("E003", file, f"the system says: {said}", "check that you may read it") from None
+        raise whole_file("E003", file, f"the system says: {said}", "check that you may read it") from None
     if folder:
-        raise wrong_file("E002", file, "a recording is one file", "name a .csv file in it")
+        raise whole_file("E002", file, "a recording is one file", "name a .csv file in it")
     if size > MOST_MB * 1e6:
-        raise wrong_file("E004", file, f"{size / 1e6:,.0f} MB", f"at most {MOST_MB} MB are read; keep every tenth row")
+        raise whole_file("E004", file, f"{size / 1e6:,.0f} MB", f"at most {MOST_MB} MB are read; keep every tenth row")
     if b"\0" in data:
         what = f"a zero byte at byte offset {data.index(0)}"
-        raise wrong_file("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")
+        raise whole_file("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
         line = data.count(b"\n", 0, problem.start) + 1
         what = f"byte 0x{data[problem.start]:02X} is not UTF-8"
-        raise wrong_file("E007", f"{file}:{line}", what, "save the file as CSV in UTF-8") from None
+        raise whole_file("E007", f"{file}:{line}", what, "save the file as CSV in UTF-8") from None
     if not text.strip():
-        raise wrong_file("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
+        raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
     return text
 
 
@@ -140,28 +132,28 @@ def _column(place: str, header: list[str], column: str | None) -> str:
     if TIME not in header:
         if all(re.fullmatch(r"[-+\d.,;eE\s]+", cell) for cell in header):
             what, help = "this line holds numbers, not the names of columns", f"put {TIME},temperature_C above it"
-            raise wrong_file("E013", place, what, help)
+            raise whole_file("E013", place, what, help)
         close = nearest(TIME, header) or next((cell for cell in header if cell.lower().startswith("t")), None)
         hint = f"is it {close!r}? Its name must say that it is in seconds: " if close else "the time in s has the name "
-        raise wrong_file("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
+        raise whole_file("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
     known = [cell for cell in header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
-        raise wrong_file("E013", place, what, f'say which: column="{known[0]}"')
+        raise whole_file("E013", place, what, f'say which: column="{known[0]}"')
     if column is None and not known:
         others = [cell for cell in header if cell != TIME]
         meant = next((pair for pair in ((cell, _meant(cell)) for cell in others) if pair[1]), None)
         hint = f"rename {meant[0]!r} to {meant[1]} if it is in °C, or say" if meant else "say"
         what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
-        raise wrong_file("E013", place, what, f'{hint} which is meant: column="{(others or ["name"])[0]}"')
+        raise whole_file("E013", place, what, f'{hint} which is meant: column="{(others or ["name"])[0]}"')
     chosen = column or known[0]
     if chosen not in header or chosen == TIME:
         close = nearest(chosen, [cell for cell in header if cell != TIME])
         help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
-        raise wrong_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
+        raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
     for cell in (TIME, chosen):
         if header.count(cell) > 1:
-            raise wrong_file("E013", place, f"the column {cell} is there twice", "rename or remove one of them")
+            raise whole_file("E013", place, f"the column {cell} is there twice", "rename or remove one of them")
     return chosen
 
 
@@ -181,7 +173,7 @@ def _number(place: str, column: str, cells: list[str], at: int, mark: str, first
         help = "fill it in, or remove the row; what lies between readings counts as straight"
         if first and cell:
             help = "units belong in the names of the columns; remove this row"
-        raise wrong_file("E014", place, what, help)
+        raise whole_file("E014", place, what, help)
     return value
 
 
@@ -189,16 +181,16 @@ def _check_times(file: str, times: list[float], rows: list[int]) -> None:
     for n, (before, time) in enumerate(pairwise(times), start=1):
         if time < before:
             what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
-            raise wrong_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording a file")
+            raise whole_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording a file")
         if n > 1 and time == times[n - 2]:
             help = "two readings at one time are a step; write more decimals of the time"
-            raise wrong_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
+            raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
     length = times[-1] - times[0]
     if length == 0:
-        raise wrong_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
+        raise whole_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
     if length > LONGEST_S:
         help = f"an icon lasts at most {LONGEST_S:g} s; divide by 1000 if these are milliseconds, or cut the file"
-        raise wrong_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
+        raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
 
 
 def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) -> None:
@@ -214,15 +206,10 @@ def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) 
     elif not LOWEST_C <= middle <= HIGHEST_C:
         help = "check the unit: the column must be in °C"
     what = f"{column} is {levels[out]:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
-    raise wrong_file("E219", f"{file}:{rows[out]}", what, help)
+    raise whole_file("E219", f"{file}:{rows[out]}", what, help)
 
 
 def _from_zero(times: list[float]) -> tuple[float, ...]:
     """Return times from 0 s, without the stray digits that differences of large times have."""
     digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
     return tuple(round(time - times[0], digits) for time in times)
-
-
-def wrong_file(code: str, place: str, what: str, help: str) -> ValueError:
-    """Return the error about a file or a place in it, in the words and order of ``CueError.render``."""
-    return ValueError(f"{place}  {code} {TITLES.get(code) or _TITLES[code]}\n  {what}\n  {help}")

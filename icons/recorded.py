@@ -7,10 +7,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
+from thermicon.icons.errors import whole_file
 from thermicon.icons.faults import fault
 from thermicon.icons.frame import Frame, name_fault
 from thermicon.icons.icon import Icon
-from thermicon.icons.readings import CONTROL_OF, read_readings, wrong_file
+from thermicon.icons.readings import CONTROL_OF, read_readings
 from thermicon.icons.shapes import Step
 from thermicon.icons.statements import Change, Hold, Rest, Return, Statement
 
@@ -32,7 +33,7 @@ def from_csv(
     step. The icon has the file's name unless ``name`` is given; its baseline is where the recording begins, unless
     ``baseline_C`` prescribes one within the tolerance of that.
 
-    Raises ValueError that says what is wrong with the file, and in which row.
+    Raises CueErrors that says what is wrong with the file, and in which row, and ValueError for other arguments.
 
     >>> import tempfile, pathlib
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -56,14 +57,14 @@ def from_csv(
     if baseline_C is not None and abs(baseline_C - first) > tolerance_K:
         what = f"the recording begins at {first:g} °C, baseline_C is {baseline_C:g} °C"
         help = f"an icon begins at baseline, here within {tolerance_K:g} K; leave baseline_C out, or cut the file"
-        raise wrong_file("E016", f"{read.file}:{read.first_row}", what, help)
+        raise whole_file("E016", f"{read.file}:{read.first_row}", what, help)
     from thermicon.icons.polyline import fit_corners
 
     try:
         corners = fit_corners(read.time_s, read.level_C, tolerance_K, baseline_C)
     except ValueError as problem:
         help = "give a larger tolerance_K, or smooth or cut the recording"
-        raise wrong_file("E220", read.file, str(problem), help) from None
+        raise whole_file("E220", read.file, str(problem), help) from None
     frame = Frame(CONTROL_OF.get(read.column) or control, corners[1][0])
     return Icon(name or _name(Path(path)), tuple(_statements(*corners)), frame)
 

@@ -57,7 +57,7 @@ class _Reader:
         self.fresh = True
         self.heading = self.listing = False
         # The parameters of the icon that is being read; None when they could not be.
-        self.names: frozenset[str] | None = frozenset()
+        self.names: set[str] | None = set()
         self.last = ""
         self.parser: Any = grammar().parse_interactive(source.text)
         self.tokens: Iterator[Token] = iter(())
@@ -118,11 +118,11 @@ class _Reader:
     def collect(self, token: "Token") -> None:
         """Keep the names between the parentheses of a family."""
         if token.type == "ICON":
-            self.names = frozenset()
+            self.names = set()
         elif token.type in ("LPAR", "RPAR"):
             self.listing = token.type == "LPAR"
-        elif self.listing and token.type == "IN":
-            self.names = (self.names or frozenset()) | {self.last}
+        elif self.listing and token.type == "IN" and self.names is not None:
+            self.names.add(self.last)
         self.last = str(token)
 
     def follow(self, kind: str, offset: int) -> None:
@@ -187,7 +187,12 @@ class _Reader:
             self.feed("LBRACE", at=at)
             self.jump(at)
             return
-        if not header and not self.listing and self.takes("_NEWLINE") and (closed or not self.spoilt(code, pieces, word, where)):
+        if (
+            not header
+            and not self.listing
+            and self.takes("_NEWLINE")
+            and (closed or not self.spoilt(code, pieces, word, where))
+        ):
             # The statement is complete: keep it, and read what follows as if it stood on a line of its own.
             begin = self.begin
             self.feed("_NEWLINE", at=at)

@@ -23,6 +23,8 @@ _SAME = 1e-9
 # What floats leave of a quotient that is whole, or of quarters, in exact numbers.
 _ROUNDING = 1e-12
 _MOST_TRIED = 50
+# In terms of one statement of one member: a statement of any number of them, a wave, a corner of a played icon.
+_PASS, _WAVE, _CORNER = 2_000, 8, 1_000
 # Phases at which a wave that starts upwards has been at its crest and in its trough.
 _CREST: dict[Shape, float] = {"sine": 0.25, "triangle": 0.25, "sawtooth": 0.5, "square": 0.0}
 _TROUGH: dict[Shape, float] = {"sine": 0.75, "triangle": 0.75, "sawtooth": 0.5, "square": 0.5}
@@ -68,6 +70,25 @@ def sweep(family: Family, start: float | None = None) -> Sweep:
         if wrong:
             return Sweep(summary, failing, icon.name, icon.statements, wrong[0])
     return Sweep(summary, 0, None, (), None)
+
+
+def effort(family: Family) -> int:
+    """Return how much there is to check in a family: members times statements, and what each pass costs beside."""
+    chunks = -(-len(family) // CHUNK)
+    known: dict[int, int] = {}
+    varied = {slot.path for slot in family.slots if slot.field == "count"}
+
+    def cost(part: Any, path: Path) -> int:
+        if isinstance(part, Repeat):
+            inside = sum(cost(own, (*path, place)) for place, own in enumerate(part.body))
+            return inside if part.count == 1 and path not in varied else inside * (2 if absolute(part.body) else 3)
+        if isinstance(part, Play):
+            if id(part.icon) not in known:
+                known[id(part.icon)] = _CORNER * corner_count(part.icon.statements)
+            return len(family) + chunks * (_PASS + known[id(part.icon)])
+        return len(family) * (_WAVE if isinstance(part, Wave) else 1) + chunks * _PASS
+
+    return sum(cost(part, (place,)) for place, part in enumerate(family.template))
 
 
 class _Run:
@@ -140,6 +161,8 @@ class _Run:
         before = self.corners.copy()
         after, time = self.body(part.body, path, level, where)
         self.corners = before + (self.corners - before) * count
+        if not (count > 1).any():
+            return after, time
         kept = self.corners
         step = after - level
         if absolute(part.body):

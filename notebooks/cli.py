@@ -187,6 +187,7 @@ app.command("compare")(whatif.compare_command)
 app.command("netlist")(whatif.netlist_command)
 app.command("convert")(handing.convert_command)
 app.command("cite")(handing.cite_command)
+app.command("explain")(handing.explain_command)
 
 
 @app.command("rigs")

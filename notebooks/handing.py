@@ -1,4 +1,4 @@
-"""The commands that hand icons on: ``convert`` and ``cite``. They are put on the program in ``cli``."""
+"""The commands about icons as text: ``convert``, ``cite`` and ``explain``. They are put on the program in ``cli``."""
 
 from __future__ import annotations
 
@@ -70,3 +70,15 @@ def cite_command(
     from thermicon.notebooks.cite import cite_file
 
     cite_file(file, bibtex, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+def explain_command(
+    code: Annotated[str, typer.Argument(metavar="CODE", help="The code of an error, such as E102, or its title.")],
+) -> None:
+    """Explain an error of cue files: what it means, an example of it, and the same put right."""
+    from thermicon.icons.catalogue import explain
+
+    try:
+        typer.echo(explain(code))
+    except ValueError as unknown:
+        raise usage(str(unknown), "CODE") from None

@@ -39,7 +39,8 @@ def test_the_codes_without_an_example_are_those_of_the_door(tmp_path: Path) -> N
     for code, data in made.items():
         (tmp_path / code).write_bytes(data)
     paths = {"E001": tmp_path / "none.cue", "E002": tmp_path, **{code: tmp_path / code for code in made}}
-    assert {entry.code for entry in ENTRIES if not entry.wrong} == {*paths, "E003"}
+    recorded = {"E013", "E014", "E015", "E016"}  # read by tests/icons/test_recorded.py
+    assert {entry.code for entry in ENTRIES if not entry.wrong} == {*paths, "E003"} | recorded
     for code, path in paths.items():
         with pytest.raises(CueErrors, match=code):
             read_cue(path)

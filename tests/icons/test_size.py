@@ -1,0 +1,107 @@
+"""The worst texts of the largest size allowed are read or refused within five seconds."""
+
+import time
+from collections.abc import Callable
+
+import pytest
+
+from thermicon.icons import CueErrors, parse
+from thermicon.icons.source import MOST_BYTES
+
+PAIR = "a in 1..1000 step 1 ms, b in 1..1000 step 1 ms"
+
+
+def full(head: str, unit: str | Callable[[int], str], tail: str = "") -> str:
+    """A text of nearly the largest size: units between head and tail."""
+    make = unit if callable(unit) else lambda _: unit
+    parts = [head]
+    left = MOST_BYTES - len((head + tail).encode())
+    while (left := left - len((part := make(len(parts) - 1)).encode())) >= 0:
+        parts.append(part)
+    return "".join(parts) + tail
+
+
+def doubling(depth: int) -> str:
+    plays = "".join(f"icon i{n} {{ play i{n + 1}; play i{n + 1} }}\n" for n in range(depth))
+    return f"cue 1\n{plays}icon i{depth} {{ rest for 1 ms }}"
+
+
+def nested(depth: int, parameters: str, inside: str) -> str:
+    opening = f"repeat {'n' if parameters else 3} {{ "
+    return f"cue 1\nicon x{parameters} {{ {opening * depth}{inside}{' }' * (depth + 1)}"
+
+
+QUICK: dict[str, tuple[str, str]] = {
+    "plays doubling 16 deep": (doubling(16), ""),
+    "plays doubling 20 deep": (doubling(20), "E220"),
+    "repeats tripling 19 deep": (nested(19, "", "warm by 1e-6 K at 1 K/s"), "E220"),
+    "repeats of a family 12 deep": (nested(12, f"({PAIR}, n in [1, 2, 3])", "hold for a; hold for b"), "E231"),
+    "a wave of 1 µs for an hour": ("cue 1\nicon x { sine by 1 K every 0.001 ms for 60 min }", "E220"),
+    "the largest sine": ("cue 1\nicon x { sine by 28 K every 1 min for 60 min }", ""),
+    "ten million members": (f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}", ""),
+    "a hundred statements of ten million": (
+        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; " + "hold for b; " * 100 + "}",
+        "E231",
+    ),
+    "ten million members that fail": (
+        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; rest for b }}",
+        "E205",
+    ),
+    "errors on lines of their own": (full("cue 1\nicon x {\n", "hodl for 1 s\n", "}"), "E101"),
+    "errors on one line": (full("cue 1\nicon x { ", "hold for 4; ", "}"), "E102"),
+    "parentheses": (full("cue 1\nicon f", "("), "E113"),
+    "headers that break": (full("cue 1\n", "icon f(a in [\n"), "E118"),
+    "a list without commas": (full("cue 1\nicon f(a in [1", " 1", "] ms) { hold for a }"), "E118"),
+}
+FULL: dict[str, tuple[str, str]] = {
+    "families of a million": (
+        full("cue 1\n", lambda n: f"icon f{n}({PAIR}) {{ warm by 1 K over a; hold for b }}\n"),
+        "E231",
+    ),
+    "one line": (full("cue 1\nicon x { ", "hold for 1 ms; ", "}"), ""),
+    "ten thousand icons": (full("cue 1\n", lambda n: f"icon i{n}{{rest for 1s}};"), ""),
+    "icons with one name": (full("cue 1\n", "icon a {rest for 1 s}\n"), "E211"),
+    "plays of no icon": (full("cue 1\n", lambda n: f"icon i{n} {{play j{n}}}\n"), "E230"),
+    "a chain of plays": (full("cue 1\n", lambda n: f"icon i{n} {{play i{n + 1}}}\n"), "E115"),
+    "sines of many sizes": (
+        full("cue 1\n", lambda n: f"icon x{n} {{ sine by {1 + n / 1000} K every 1 s for 1 s }}\n"),
+        "E220",
+    ),
+    "a long list of values": (full("cue 1\nicon f(a in [1", lambda n: f",{n + 2}", "] ms) { hold for a }"), ""),
+    "one value many times": (full("cue 1\nicon f(a in [1", ",1", "] ms) { hold for a }"), "E213"),
+    "thousands of parameters": (
+        full("cue 1\nicon f(x in [1] s", lambda n: f",p{n} in[1]s", ") { hold for x }"),
+        "E227",
+    ),
+    "thousands of families": (full("cue 1\n", lambda n: f"icon f{n}(a in [1,2]s) {{hold for a}}\n"), ""),
+    "thousands of uses": (full(f"cue 1\nicon f({PAIR}) {{ ", "hold for b; hold for a; ", "}"), "E231"),
+    "thousands of holes": (full('cue 1\nicon f(a in [1] s) means "', "{b}", '" { hold for a }'), "E226"),
+    "thousands of totals": (full("cue 1\nicon x { hold for 1 s; ", "total 2 s; ", "}"), "E222"),
+    "nested repeats": (
+        full("cue 1\nicon x { ", "repeat 1 { warm by 1e-6 K over 1 ms; " * 10 + " }" * 10 + "; ", "}"),
+        "",
+    ),
+    "newlines": (full("cue 1\nicon f(", "\n"), "E113"),
+}
+
+
+def soon(text: str, code: str) -> None:
+    begin = time.process_time()
+    try:
+        assert parse(text).entries
+        assert not code
+    except CueErrors as found:
+        assert str(found)
+        assert code in {error.code for error in found.errors}, str(found.errors[0])
+    assert time.process_time() - begin < 5
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_hostile_text_is_answered_soon(name: str) -> None:
+    soon(*QUICK[name])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FULL)
+def test_a_text_of_the_largest_size_is_answered_soon(name: str) -> None:
+    soon(*FULL[name])
