@@ -83,11 +83,13 @@ def _icons(first: str, second: str, request: Request) -> list[Comparison]:
 def _sets(first: str, second: str, request: Request) -> list[Comparison]:
     sets = [read_set([name]) for name in (first, second)]
     names = [[icon.name for icon in icons] for icons in sets]
-    common = [name for name in names[0] if name in names[1]]
+    known = set(names[1])
+    common = [name for name in names[0] if name in known]
     if request.icon is not None:
         common = [pick(icons, request.icon)[0].name for icons in sets][:1]
     if not common:
-        has = "; ".join(f"{file} has {', '.join(own)}" for file, own in zip((first, second), names, strict=True))
+        few = [", ".join(own[:20] + ["…"] * (len(own) > 20)) for own in names]
+        has = "; ".join(f"{file} has {own}" for file, own in zip((first, second), few, strict=True))
         raise LogError(f"no icon has the same name in both sets: {has}; compare two icons as FILE:ICON")
     alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]
     if alone and request.icon is None:

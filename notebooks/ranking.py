@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from thermicon.notebooks.cues import read_set, warn_of_frames
+from thermicon.notebooks.cues import MOST_ICONS, read_set, warn_of_frames
 from thermicon.notebooks.door import note, usage
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
 from thermicon.notebooks.progress import progress_bar
@@ -51,6 +51,9 @@ def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path 
             raise usage(f"{figures} is the name of a file; give a folder, such as {hint}, for all figures", "--figure")
         check_folder(figures)
     icons = read_set(files)
+    if len(icons) > MOST_ICONS:
+        what = f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} are ranked at once"
+        raise usage(f"{what}; narrow a family, or name its best members in a set of their own", "FILE")
     warn_of_frames(files, icons, rig)
     with progress_bar("ranking") as progress:
         ranking = rank(
