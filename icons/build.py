@@ -1,40 +1,20 @@
-"""From the tree to statements: numbers into SI, texts unescaped, and every number that cannot be, told at its place."""
+"""From tokens to values: numbers into SI, texts unescaped, and every one that cannot be, told at its place."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
 from thermicon.icons.errors import TITLES
+from thermicon.icons.faults import fault
 from thermicon.icons.frame import Metadata, text_fault
 from thermicon.icons.source import Edit, Finding, Source
-from thermicon.icons.statements import (
-    Broken,
-    Change,
-    Direction,
-    Drive,
-    Hold,
-    Repeat,
-    Rest,
-    Return,
-    Statement,
-    fault,
-)
 from thermicon.icons.units import Kind, to_si
 from thermicon.icons.words import EXAMPLES, nearest
 
 Place = tuple[int, int]
+_KINDS: dict[str, Kind] = {"signed": "change", "period": "time", "current_change": "current"}
+_TARGETS = ("absolute", "difference", "signed", "current", "current_change", "by_use", "to_use")
 _ESCAPES = {"n": "\n", '"': '"', "\\": "\\"}
-_MANY = 1_000_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class IconDraft:
-    """An icon as written: name (None when unreadable), where it stands, metadata and statements."""
-
-    name: str | None
-    place: Place
-    metadata: Metadata
-    body: tuple[Statement | Broken, ...]
 
 
 @dataclass(slots=True)
@@ -49,102 +29,45 @@ class Builder:
     places: dict[int, dict[str, Place]] = field(default_factory=dict)
     kept: list[object] = field(default_factory=list)
 
-    def icon(self, tree: Any) -> IconDraft:
-        """Return an icon; an empty one is a finding."""
-        head, *parts = tree.children
-        name = str(head) if head.type == "NAME" else None
-        keys = [part for part in parts if _rule(part) == "metadata"]
-        body = self.body([part for part in parts if _rule(part) != "metadata"])
-        place = span(head) if name else span(tree)
-        if not body:
-            what = "there is nothing between the braces"
-            self.add("E217", place, what, 'an icon needs a statement, such as "cool by 6 °C at 3 °C/s"')
-        return IconDraft(name, place, self.metadata(keys), body)
-
-    def body(self, parts: Iterable[Any]) -> tuple[Statement | Broken, ...]:
-        """Return statements in order, with Broken for each that could not be read."""
-        return tuple(self.statement(part) for part in parts)
-
-    def statement(self, tree: Any) -> Statement | Broken:
-        """Return one statement, and remember the places of its parts."""
-        before = len(self.findings)
-        place = span(tree)
-        made: Statement | Broken
-        if _rule(tree) == "repeat":
-            made = self.repeat(tree)
-        else:
-            values = {part.data: self.quantity(part) for part in getattr(tree, "children", ()) if _rule(part)}
-            sound = len(self.findings) == before and _rule(tree) != ""
-            made = self.leaf(tree, values) if sound else Broken(self.at(place))
-        self.kept.append(made)
-        self.places[id(made)] = self.parts(tree, place)
-        return made
-
-    def leaf(self, tree: Any, values: dict[str, float]) -> Statement:
-        """Return the statement for a tree whose numbers are all in order."""
-        rate, time = values.get("rate", values.get("current_rate")), values.get("time")
-        at = self.at(span(tree))
-        match _rule(tree):
-            case "change":
-                direction = cast(Direction, str(tree.children[0]))
-                return Change(direction, values.get("difference"), values.get("absolute"), rate, time, at)
-            case "drive":
-                return Drive(values["current"], rate, time, at)
-            case "return":
-                return Return(rate, time, at)
-            case "hold":
-                return Hold(values["time"], at)
-        return Rest(values["time"], at)
-
-    def repeat(self, tree: Any) -> Repeat | Broken:
-        """Return a repeat; an impossible count counts as one, so that its body is checked."""
-        head, *parts = tree.children
-        body = self.body(parts)
-        count = 1
-        if head.type == "NUMBER":
-            digits = str(head).removeprefix("+")
-            count = int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 10 else 0
-            if not 1 <= count <= _MANY:
-                what = f'"{_short(head)}" is not a positive whole number'
-                self.add("E207", span(head), what, "a repeat has a count from 1, such as: repeat 3 { ... }")
-                count = 1
-        if not body:
-            what = "there is nothing between the braces of this repeat"
-            self.add("E217", span(tree), what, "put the statements that repeat between them")
-            return Broken(self.at(span(tree)))
-        return Repeat(count, body, self.at(span(tree)))
-
     def parts(self, tree: Any, place: Place) -> dict[str, Place]:
         """Return the offsets of what messages may point at: word, target, pace, count, rate, whole."""
         start, end = place
         word = self.source.text[start:end].split(maxsplit=1)[0] if end > start else ""
         found = {"whole": place, "word": (start, start + len(word))}
         for part in getattr(tree, "children", ()):
-            rule = _rule(part)
-            if rule in ("absolute", "difference", "current"):
+            rule = rule_of(part)
+            if rule in _TARGETS:
                 found["target"] = span(part)
-            elif rule in ("rate", "current_rate", "time"):
-                found["pace"] = span(part)
-                found[rule] = span(part)
-        if _rule(tree) == "repeat":
+            elif rule in ("rate", "current_rate", "time", "at_use", "over_use", "for_use"):
+                found["pace"] = found["time" if rule == "for_use" else rule] = span(part)
+            elif getattr(part, "type", "") == "DIRECTION":
+                found["direction"] = span(part)
+        if rule_of(tree) == "repeat":
             found["count"] = (start, span(tree.children[0])[1])
         return found
 
-    def quantity(self, tree: Any) -> float:
+    def quantity(self, tree: Any, wave: bool = False) -> float:
         """Return the SI value of a number with its unit; NaN, and a finding, when no statement may have it."""
-        kind = cast(Kind, str(tree.data))
+        rule = str(tree.data)
+        kind = _KINDS.get(rule) or cast(Kind, rule)
         number, unit = tree.children
-        place = span(tree)
+        place, help = span(tree), EXAMPLES["difference" if kind == "change" else kind]
         try:
             value = to_si(str(number), str(unit), kind)
         except ValueError as error:
-            self.add("E218", span(number), str(error), EXAMPLES[kind])
+            self.add("E218", span(number), str(error), help)
             return float("nan")
         found = fault(value, kind)
+        if not found and rule == "current_change" and value == 0:
+            found = "E202", "a change of nothing is no change"
         if found:
             positive = str(number).lstrip("-−")
-            cures = (Edit(*span(number), positive),) if value < 0 and kind != "absolute" else ()
-            self.add(found[0], place, found[1], EXAMPLES[kind], *cures)
+            signed = ("absolute", "change", "current")
+            cures = (Edit(*span(number), positive),) if value < 0 and kind not in signed else ()
+            if wave and kind == "difference" and found[0] == "E202":
+                found = "E202", "an amplitude is positive"
+                help = 'what swings goes both ways; to begin downwards, add "starting cool"'
+            self.add(found[0], place, found[1], help, *cures)
             return float("nan")
         return value
 
@@ -198,7 +121,7 @@ class Builder:
             return str(token)
         close = nearest(str(token), options)
         cures = (Edit(*span(token), close),) if close else ()
-        self.add(code, span(token), f'"{_short(token)}" is not {noun}', f"one of: {', '.join(options)}", *cures)
+        self.add(code, span(token), f'"{short(token)}" is not {noun}', f"one of: {', '.join(options)}", *cures)
         return None
 
     def at(self, place: Place) -> tuple[int, int]:
@@ -219,9 +142,11 @@ def span(item: Any) -> Place:
     return start, max(item.end_pos or 0, start + len(item))
 
 
-def _rule(item: Any) -> str:
+def rule_of(item: Any) -> str:
+    """Return the name of a tree's rule, or "" for a token."""
     return str(getattr(item, "data", ""))
 
 
-def _short(text: object) -> str:
+def short(text: object) -> str:
+    """Return a text as messages quote it."""
     return str(text) if len(str(text)) <= 30 else str(text)[:29] + "…"

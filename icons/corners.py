@@ -8,20 +8,24 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal, overload
 
-from thermicon.icons.statements import Broken, Leaf, Repeat, Statement, advance
+from thermicon.icons.motion import TOLERANCE, pieces
+from thermicon.icons.statements import Broken, Leaf, Play, Repeat, Statement
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
 Quantity = Literal["temperature_C", "current_A"]
+STEP_S = 1e-7
+"""How long a step is written out: shorter than any statement; the time is taken from a neighbour."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Corners:
     """Times (s) and values (°C or A, by ``quantity``) of equal number, straight lines between; at least two corners.
 
-    Raises ValueError unless the times begin at 0 and rise strictly and all numbers are finite.
+    ``steps`` lists the corners at which a step begins, to be made as fast as the driver can; it is written out over
+    0.1 µs. Raises ValueError unless the times begin at 0 and rise strictly and all numbers are finite.
 
     >>> Corners((0.0, 2.0, 6.0, 8.0), (32.0, 26.0, 26.0, 32.0), "temperature_C")
     Corners(4 corners, 8 s, 26 to 32 °C, at most 3 °C/s)
@@ -30,6 +34,7 @@ class Corners:
     time_s: tuple[float, ...]
     value: tuple[float, ...]
     quantity: Quantity
+    steps: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "time_s", tuple(float(time) for time in self.time_s))
@@ -44,15 +49,19 @@ class Corners:
             raise ValueError("times and values must be finite")
         if self.time_s[0] != 0 or any(b <= a for a, b in pairwise(self.time_s)):
             raise ValueError("times must begin at 0 s and rise strictly")
+        if any(not 0 <= place < len(self.time_s) - 1 for place in self.steps):
+            raise ValueError(f"steps {self.steps} must each be a corner that another one follows")
 
     def __len__(self) -> int:
         return len(self.time_s)
 
     def __repr__(self) -> str:
         unit = "°C" if self.quantity == "temperature_C" else "A"
+        count = len(self.steps)
+        steps = f", {count} step{'s' if count > 1 else ''}" if count else ""
         return (
             f"Corners({len(self)} corners, {self.duration_s:.6g} s, {self.lowest:.6g} to {self.highest:.6g} {unit}, "
-            f"at most {self.steepest_per_s:.6g} {unit}/s)"
+            f"at most {self.steepest_per_s:.6g} {unit}/s{steps})"
         )
 
     @property
@@ -72,9 +81,10 @@ class Corners:
 
     @property
     def steepest_per_s(self) -> float:
-        """The size of the steepest slope, in K/s or A/s."""
-        points = list(zip(self.time_s, self.value, strict=True))
-        return max(abs(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairwise(points))
+        """The size of the steepest slope that is no step, in K/s or A/s."""
+        points, steps = list(zip(self.time_s, self.value, strict=True)), set(self.steps)
+        slopes = (abs(b[1] - a[1]) / (b[0] - a[0]) for n, (a, b) in enumerate(pairwise(points)) if n not in steps)
+        return max(slopes, default=0.0)
 
     @overload
     def at(self, time_s: float) -> float: ...
@@ -101,32 +111,62 @@ class Corners:
 
 
 def written_out(body: Sequence[Statement | Broken]) -> Iterator[Leaf]:
-    """Yield every statement in the order in which it is played, repeats written out."""
+    """Yield every statement in the order in which it is played, repeats and played icons written out."""
     for part in body:
         if isinstance(part, Repeat):
             for _ in range(part.count):
                 yield from written_out(part.body)
+        elif isinstance(part, Play):
+            yield from written_out(part.icon.statements)
         elif not isinstance(part, Broken):
             yield part
 
 
-def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity) -> Corners:
+def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolerance: float = TOLERANCE) -> Corners:
     """Return the corner points of a checked body that starts at, and rests at, the level ``start`` (°C or A).
 
-    Times and levels add up as exact fractions; neighbours on one straight line are merged.
+    Times and levels add up as exact fractions; neighbours on one straight line are merged. A sine is followed to
+    within ``tolerance`` (K or A), everything else exactly.
     """
     times, levels = [Fraction(0)], [start]
     slope: Fraction | None = None
+    before = slope
+    level = start
     for leaf in written_out(body):
-        target, duration = advance(leaf, levels[-1], start)
-        if duration == 0:
-            continue
-        steepness = (target - levels[-1]) / duration
-        if steepness == slope:
-            times[-1] += duration
-            levels[-1] = target
+        for target, duration in pieces(leaf, level, start, tolerance):
+            level = target
+            if duration == 0:
+                if len(times) > 1 and times[-1] == times[-2]:  # two steps in one moment are one
+                    times.pop()
+                    levels.pop()
+                    slope = before
+                if target != levels[-1]:
+                    times.append(times[-1])
+                    levels.append(target)
+                    before, slope = slope, None
+            elif (steepness := (target - levels[-1]) / duration) == slope:
+                times[-1] += duration
+                levels[-1] = target
+            else:
+                times.append(times[-1] + duration)
+                levels.append(target)
+                slope = steepness
+    return _spread(times, levels, quantity)
+
+
+def _spread(times: list[Fraction], levels: list[Fraction], quantity: Quantity) -> Corners:
+    """Corners with the two ends of every step drawn apart: the later end moves, or the earlier at the very end.
+
+    Neither passes its neighbour: beside a piece that is shorter than the step, a step is shorter still.
+    """
+    apart = Fraction(STEP_S).limit_denominator(10**9)
+    steps = [n for n, (a, b) in enumerate(pairwise(times)) if a == b]
+    for n in steps:
+        if times[n] == times[-1]:
+            times[n] -= min(apart, (times[n] - times[n - 1]) / 2)
         else:
-            times.append(times[-1] + duration)
-            levels.append(target)
-        slope = steepness
-    return Corners(tuple(map(float, times)), tuple(map(float, levels)), quantity)
+            times[n + 1] += min(apart, (times[n + 2] - times[n + 1]) / 2)
+    rising = [0.0]
+    for time in times[1:]:
+        rising.append(max(float(time), math.nextafter(rising[-1], math.inf)))
+    return Corners(tuple(rising), tuple(map(float, levels)), quantity, tuple(steps))

@@ -15,6 +15,8 @@ TITLES: dict[str, str] = {
     "E008": "no icons",
     "E009": "missing version line",
     "E010": "unknown version",
+    "E011": "not valid JSON",
+    "E012": "not a cue set in JSON",
     # words, numbers and units
     "E101": "not understood",
     "E102": "missing unit",
@@ -33,6 +35,7 @@ TITLES: dict[str, str] = {
     "E115": "nested too deeply",
     "E116": "missing word",
     "E117": "missing text",
+    "E118": "parameter not understood",
     "E120": "not in this version",
     # meaning
     "E201": "target on the wrong side",
@@ -56,6 +59,17 @@ TITLES: dict[str, str] = {
     "E219": "level out of range",
     "E220": "too many corners",
     "E221": "too long",
+    "E222": "total not kept",
+    "E223": "icon without duration",
+    "E224": "play away from baseline",
+    "E225": "not whole periods",
+    "E226": "unknown parameter",
+    "E227": "parameter never used",
+    "E228": "impossible range",
+    "E229": "total inside a repeat",
+    "E230": "unknown icon to play",
+    "E231": "too many members",
+    "E232": "icons that play each other",
 }
 WIDEST = 110
 # Errors shown, and errors behind which reading stops: nobody mends a thousand in one go.
@@ -130,6 +144,10 @@ class CueErrors(ValueError):
             least = "at least " if self.more + len(self.errors) >= MOST_READ else ""
             parts.append(f"... and {least}{self.more} more errors")
         return "\n\n".join(parts)
+
+    def _render_traceback_(self) -> list[str]:
+        """Return the lines that IPython shows in place of a traceback."""
+        return str(self).split("\n")
 
 
 def whole_file(code: str, file: str, what: str, help: str = "") -> CueErrors:

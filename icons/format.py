@@ -1,53 +1,110 @@
 """Canonical text: a model object written as cue text that reads back to an equal object."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.statements import Broken, Change, Control, Drive, Hold, Repeat, Rest, Statement
+from thermicon.icons.faults import Control
+from thermicon.icons.shapes import Pulse, Step, Wave
+from thermicon.icons.statements import Broken, Change, Drive, Hold, Play, Repeat, Rest, Statement, Total
 from thermicon.icons.units import Kind, quantity
 
 if TYPE_CHECKING:
+    from thermicon.icons.family import Family
     from thermicon.icons.frame import Frame, Metadata
-    from thermicon.icons.icon import Icon, IconSet
+    from thermicon.icons.icon import Icon
+    from thermicon.icons.iconset import IconSet
+
+Path = tuple[int, ...]
+Holes = Mapping[tuple[Path, str], str]
+WIDEST = 120
+"""Headers longer than this take several lines."""
 
 
-def statement_text(statement: Statement | Broken, control: Control, indent: str = "") -> str:
+def statement_text(
+    statement: Statement | Broken, control: Control, indent: str = "", holes: Holes | None = None, path: Path = ()
+) -> str:
     """Return one statement as cue text, without a newline at its end; repeats take several lines.
+
+    ``holes`` names the parameter that stands in a field of the statement at a path; ``path`` is this statement's.
 
     >>> from thermicon.icons.statements import Return
     >>> statement_text(Repeat(2, (Change("warm", by_K=1, duration_s=0.5), Return(1))), "skin")
     'repeat 2 {\\n  warm by 1 °C over 0.5 s\\n  return at 1 °C/s\\n}'
     """
-    match statement:
-        case Change(direction=direction):
-            size = f"by {quantity(statement.by_K, 'difference')}" if statement.by_K is not None else ""
-            if statement.to_C is not None:
-                size = f"to {quantity(statement.to_C, 'absolute')}"
-            return f"{indent}{direction} {size} {_pace(statement.rate_K_per_s, 'rate', statement.duration_s)}"
-        case Drive():
-            pace = _pace(statement.rate_A_per_s, "current_rate", statement.duration_s)
-            return f"{indent}to {quantity(statement.to_A, 'current')} {pace}"
-        case Hold():
-            return f"{indent}hold for {quantity(statement.duration_s, 'time')}"
-        case Rest():
-            return f"{indent}rest for {quantity(statement.duration_s, 'time')}"
-        case Repeat():
-            body = "\n".join(statement_text(part, control, indent + "  ") for part in statement.body)
-            return f"{indent}repeat {statement.count} {{\n{body}\n{indent}}}"
-        case Broken():
-            raise ValueError("a statement that could not be read has no text")
-    kind: Kind = "current_rate" if control == "current" else "rate"
-    return f"{indent}return {_pace(statement.rate_per_s, kind, statement.duration_s)}"
+    writer = _Writer(control, holes or {})
+    return writer.statement(statement, indent, path)
 
 
-def icon_text(icon: "Icon") -> str:
-    """Return the complete text of a file that holds this one icon."""
-    return _file(_set_lines("", "", icon.frame, None), [icon])
+class _Writer:
+    def __init__(self, control: Control, holes: Holes) -> None:
+        self.control = control
+        self.holes = holes
+
+    def statement(self, part: Statement | Broken, indent: str, path: Path) -> str:
+        if isinstance(part, Repeat):
+            lines = (self.statement(inner, indent + "  ", (*path, n)) for n, inner in enumerate(part.body))
+            count = self.value(part, path, "count", "count")
+            return f"{indent}repeat {count} {{\n{chr(10).join(lines)}\n{indent}}}"
+        return indent + self.line(part, path)
+
+    def line(self, part: Statement | Broken, path: Path) -> str:
+        match part:
+            case Change(direction=word):
+                return f"{word} {self.goal(part, path)} {self.pace(part, path, 'rate_K_per_s', 'rate')}"
+            case Drive():
+                return f"{self.goal(part, path)} {self.pace(part, path, 'rate_A_per_s', 'current_rate')}"
+            case Hold():
+                return f"hold for {self.value(part, path, 'duration_s', 'time')}"
+            case Rest():
+                return f"rest for {self.value(part, path, 'duration_s', 'time')}"
+            case Total():
+                bound = "" if part.bound == "exactly" else f"{part.bound} "
+                return f"total {bound}{self.value(part, path, 'duration_s', 'time')}"
+            case Play():
+                return f"play {part.icon.name}"
+            case Step():
+                return f"step {_word(part.direction)}{self.goal(part, path)}"
+            case Pulse():
+                time = self.value(part, path, "duration_s", "time")
+                return f"pulse {_word(part.direction)}{self.goal(part, path)} for {time}"
+            case Wave():
+                period, time = (self.value(part, path, name, "time") for name in ("period_s", "duration_s"))
+                start = "" if part.start in ("warm", "up") else f" starting {part.start}"
+                cut = " cut" if part.cut else ""
+                return f"{part.shape} {self.goal(part, path)} every {period} for {time}{start}{cut}"
+            case Broken() | Repeat():
+                raise ValueError("a statement that could not be read has no text")
+        kind: Kind = "current_rate" if self.control == "current" else "rate"
+        return f"return {self.pace(part, path, 'rate_per_s', kind)}"
+
+    def goal(self, part: object, path: Path) -> str:
+        kinds: tuple[tuple[str, Kind], ...] = (
+            ("by_K", "change"),
+            ("to_C", "absolute"),
+            ("by_A", "current"),
+            ("to_A", "current"),
+        )
+        name, kind = next(pair for pair in kinds if getattr(part, pair[0], None) is not None)
+        return f"{name[:2]} {self.value(part, path, name, kind)}"
+
+    def pace(self, part: object, path: Path, rate: str, kind: Kind) -> str:
+        if getattr(part, rate) is not None:
+            return f"at {self.value(part, path, rate, kind)}"
+        return f"over {self.value(part, path, 'duration_s', 'time')}"
+
+    def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
+        hole = self.holes.get((path, name))
+        return quantity(float(getattr(part, name)), kind) if hole is None else hole
+
+
+def icon_text(icon: "Icon | Family") -> str:
+    """Return the complete text of a file that holds this icon or family, after the icons that it plays."""
+    return _file(_set_lines("", "", icon.frame, None), [*_needed(icon, {}).values(), icon])
 
 
 def set_text(icons: "IconSet") -> str:
     """Return the complete text of the file of a set."""
-    return _file(_set_lines(icons.name, icons.title, icons.frame, icons.metadata), icons.icons)
+    return _file(_set_lines(icons.name, icons.title, icons.frame, icons.metadata), icons.entries)
 
 
 def quoted(text: str) -> str:
@@ -60,15 +117,53 @@ def quoted(text: str) -> str:
     return f'"{escaped}"'
 
 
-def _file(set_lines: list[str], icons: "Iterable[Icon]") -> str:
+def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]":
+    """Icons that an icon plays, each after those that it plays itself."""
+    from thermicon.icons.icon import played_icons
+
+    for played in played_icons(_body(icon)):
+        if played.name not in found:
+            _needed(played, found)
+            found[played.name] = played
+    return found
+
+
+def _body(icon: "Icon | Family") -> tuple[Statement, ...]:
+    from thermicon.icons.icon import Icon
+
+    return icon.statements if isinstance(icon, Icon) else icon.template
+
+
+def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
     blocks = ["cue 1"]
     if set_lines:
         blocks.append("\n".join(set_lines))
     for icon in icons:
-        header = " ".join(["icon", icon.name, *_metadata(icon.metadata), "{"])
-        body = [statement_text(part, icon.frame.control, "  ") for part in icon.statements]
-        blocks.append("\n".join([header, *body, "}"]))
+        slots = getattr(icon, "slots", ())
+        parameters = list(map(str, getattr(icon, "parameters", ())))
+        header = header_lines(f"icon {icon.name}", parameters, metadata_texts(icon.metadata))
+        holes = {(slot.path, slot.field): slot.parameter for slot in slots}
+        body = [statement_text(part, icon.frame.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
+        blocks.append("\n".join([*header, *body, "}"]))
     return "\n\n".join(blocks) + "\n"
+
+
+def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> list[str]:
+    """Return the header of an icon, its brace included: one line, or one for each part where that is too long.
+
+    >>> header_lines("icon dip", ["size in [3, 6] K"], ['means "{size} down"'])
+    ['icon dip(size in [3, 6] K) means "{size} down" {']
+    """
+    listed = f"{head}({', '.join(parameters)})" if parameters else head
+    whole = " ".join([listed, *keys, "{"])
+    if len(whole) <= WIDEST or len(parameters) + len(keys) < 2:
+        return [whole]
+    rows = [listed]
+    if len(listed) > WIDEST and len(parameters) > 1:
+        rows = [f"{head}(", *(f"  {text}," for text in parameters[:-1]), f"  {parameters[-1]}", ")"]
+    if keys:
+        return [*rows, *(f"  {key}" for key in keys), "{"]
+    return [*rows[:-1], f"{rows[-1]} {{"]
 
 
 def _set_lines(name: str, title: str, frame: "Frame", metadata: "Metadata | None") -> list[str]:
@@ -77,21 +172,19 @@ def _set_lines(name: str, title: str, frame: "Frame", metadata: "Metadata | None
         lines.append(f"  control {frame.control}")
     if frame.baseline_C is not None:
         lines.append(f"  baseline {quantity(frame.baseline_C, 'absolute')}")
-    lines += [f"  {line}" for line in _metadata(metadata)] if metadata else []
+    lines += [f"  {line}" for line in metadata_texts(metadata)] if metadata else []
     if not (lines or name or title):
         return []
     header = " ".join(part for part in ("set", name, quoted(title) if title else "", "{") if part)
     return [header, *lines, "}"]
 
 
-def _metadata(metadata: "Metadata") -> list[str]:
+def metadata_texts(metadata: "Metadata") -> list[str]:
+    """Return each key of metadata with its text, in canonical order."""
     keys = ("means", "by", "doi", "licence")
     found = [f"{key} {quoted(value)}" for key in keys if (value := getattr(metadata, key)) is not None]
     return [*found, f"tags {quoted(', '.join(metadata.tags))}"] if metadata.tags else found
 
 
-def _pace(rate: float | None, kind: Kind, duration_s: float | None) -> str:
-    if rate is not None:
-        return f"at {quantity(rate, kind)}"
-    assert duration_s is not None
-    return f"over {quantity(duration_s, 'time')}"
+def _word(direction: str) -> str:
+    return "" if direction == "change" else f"{direction} "

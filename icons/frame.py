@@ -5,9 +5,11 @@ import unicodedata
 from dataclasses import dataclass
 from typing import get_args
 
-from thermicon.icons.statements import Control, fault
+from thermicon.icons.faults import Control, fault
 
-_NAME = re.compile(r"[^\W\d_](?:[^\W_]|-)*")
+_WORD = r"[^\W\d_](?:[^\W_]|-)*"
+# Members of a family are named after their values: ramp_amount=-6_rate=1.
+_NAME = re.compile(rf"{_WORD}(?:_{_WORD}=-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)*")
 
 
 def name_fault(name: str) -> str | None:

@@ -1,5 +1,6 @@
-"""The nouns of the package: Icon and IconSet, that prove themselves on construction."""
+"""An icon: a name, statements, the frame they are meant in and metadata, proven on construction."""
 
+import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -8,11 +9,12 @@ from typing import TYPE_CHECKING
 from thermicon.icons.check import ASSUMED_BASELINE_C, Problem, problems
 from thermicon.icons.corners import Corners, lower
 from thermicon.icons.errors import CueError, CueErrors
-from thermicon.icons.format import icon_text, set_text, statement_text
-from thermicon.icons.frame import Frame, Metadata, name_fault, text_fault
-from thermicon.icons.statements import LEAVES, Repeat, Statement, fault
-from thermicon.icons.units import exact, quantity
-from thermicon.icons.words import nearest
+from thermicon.icons.faults import fault
+from thermicon.icons.format import icon_text, statement_text
+from thermicon.icons.frame import Frame, Metadata, name_fault
+from thermicon.icons.motion import TOLERANCE
+from thermicon.icons.statements import LEAVES, Play, Repeat, Statement
+from thermicon.icons.units import exact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,23 +43,38 @@ class Icon:
             raise ValueError(f"icon: {wrong}")
         if not self.statements or not all(map(_sound, self.statements)):
             raise ValueError(f"icon {self.name} needs at least one statement, and nothing but statements")
-        self._prove(self._level(None))
+        known = {self.name: self}
+        for played in all_played(self.statements):
+            if played.frame != self.frame:
+                raise ValueError(f"icon {self.name} plays {played.name}, whose frame differs: {played.frame}")
+            if known.setdefault(played.name, played) != played:
+                raise ValueError(f"icon {self.name} plays two different icons that are both called {played.name}")
+        self._prove(rest_level(self.frame))
 
-    def lower(self, start: float | None = None) -> Corners:
-        """Return the exact corner points, in °C, or in A under control current.
+    def lower(self, start: float | None = None, tolerance: float = TOLERANCE) -> Corners:
+        """Return the corner points, in °C, or in A under control current: exact, but for sines.
 
         ``start`` (°C) is the baseline when the frame gives none; 32 °C is taken when neither does. Under control
-        current it is the holding current in A, 0 by default. Raises CueErrors when a target then lies on the wrong
-        side, and ValueError when ``start`` is out of range.
+        current it is the holding current in A, 0 by default. A sine lies within ``tolerance`` (K or A) of its straight
+        pieces. Raises CueErrors when a target then lies on the wrong side, and ValueError when ``start`` or
+        ``tolerance`` is out of range.
 
         >>> from thermicon.icons import read_cue
         >>> read_cue("six-icons")["cooling-step"].lower().value
         (32.0, 26.0, 26.0, 32.0)
         """
-        level = self._level(start)
-        if level != self._level(None):
+        if not 0 < tolerance < 10:
+            raise ValueError(f"tolerance = {tolerance!r} must lie above 0 and below 10")
+        level = rest_level(self.frame, start)
+        if level != rest_level(self.frame):
             self._prove(level)
-        return lower(self.statements, level, "current_A" if self.frame.control == "current" else "temperature_C")
+        quantity = "current_A" if self.frame.control == "current" else "temperature_C"
+        return lower(self.statements, level, quantity, tolerance)  # type: ignore[arg-type]
+
+    @property
+    def content_hash(self) -> str:
+        """SHA-256 of the canonical text, as 64 hexadecimal digits: equal icons have equal hashes, everywhere."""
+        return content_hash(str(self))
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw the icon against time, on ``ax`` or on a new figure, and return the Axes."""
@@ -78,110 +95,61 @@ class Icon:
         )
 
     def _repr_html_(self) -> str:
-        from thermicon.icons.draw import svg
+        from thermicon.icons.picture import picture
 
-        return svg([self])
-
-    def _level(self, start: float | None) -> Fraction:
-        if self.frame.control == "current":
-            level, wrong = start or 0.0, fault(start or 0.0, "current")
-        else:
-            assumed = ASSUMED_BASELINE_C if start is None else start
-            level = assumed if self.frame.baseline_C is None else self.frame.baseline_C
-            wrong = fault(level, "absolute")
-        if wrong:
-            raise ValueError(f"start: {wrong[1]}")
-        return exact(float(level), "current" if self.frame.control == "current" else "absolute")
+        return picture(self)
 
     def _prove(self, level: Fraction) -> None:
         found = problems(self.statements, self.frame.control, level)
         if found:
-            raise CueErrors(tuple(self._error(problem) for problem in found))
-
-    def _error(self, problem: Problem) -> CueError:
-        # Without the file at hand, the canonical text of the statement stands for its line.
-        part = problem.statement
-        line, column = (part.span if part else None) or (1, 1)
-        text = statement_text(part, self.frame.control).split("\n")[0] if part else f"icon {self.name} {{"
-        source = " " * (column - 1) + text
-        return CueError(
-            problem.code, f"<icon {self.name}>", line, column, len(text), source, problem.what, problem.help
-        )
+            raise CueErrors(tuple(problem_error(problem, self.name, self.frame) for problem in found))
 
 
-class UnknownIcon(KeyError):
-    """A set has no icon of this name; the message lists those that it has, nearest first."""
+def rest_level(frame: Frame, start: float | None = None) -> Fraction:
+    """Return the exact level at which icons begin: the frame's, ``start``, or 32 °C (0 A); ValueError out of range."""
+    if frame.control == "current":
+        level, wrong = start or 0.0, fault(start or 0.0, "current")
+    else:
+        assumed = ASSUMED_BASELINE_C if start is None else start
+        level = assumed if frame.baseline_C is None else frame.baseline_C
+        wrong = fault(level, "absolute")
+    if wrong:
+        raise ValueError(f"start: {wrong[1]}")
+    return exact(float(level), "current" if frame.control == "current" else "absolute")
 
-    def __str__(self) -> str:
-        return str(self.args[0])
+
+def problem_error(problem: Problem, name: str, frame: Frame) -> CueError:
+    """Return a problem as an error; without the file at hand, the canonical text of the statement is its line."""
+    part = problem.statement
+    line, column = (part.span if part else None) or (1, 1)
+    text = statement_text(part, frame.control).split("\n")[0] if part else f"icon {name} {{"
+    source = " " * (column - 1) + text
+    return CueError(problem.code, f"<icon {name}>", line, column, len(text), source, problem.what, problem.help)
 
 
-@dataclass(frozen=True, slots=True, repr=False)
-class IconSet:
-    """The icons of one file, in its order, with the frame they share; ``set["name"]`` is one of them.
+def content_hash(text: str) -> str:
+    """Return the SHA-256 of a canonical text as 64 hexadecimal digits."""
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
-    Raises ValueError without icons, for two of one name, or when an icon's frame is not the set's.
 
-    >>> from thermicon.icons import read_cue
-    >>> read_cue("cooling-step-skin")
-    <IconSet cooling-step-skin: 1 icon, 8 s, control skin, baseline 32 °C>
-    """
-
-    name: str
-    title: str
-    frame: Frame
-    metadata: Metadata
-    icons: tuple[Icon, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "icons", tuple(self.icons))
-        if self.name and (wrong := name_fault(self.name)):
-            raise ValueError(f"set: {wrong}")
-        if self.title and (wrong := text_fault(self.title)):
-            raise ValueError(f"title: {wrong}")
-        if not self.icons:
-            raise ValueError("a set needs at least one icon")
-        names = [icon.name for icon in self.icons]
-        if len(set(names)) < len(names):
-            twice = next(name for name in names if names.count(name) > 1)
-            raise ValueError(f"two icons are called {twice}")
-        if any(icon.frame != self.frame for icon in self.icons):
-            other = next(icon for icon in self.icons if icon.frame != self.frame)
-            raise ValueError(f"the frame of icon {other.name} is not that of the set: {other.frame} and {self.frame}")
-
-    def __len__(self) -> int:
-        return len(self.icons)
-
-    def __iter__(self) -> Iterator[Icon]:
-        return iter(self.icons)
-
-    def __contains__(self, item: object) -> bool:
-        return item in self.icons or any(icon.name == item for icon in self.icons)
-
-    def __getitem__(self, name: str) -> Icon:
-        names = [icon.name for icon in self.icons]
-        if name in names:
-            return self.icons[names.index(name)]
-        close = nearest(str(name), names)
-        hint = f"did you mean {close}? " if close else ""
-        raise UnknownIcon(f"no icon is called {name!r}; {hint}the set has: {', '.join(names)}")
-
-    def __str__(self) -> str:
-        return set_text(self)
-
-    def __repr__(self) -> str:
-        lengths = [icon.lower().duration_s for icon in self.icons]
-        count = f"{len(self)} icon" + ("s" if len(self) > 1 else "")
-        length = f"{min(lengths):.6g} to {max(lengths):.6g}" if min(lengths) < max(lengths) else f"{lengths[0]:.6g}"
-        baseline = self.frame.baseline_C
-        rest = f", baseline {quantity(baseline, 'absolute')}" if baseline is not None else ""
-        return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.frame.control}{rest}>"
-
-    def _repr_html_(self) -> str:
-        from thermicon.icons.draw import svg
-
-        return svg(self.icons)
+def all_played(body: "tuple[Statement, ...]", seen: set[int] | None = None) -> Iterator[Icon]:
+    """Yield the icons that statements play, and those that these play in turn, each object once."""
+    seen = set() if seen is None else seen
+    for icon in played_icons(body):
+        if id(icon) not in seen:
+            seen.add(id(icon))
+            yield icon
+            yield from all_played(icon.statements, seen)
 
 
 def _sound(part: object) -> bool:
-    return all(map(_sound, part.body)) if isinstance(part, Repeat) else isinstance(part, LEAVES)
+    return all(map(_sound, part.body)) if isinstance(part, Repeat) else isinstance(part, (Play, *LEAVES))
+
+
+def played_icons(body: "tuple[Statement, ...]") -> Iterator[Icon]:
+    """Yield the icons that statements play, in order, those within repeats included."""
+    for part in body:
+        if isinstance(part, Play):
+            yield part.icon
+        elif isinstance(part, Repeat):
+            yield from played_icons(part.body)  # type: ignore[arg-type]

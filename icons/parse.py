@@ -2,8 +2,8 @@
 
 from thermicon.icons.assemble import analyse
 from thermicon.icons.errors import MOST_ERRORS, CueError, CueErrors
-from thermicon.icons.icon import IconSet
-from thermicon.icons.source import Finding, Source, decode
+from thermicon.icons.iconset import IconSet
+from thermicon.icons.source import Edit, Finding, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.
 _TRIES = 150_000
@@ -56,7 +56,7 @@ class _Suggester:
         for cure in finding.cures:
             if self.budget < len(source.text):
                 return None
-            if "\n" in source.text[cure.start : cure.end]:
+            if not _within(source, cure, line) or (depth and "\n" in cure.text):
                 continue
             self.budget -= len(source.text)
             text = source.text[: cure.start] + cure.text + source.text[cure.end :]
@@ -68,3 +68,8 @@ class _Suggester:
             if left and depth < _MOST_CURES and (deeper := self.cured(tried, left[0], depth + 1)) is not None:
                 return deeper
         return None
+
+
+def _within(source: Source, cure: Edit, line: int) -> bool:
+    """Tell whether a cure changes one line only, the one that is shown."""
+    return source.place(cure.start)[0] == line and "\n" not in source.text[cure.start : cure.end]

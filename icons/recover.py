@@ -7,6 +7,7 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.case import Case
 from thermicon.icons.diagnose import VOCABULARY, diagnose
 from thermicon.icons.errors import MOST_ERRORS, MOST_READ
 from thermicon.icons.source import Edit, Finding, Piece, Source
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 DEEPEST = 20
 _OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
+_BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
 _HEADER = re.compile(r"(icon|set)\b[^\n;{}]*\{")
 
 
@@ -53,7 +55,10 @@ class _Reader:
         self.begin = 0
         self.line = (0, 0)
         self.fresh = True
-        self.heading = False
+        self.heading = self.listing = False
+        # The parameters of the icon that is being read; None when they could not be.
+        self.names: frozenset[str] | None = frozenset()
+        self.last = ""
         self.parser: Any = grammar().parse_interactive(source.text)
         self.tokens: Iterator[Token] = iter(())
 
@@ -70,7 +75,7 @@ class _Reader:
             if token is None:
                 break
             start = self.seen(token.start_pos or 0)
-            if self.runs_on(token):
+            if self.runs_on(token) or self.unnamed(token):
                 self.recover(start)
             elif token.type == "LBRACE" and len(self.blocks) >= DEEPEST:
                 self.refuse_depth(start)
@@ -81,6 +86,7 @@ class _Reader:
                     self.recover(start)
                 else:
                     self.follow(token.type, start)
+                    self.collect(token)
         self.finish()
         return Reading(self.parser.feed_eof(), tuple(self.findings), self.more)
 
@@ -97,9 +103,27 @@ class _Reader:
             return False
         after = self.text[token.end_pos or 0]
         if token.type == "NUMBER":
+            if self.heading:  # the values of a parameter: 1..3, or [1,2]
+                return after == "_" or after.isdigit()
             return after in ".,_" or after.isdigit()
         last = token[-1]
         return (last.isalnum() or last == "-") and (after.isalnum() or after in "_-/°")
+
+    def unnamed(self, token: "Token") -> bool:
+        # The grammar lets any name stand for a number; only the names of parameters do.
+        if token.type != "NAME" or self.names is None or self.listing or not self.blocks:
+            return False
+        return token not in self.names and self.takes("NUMBER")
+
+    def collect(self, token: "Token") -> None:
+        """Keep the names between the parentheses of a family."""
+        if token.type == "ICON":
+            self.names = frozenset()
+        elif token.type in ("LPAR", "RPAR"):
+            self.listing = token.type == "LPAR"
+        elif self.listing and token.type == "IN":
+            self.names = (self.names or frozenset()) | {self.last}
+        self.last = str(token)
 
     def follow(self, kind: str, offset: int) -> None:
         if kind in _OPENERS:
@@ -122,6 +146,7 @@ class _Reader:
 
         for kind in kinds:
             self.parser.feed_token(Token(kind, "", at, 1, 1, 1, 1, at))
+            self.last = "}" if kind == "RBRACE" else ""
             self.follow(kind, at)
 
     # -- behind an error ------------------------------------------------------------------------------------------
@@ -140,17 +165,34 @@ class _Reader:
             self.fresh = True
             self.jump(at)
             return
-        pieces, stop = self.source.pieces(self.begin, at), self.stop(at)
+        braces = self.listing and self.text[at] == "{" and self.takes("LSQB")
+        pieces = self.source.pieces(self.begin, at, self.listing, braces)
+        stop = self.source.stop_listing(at, braces) if self.listing else self.stop(at)
         index = next((i for i, piece in enumerate(pieces) if piece.end > at and piece.start < stop), len(pieces))
         word = pieces[index].text if index < len(pieces) else ""
         header = self.takes("LBRACE")
         inside = self.opener if header else where
-        self.report_statement(pieces, index, at, where)
+        if self.listing and self.text[at] == "\n":
+            pieces.insert(index, Piece("newline", "", at, at))
+        closed = self.last == "}"  # a whole block stands before: what was read of it stays
+        braced = None if header or self.listing or closed else _BRACED.match(self.text, at)
+        if braced and where in ("icon", "repeat"):
+            help = "a parameter stands without braces between statements, with them in a text"
+            edit = Edit(at, braced.end(), braced[1])
+            self.report(Finding("E105", at, braced.end(), "these braces have no meaning here", help, (edit,)))
+            self.resume(self.stop(braced.end()), where)
+            return
+        code = self.report_statement(pieces, index, at, where)
         if header and word in VOCABULARY[inside] and word not in VOCABULARY["header"]:
             self.feed("LBRACE", at=at)
             self.jump(at)
             return
-        if not header and self.takes("_NEWLINE"):
+        if (
+            not header
+            and not self.listing
+            and self.takes("_NEWLINE")
+            and (closed or not self.spoilt(code, pieces, word, where))
+        ):
             # The statement is complete: keep it, and read what follows as if it stood on a line of its own.
             begin = self.begin
             self.feed("_NEWLINE", at=at)
@@ -160,9 +202,17 @@ class _Reader:
                 return
         self.resume(stop, where)
 
+    def spoilt(self, code: str, pieces: list[Piece], word: str, where: str) -> bool:
+        # Complete, but something else was meant: kept, it would draw further errors.
+        first = pieces[0].text if pieces else ""
+        return code == "E104" or (first in ("play", "step", "total") and word not in VOCABULARY[where])
+
     def resume(self, stop: int, where: str) -> None:
         """Put BROKEN in the place of the statement, or of the header of a block, and go on at ``stop``."""
         header = self.unwind()
+        if header and (self.opener == "icon" or self.listing):
+            self.names = None
+        self.listing = False
         brace = stop < len(self.text) and self.text[stop] == "{"
         if header:
             self.feed("BROKEN", at=self.begin)
@@ -175,6 +225,7 @@ class _Reader:
             stop = min(self.source.close(stop) + 1, len(self.text) - 1)
         elif brace:
             opener = "REPEAT" if self.blocks else ("SET" if self.text.startswith("se", self.begin) else "ICON")
+            self.names = self.names if self.blocks else None
             self.feed(opener, "BROKEN", at=self.begin)
         else:
             self.feed("BROKEN", at=self.begin)
@@ -219,8 +270,8 @@ class _Reader:
             self.feed(*["LBRACE"] * self.takes("LBRACE"), "_NEWLINE", at=end)
             self.feed(*["RBRACE"] * len(self.blocks), at=end)
             return
-        if self.takes("LBRACE"):
-            pieces = self.source.pieces(self.begin, end)
+        if self.takes("LBRACE") or self.listing:
+            pieces = self.source.pieces(self.begin, end, self.listing)
             self.report_statement(pieces, len(pieces), end, "file")
             self.resume(end, "file")
             self.feed("_NEWLINE", at=end)
@@ -243,8 +294,12 @@ class _Reader:
         else:
             self.more += 1
 
-    def report_statement(self, pieces: list[Piece], index: int, at: int, where: str) -> None:
-        if len(self.findings) < MOST_ERRORS:
-            self.findings.append(diagnose(pieces, index, at, frozenset(self.parser.accepts()), where))
-        else:
+    def report_statement(self, pieces: list[Piece], index: int, at: int, where: str) -> str:
+        """Add what is wrong with a statement; returns the code."""
+        if len(self.findings) >= MOST_ERRORS:
             self.more += 1
+            return ""
+        accepts = frozenset(self.parser.accepts())
+        finding = diagnose(Case(pieces, index, at, accepts, where, self.names, self.listing))
+        self.findings.append(finding)
+        return finding.code

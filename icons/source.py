@@ -8,18 +8,27 @@ from thermicon.icons.errors import CueError, whole_file
 
 # Some three thousand icons; every text of this size is read or refused within a few seconds.
 MOST_BYTES = 250_000
+# As many icons take more room in JSON.
+MOST_JSON_BYTES = 1_000_000
 _MOST_BEHIND = 50
 
-# Coarser than the grammar on purpose: a piece is what a reader would call one word, right or wrong.
-_PIECE = re.compile(
-    r"""(?P<blank>[ \t\u00a0\u202f]+|\#[^\n]*)
-      | (?P<text>"(?:[^"\\\n]|\\[^\n])*"?)
-      | (?P<number>[+\-\u2212]?(?:\d[\d.,_]*|\.\d[\d.,_]*)(?:[eE][+\-\u2212]?\d+)?)
-      | (?P<word>(?:[^\W\d]|[°º˚℃℉])[\w°\-]*(?:/[^\W\d]+)?)
-      | (?P<mark>[{};\n])
-      | (?P<other>.)""",
-    re.VERBOSE,
-)
+
+def _cut(number: str, mark: str, other: str) -> re.Pattern[str]:
+    return re.compile(
+        rf"""(?P<blank>[ \t\u00a0\u202f]+|\#[^\n]*)
+          | (?P<text>"(?:[^"\\\n]|\\[^\n])*"?)
+          | (?P<number>[+\-\u2212]?(?:{number})(?:[eE][+\-\u2212]?\d+)?)
+          | (?P<word>(?:[^\W\d]|[°º˚℃℉])[\w°\-]*(?:/[^\W\d]+)?)
+          | (?P<mark>{mark})
+          | (?P<other>{other})""",
+        re.VERBOSE,
+    )
+
+
+# Coarser than the grammar on purpose: a piece is what a reader would call one word, right or wrong. Between the
+# parentheses of a family commas, dots and brackets stand close to the numbers, and lines may end.
+_PIECE = _cut(r"\d[\d.,_]*|\.\d[\d.,_]*", r"[{};\n]", ".")
+_FINE = _cut(r"\d[\d_]*(?:\.(?!\.)[\d_]*)?|\.\d[\d_]*", r"[{}]", r"\.\.|\n|.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,18 +100,23 @@ class Source:
             finding.code, self.file, line, column, length, text, finding.what, finding.help, suggestion=suggestion
         )
 
-    def pieces(self, start: int, after: int) -> list[Piece]:
+    def pieces(self, start: int, after: int, listing: bool = False, braces: bool = False) -> list[Piece]:
         """Cut the text from ``start`` into pieces, without blanks, comments and newlines.
 
         They end with the first newline, ``;`` or brace at or behind ``after``, and at most 50 pieces behind it.
+        ``listing`` cuts finer, as needed between the parentheses of a family, and goes on over newlines and ``;``;
+        ``braces`` takes a pair of them at ``after`` for a list of values.
         """
         found: list[Piece] = []
         behind = 0
-        for match in _PIECE.finditer(self.text, start):
+        braced = False
+        for match in (_FINE if listing else _PIECE).finditer(self.text, start):
             kind = match.lastgroup or "other"
             behind += match.start() >= after
-            if (kind == "mark" and match.start() >= after) or behind > _MOST_BEHIND:
+            braced |= braces and match.group() == "{" and match.start() == after
+            if (kind == "mark" and match.start() >= after and not braced) or behind > _MOST_BEHIND:
                 break
+            braced &= match.group() != "}"
             if kind != "blank" and match.group() != "\n":
                 found.append(Piece(kind, match.group(), match.start(), match.end()))
         return found
@@ -111,6 +125,14 @@ class Source:
         """Return the offset of the first newline, ``;`` or brace at or behind ``start``, outside texts and comments."""
         ends = (match.start() for match in _PIECE.finditer(self.text, start) if match.lastgroup == "mark")
         return next(ends, len(self.text))
+
+    def stop_listing(self, start: int, braces: bool) -> int:
+        """Return the offset of the ``{`` behind the parentheses that ``start`` lies in, or else of ``stop``."""
+        for match in _FINE.finditer(self.text, self.close(start) + 1 if braces else start):
+            text = match.group()
+            if text in ("{", "}") or (match.lastgroup == "word" and text in ("icon", "set")):
+                return match.start() if text == "{" else self.stop(start)
+        return self.stop(start)
 
     def close(self, brace: int) -> int:
         """Return the offset of the ``}`` that matches the ``{`` at ``brace``, or the length of the text."""

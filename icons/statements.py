@@ -1,74 +1,24 @@
-"""What an icon is made of: frozen statements in SI floats that prove themselves, and what each does to the level."""
+"""What an icon is made of: frozen statements in SI floats that prove themselves; shapes stand in ``shapes``."""
 
-import math
 from dataclasses import dataclass, field
-from fractions import Fraction
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from thermicon.icons.units import LARGEST, SMALLEST, Kind, decimal_text, exact
+from thermicon.icons.faults import MOST_REPEATS, Span, prove_given, prove_number, prove_one_of
+from thermicon.icons.shapes import Pulse, Step, Wave
 
-Control = Literal["skin", "display", "current"]
-Direction = Literal["warm", "cool"]
-Span = tuple[int, int] | None
+if TYPE_CHECKING:
+    from thermicon.icons.icon import Icon
 
-# The language's own sanity: wider than skin bears and modules take; what is safe is the rig's business.
-LOWEST_C, HIGHEST_C = -10.0, 60.0
-HIGHEST_A = 20.0
-SHORTEST_S, LONGEST_S = 1e-6, 3600.0
-MOST_REPEATS = 1_000_000_000
-
-
-def fault(value: float, kind: Kind) -> tuple[str, str] | None:
-    """Return error code and words for an SI value that no statement may have, or None.
-
-    >>> fault(70.0, "absolute")
-    ('E219', '70 °C is outside the −10 to 60 °C that the language allows')
-    """
-    if not math.isfinite(value) or abs(value) > LARGEST or 0 < abs(value) < SMALLEST:
-        return "E218", f"{value:g} is not a number that the language takes"
-    if kind == "absolute" and not LOWEST_C <= value <= HIGHEST_C:
-        return "E219", f"{decimal_text(value)} °C is outside the −10 to 60 °C that the language allows"
-    if kind == "current" and abs(value) > HIGHEST_A:
-        return "E219", f"{decimal_text(value)} A is outside the ±20 A that the language allows"
-    if kind == "difference" and value <= 0:
-        return "E202", "a change has a positive size; its direction is in the word"
-    if kind == "difference" and value > HIGHEST_C - LOWEST_C:
-        return "E219", f"{decimal_text(value)} °C is more than the whole −10 to 60 °C that the language allows"
-    if kind in ("rate", "current_rate") and value <= 0:
-        return "E204", "a rate is positive; the direction is in the word"
-    if kind == "time" and value <= 0:
-        return "E203", "a time is positive"
-    if kind == "time" and value < SHORTEST_S:
-        return "E203", "this is shorter than a microsecond"
-    if kind == "time" and value > LONGEST_S:
-        return "E221", f"{decimal_text(value)} s is more than the hour that an icon may last"
-    return None
-
-
-def _number(owner: object, name: str, kind: Kind) -> None:
-    value = getattr(owner, name)
-    if value is None:
-        return
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{type(owner).__name__}.{name} must be a number, not {value!r}")
-    value = float(value) + 0.0
-    found = fault(value, kind)
-    if found:
-        raise ValueError(f"{type(owner).__name__}.{name} = {value!r}: {found[1]}")
-    exact(value, kind)
-    object.__setattr__(owner, name, value)
-
-
-def _one_of(owner: object, first: str, second: str) -> None:
-    if (getattr(owner, first) is None) == (getattr(owner, second) is None):
-        raise ValueError(f"{type(owner).__name__} needs either {first} or {second}, and not both")
+Direction = Literal["warm", "cool", "change"]
+Bound = Literal["exactly", "at most", "at least"]
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """``warm`` or ``cool``: by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
+    """``warm``, ``cool``, ``change``: by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
 
-    Raises ValueError for a value that is not positive or outside the language's range.
+    The difference is signed for ``change``, which takes both directions, and positive for the others. Raises
+    ValueError for a value outside the language's range.
 
     >>> Change("cool", by_K=6, rate_K_per_s=3)
     Change(direction='cool', by_K=6.0, to_C=None, rate_K_per_s=3.0, duration_s=None)
@@ -82,14 +32,14 @@ class Change:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.direction not in ("warm", "cool"):
-            raise ValueError(f'Change.direction must be "warm" or "cool", not {self.direction!r}')
-        _one_of(self, "by_K", "to_C")
-        _one_of(self, "rate_K_per_s", "duration_s")
-        _number(self, "by_K", "difference")
-        _number(self, "to_C", "absolute")
-        _number(self, "rate_K_per_s", "rate")
-        _number(self, "duration_s", "time")
+        if self.direction not in ("warm", "cool", "change"):
+            raise ValueError(f'Change.direction must be "warm", "cool" or "change", not {self.direction!r}')
+        prove_one_of(self, "by_K", "to_C")
+        prove_one_of(self, "rate_K_per_s", "duration_s")
+        prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
+        prove_number(self, "to_C", "absolute")
+        prove_number(self, "rate_K_per_s", "rate")
+        prove_number(self, "duration_s", "time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,12 +56,10 @@ class Drive:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _one_of(self, "rate_A_per_s", "duration_s")
-        _number(self, "to_A", "current")
-        _number(self, "rate_A_per_s", "current_rate")
-        _number(self, "duration_s", "time")
-        if self.to_A is None:
-            raise ValueError("Drive.to_A must be a number, not None")
+        prove_one_of(self, "rate_A_per_s", "duration_s")
+        prove_given(self, "to_A", "current")
+        prove_number(self, "rate_A_per_s", "current_rate")
+        prove_number(self, "duration_s", "time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +74,7 @@ class Hold:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _duration(self)
+        prove_given(self, "duration_s", "time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +89,7 @@ class Rest:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _duration(self)
+        prove_given(self, "duration_s", "time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,9 +105,44 @@ class Return:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        _one_of(self, "rate_per_s", "duration_s")
-        _number(self, "rate_per_s", "rate")
-        _number(self, "duration_s", "time")
+        prove_one_of(self, "rate_per_s", "duration_s")
+        prove_number(self, "rate_per_s", "rate")
+        prove_number(self, "duration_s", "time")
+
+
+@dataclass(frozen=True, slots=True)
+class Total:
+    """``total``: how long (s) the whole icon must last, exactly, at most or at least; checked, it moves nothing.
+
+    >>> Total(10, "at most")
+    Total(duration_s=10.0, bound='at most')
+    """
+
+    duration_s: float
+    bound: Bound = "exactly"
+    span: Span = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.bound not in ("exactly", "at most", "at least"):
+            raise ValueError(f'Total.bound must be "exactly", "at most" or "at least", not {self.bound!r}')
+        prove_given(self, "duration_s", "time")
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """``play``: all statements of another icon, which begins at baseline; ValueError for anything but an icon.
+
+    >>> from thermicon.icons import Icon
+    >>> Play(Icon("wait", (Rest(1),))).icon.name
+    'wait'
+    """
+
+    icon: "Icon"
+    span: Span = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if not hasattr(self.icon, "statements") or not hasattr(self.icon, "lower"):
+            raise ValueError(f"Play.icon must be an Icon, not {self.icon!r}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,48 +168,13 @@ class Repeat:
         if isinstance(self.count, bool) or not isinstance(self.count, int) or not 1 <= self.count <= MOST_REPEATS:
             raise ValueError(f"Repeat.count must be a whole number from 1 to {MOST_REPEATS}, not {self.count!r}")
         body = tuple(self.body)
-        if not body or not all(isinstance(part, (Repeat, Broken, *LEAVES)) for part in body):
+        if not body or not all(isinstance(part, (Repeat, Play, Broken, *LEAVES)) for part in body):
             raise ValueError("Repeat.body must hold at least one statement, and nothing else")
+        if any(isinstance(part, Total) for part in body):
+            raise ValueError("Repeat.body may not hold a Total, which concerns the whole icon")
         object.__setattr__(self, "body", body)
 
 
-LEAVES = (Change, Drive, Hold, Rest, Return)
-Leaf = Change | Drive | Hold | Rest | Return
-Statement = Leaf | Repeat
-
-
-def _duration(owner: Hold | Rest) -> None:
-    if owner.duration_s is None:
-        raise ValueError(f"{type(owner).__name__}.duration_s must be a number, not None")
-    _number(owner, "duration_s", "time")
-
-
-def advance(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fraction]:
-    """Return the level (°C or A) behind a statement and the time (s) it takes, both exact.
-
-    >>> advance(Change("cool", by_K=6, rate_K_per_s=3), Fraction(32), Fraction(32))
-    (Fraction(26, 1), Fraction(2, 1))
-    """
-    rate: Fraction | None = None
-    match leaf:
-        case Change():
-            sign = 1 if leaf.direction == "warm" else -1
-            target = level + sign * exact(leaf.by_K, "difference") if leaf.by_K is not None else level
-            if leaf.to_C is not None:
-                target = exact(leaf.to_C, "absolute")
-            if leaf.rate_K_per_s is not None:
-                rate = exact(leaf.rate_K_per_s, "rate")
-        case Drive():
-            target = exact(leaf.to_A, "current")
-            if leaf.rate_A_per_s is not None:
-                rate = exact(leaf.rate_A_per_s, "current_rate")
-        case Return():
-            target = rest
-            if leaf.rate_per_s is not None:
-                rate = exact(leaf.rate_per_s, "rate")
-        case _:
-            target = level
-    if rate is not None:
-        return target, abs(target - level) / rate
-    assert leaf.duration_s is not None
-    return target, exact(leaf.duration_s, "time")
+LEAVES = (Change, Drive, Hold, Rest, Return, Total, Step, Pulse, Wave)
+Leaf = Change | Drive | Hold | Rest | Return | Total | Step | Pulse | Wave
+Statement = Leaf | Repeat | Play

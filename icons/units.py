@@ -5,12 +5,14 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Literal
 
-Kind = Literal["absolute", "difference", "rate", "time", "current", "current_rate"]
+# A difference has a size alone, a change a sign as well; a count has no unit.
+Kind = Literal["absolute", "difference", "change", "rate", "time", "current", "current_rate", "count"]
 
 # Per kind, every spelling and its factor to SI; the first is the one that help and canonical text prefer.
 UNITS: dict[Kind, dict[str, Fraction]] = {
     "absolute": {"°C": Fraction(1), "degC": Fraction(1)},
     "difference": {"°C": Fraction(1), "degC": Fraction(1), "K": Fraction(1)},
+    "change": {"°C": Fraction(1), "degC": Fraction(1), "K": Fraction(1)},
     "rate": {
         "°C/s": Fraction(1),
         "degC/s": Fraction(1),
@@ -22,15 +24,18 @@ UNITS: dict[Kind, dict[str, Fraction]] = {
     "time": {"s": Fraction(1), "ms": Fraction(1, 1000), "min": Fraction(60)},
     "current": {"A": Fraction(1), "mA": Fraction(1, 1000)},
     "current_rate": {"A/s": Fraction(1), "mA/s": Fraction(1, 1000)},
+    "count": {"": Fraction(1)},
 }
 
 KIND_WORDS: dict[Kind, str] = {
     "absolute": "a temperature",
     "difference": "a temperature difference",
+    "change": "a temperature difference",
     "rate": "a rate of temperature",
     "time": "a time",
     "current": "a current",
     "current_rate": "a rate of current",
+    "count": "a count",
 }
 
 # The range of sizes that a number other than zero may have: wide for any skin, narrow enough for exact sums.
@@ -105,7 +110,7 @@ def written(value: float, kind: Kind) -> tuple[str, str]:
 
 def quantity(value: float, kind: Kind) -> str:
     """Return an SI value as canonical text with its unit, such as ``6 °C`` or ``50 ms``."""
-    return " ".join(written(value, kind))
+    return " ".join(written(value, kind)).strip()
 
 
 @lru_cache(maxsize=4096)

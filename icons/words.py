@@ -5,7 +5,22 @@ from collections.abc import Iterable
 from thermicon.icons.units import UNITS, Kind
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
-_STATEMENTS = ("cool", "warm", "hold", "rest", "return", "repeat", "to")
+WAVES = ("sine", "square", "triangle", "sawtooth")
+_STATEMENTS = (
+    "cool",
+    "warm",
+    "change",
+    "hold",
+    "rest",
+    "return",
+    "step",
+    "pulse",
+    *WAVES,
+    "repeat",
+    "play",
+    "total",
+    "to",
+)
 VOCABULARY: dict[str, tuple[str, ...]] = {
     "file": ("cue", "set", "icon"),
     "set": ("site", "control", "baseline", *_KEYS),
@@ -15,17 +30,7 @@ VOCABULARY: dict[str, tuple[str, ...]] = {
 }
 CONTROLS = ("skin", "display", "current")
 
-_WAVE = "write its corners with warm, hold and cool; the shipped set wave-shapes shows how"
 NOT_YET: dict[str, str] = {
-    "sine": _WAVE,
-    "square": _WAVE,
-    "triangle": _WAVE,
-    "sawtooth": _WAVE,
-    "step": 'write a steep change, such as "cool by 6 °C over 100 ms"',
-    "pulse": "write three lines: cool by ... over 100 ms, hold for ..., return over 100 ms",
-    "play": "write the statements of the other icon out",
-    "change": 'write the direction: "cool by 6 °C at 3 °C/s" or "warm by ..."',
-    "total": 'fill up with a line such as "rest for 2 s"; the repr of an icon shows its length',
     "on": "a display with several elements cannot be addressed; write one icon for the one element",
 }
 
@@ -41,6 +46,12 @@ EXAMPLES: dict[str, str] = {
     "hold": 'for example: "hold for 4 s"',
     "rest": 'for example: "rest for 1 s"',
     "return": 'for example: "return at 3 °C/s"',
+    "change": 'for example: "change by -6 °C at 3 °C/s"',
+    "step": 'for example: "step by -6 °C", "step cool by 6 °C" or "step to 26 °C"',
+    "pulse": 'for example: "pulse by -3 °C for 500 ms" or "pulse cool by 3 °C for 500 ms"',
+    **dict.fromkeys(WAVES, 'for example: "sine by 3 °C every 4 s for 12 s"'),
+    "total": 'for example: "total 10 s" or "total at most 10 s"',
+    "play": 'for example: "play other-icon"',
 }
 
 WORD_ALIASES: dict[str, str] = {
@@ -62,6 +73,25 @@ WORD_ALIASES: dict[str, str] = {
     "tag": "tags",
     "version": "cue",
     "pattern": "icon",
+    "each": "every",
+    "sinus": "sine",
+    "ramp": "change",
+    "total-time": "total",
+    "duration": "total",
+}
+# What a wave or a step may have been meant to do first.
+STARTS: dict[str, str] = {
+    **dict.fromkeys(("warm", "hot", "warming", "heating", "up", "upwards", "high", "rising"), "warm"),
+    **dict.fromkeys(("cool", "cold", "cooling", "down", "downwards", "low", "falling"), "cool"),
+}
+BOUNDS: dict[str, str] = {
+    **dict.fromkeys(("most", "<", "<=", "≤", "under", "below", "max", "maximum", "up"), "at most"),
+    **dict.fromkeys(("least", ">", ">=", "≥", "over", "above", "min", "minimum"), "at least"),
+}
+NUMBER_WORDS: dict[str, str] = {
+    **{"one": "1", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6", "seven": "7", "eight": "8"},
+    **{"nine": "9", "ten": "10", "eleven": "11", "twelve": "12", "twenty": "20", "half": "0.5", "zero": "0"},
+    **{"a": "1", "an": "1", "once": "1", "twice": "2", "thrice": "3"},
 }
 _UNIT_ALIASES: dict[str, str] = {
     "c": "°C",
@@ -72,6 +102,7 @@ _UNIT_ALIASES: dict[str, str] = {
     "degree": "°C",
     "degrees": "°C",
     "kelvin": "K",
+    "kelvins": "K",
     "k": "K",
     "c/s": "°C/s",
     "°c/s": "°C/s",
@@ -143,4 +174,4 @@ def unit_kinds(unit: str) -> list[Kind]:
     >>> unit_kinds("K"), unit_kinds("ms")
     (['difference'], ['time'])
     """
-    return [kind for kind, units in UNITS.items() if unit in units]
+    return [kind for kind, units in UNITS.items() if unit in units and kind not in ("change", "count")]

@@ -1,0 +1,134 @@
+"""Diagnosis of numbers: units that are missing, unknown or of the wrong kind, and words where a number belongs."""
+
+from thermicon.icons.case import Case, at, short, swap
+from thermicon.icons.source import Edit, Finding
+from thermicon.icons.units import KIND_WORDS, UNITS, Kind
+from thermicon.icons.words import BOUNDS, EXAMPLES, NUMBER_WORDS, WAVES, nearest, nearest_unit, unit_kinds
+
+_UNIT_KINDS: dict[str, Kind] = {
+    "ABSOLUTE": "absolute",
+    "DIFFERENCE": "difference",
+    "RATE": "rate",
+    "TIME": "time",
+    "CURRENT": "current",
+    "CURRENT_RATE": "current_rate",
+}
+_CONNECTIVES = ("at", "over", "by", "to", "for", "every", "starting", "cut")
+_WANTED = {
+    **dict.fromkeys(("for", "over", "every", "total", "most", "least"), "time"),
+    **{"at": "rate", "by": "difference", "to": "absolute"},
+}
+_PERIODS = ("period", "periods", "cycle", "cycles", "times", "oscillations")
+
+
+def unit(case: Case) -> Finding | None:
+    """A number without a unit, or with one that does not fit."""
+    kinds = [kind for terminal, kind in _UNIT_KINDS.items() if terminal in case.accepts]
+    number, bad = case.before, case.bad
+    if not kinds or number is None:
+        return None
+    kind = kinds[0]
+    if case.where in ("icon", "repeat") and case.first == "return":
+        kind = "rate"
+    touching = bad.start == number.end
+    if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
+        cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
+        return at(number, "E102", "this number has no unit", EXAMPLES[kind], cure)
+    if bad.text in (case.names or ()):
+        help = "a parameter stands in the place of number and unit; there is no arithmetic"
+        return at(
+            bad, "E103", f'"{short(bad.text)}" is a parameter, not a unit', help, Edit(number.start, bad.start, "")
+        )
+    if bad.text in ("%", "%/s"):
+        return at(bad, "E103", f'"{bad.text}" is no unit of this language', EXAMPLES[kind])
+    others = [other for other in unit_kinds(bad.text) if other not in kinds]
+    if case.first == "to" and kind == "current" and "absolute" in others:
+        word = case.pieces[0]
+        heads = tuple(Edit(word.start, word.start, text) for text in ("cool ", "warm "))
+        help = 'temperatures take a direction: "cool to 26 °C at 3 °C/s"'
+        return Finding("E209", word.start, word.end, '"to" alone moves a current', help, heads)
+    if others:
+        return _wrong_kind(case, kind, others)
+    if kind == "time" and (found := _periods(case)):
+        return found
+    close = nearest_unit(bad.text, kind)
+    pad = "" if touching or bad.start > number.end else " "
+    cures = [swap(bad, pad + close)] if close else []
+    known = ", ".join(UNITS[kind])
+    return at(bad, "E103", f'"{short(bad.text)}" is not a unit', f"{KIND_WORDS[kind]} is in one of: {known}", *cures)
+
+
+def _wrong_kind(case: Case, kind: Kind, others: list[Kind]) -> Finding:
+    bad = case.bad
+    if kind == "absolute" and bad.text == "K":
+        kelvin = "K is for differences; an absolute temperature is in °C"
+        return at(bad, "E104", kelvin, EXAMPLES[kind], swap(bad, "°C"))
+    meaning = "a temperature" if "absolute" in others else KIND_WORDS[others[0]]
+    what = f'"{bad.text}" makes it {meaning}; {KIND_WORDS[kind]} is needed'
+    # "°C" where a rate belongs was most likely meant per second, and the other way round.
+    similar = [text for text in (bad.text + "/s", bad.text.split("/")[0]) if text in UNITS[kind]]
+    return at(bad, "E104", what, EXAMPLES[kind], *(swap(bad, text) for text in similar[:1]))
+
+
+def _periods(case: Case) -> Finding | None:
+    """Hertz for a period, or a count of periods for a time: what people say of waves."""
+    bad, number = case.bad, case.quantity(case.index - 1)
+    if case.first not in WAVES or number is None or not 0 < number[0] < 1e9:
+        return None
+    if bad.text.casefold() in ("hz", "hertz"):
+        cure = Edit(case.pieces[case.index - 1].start, bad.end, f"{1 / number[0]:.6g} s")
+        return at(bad, "E103", f'"{bad.text}" is not a unit', "a wave has a period, such as: every 4 s", cure)
+    every = case.find("every")
+    period = case.quantity(every + 1) if every is not None else None
+    if bad.text in _PERIODS and period is not None:
+        cure = Edit(case.pieces[case.index - 1].start, bad.end, f"{number[0] * period[0]:.6g} {period[1]}")
+        return at(bad, "E103", f'"{bad.text}" is not a unit', "a wave lasts a time, such as: for 12 s", cure)
+    return None
+
+
+def not_a_number(case: Case) -> Finding | None:
+    """Something else where a number, or a parameter, belongs."""
+    if "NUMBER" not in case.accepts:
+        return None
+    bad = case.bad
+    meant = NUMBER_WORDS.get(bad.text.casefold())
+    cures = [swap(bad, meant)] if meant else []
+    if case.names and bad.kind == "word" and case.where in ("icon", "repeat") and bad.text not in case.names:
+        close = nearest(bad.text, sorted(case.names)) or (min(case.names) if len(case.names) == 1 else None)
+        cures = [swap(bad, close), *cures] if close else cures
+        help = f"parameters of this icon are: {', '.join(sorted(case.names))}"
+        return at(bad, "E226", f'"{short(bad.text)}" is not a parameter', help, *cures)
+    if case.first == "repeat" and case.index == 1:
+        what = f'"{short(bad.text)}" is not a count' if bad.text else "how often is missing"
+        return at(bad, "E207", what, "a positive whole number, such as: repeat 3 { ... }", *cures)
+    if case.first == "total" and (found := _bound(case)):
+        return found
+    if bad.text in ("-", "−", "+") and case.next() in (case.names or ()):
+        help = "the values of a parameter carry the sign, such as: amount in [-3, 3] °C"
+        return at(bad, "E105", "a parameter has no sign before it", help)
+    if bad.kind == "number":
+        plain = bad.text.replace(",", ".").replace("_", "")
+        cures = [swap(bad, plain)] if plain.count(".") <= 1 else []
+        return at(bad, "E106", f'"{short(bad.text)}" is not a number', "numbers look like 6, 0.5 or 1e-3", *cures)
+    what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
+    if case.first == "cue":
+        cures = [swap(bad, "1")]
+    elif case.rest and case.rest[0].kind == "number" and not cures:
+        cures = [Edit(bad.start, case.rest[0].start, "")]
+    wanted = "current" if case.first == "to" and case.index == 1 else _WANTED.get(case.pieces[case.index - 1].text, "")
+    help = EXAMPLES.get(wanted, "numbers look like 6, 0.5 or 1e-3, each with its unit")
+    return at(bad, "E106", what, help, *cures)
+
+
+def _bound(case: Case) -> Finding | None:
+    """``total most 10 s``, ``total < 10 s``: a bound that is not said in the two words of the language."""
+    bad, last = case.bad, case.bad
+    text = bad.text
+    if bad.text in "<>" and bad.text and case.next() == "=":
+        text, last = text + "=", case.rest[0]
+    meant = BOUNDS.get(text.casefold())
+    if case.index != 1 or meant is None:
+        return None
+    what = f'"at" is missing before "{text}"' if text in ("most", "least") else f'"{text}" does not fit here'
+    help = 'write "total 10 s", "total at most 10 s" or "total at least 10 s"'
+    return Finding("E116", bad.start, last.end, what, help, (Edit(bad.start, last.end, meant),))

@@ -1,0 +1,288 @@
+"""A recording of temperature in a CSV file as an icon: its corner points, fitted within a tolerance, as statements."""
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Literal
+
+from thermicon.icons.errors import TITLES
+from thermicon.icons.faults import HIGHEST_C, LONGEST_S, LOWEST_C, Control, fault
+from thermicon.icons.frame import Frame, name_fault
+from thermicon.icons.icon import Icon
+from thermicon.icons.shapes import Step
+from thermicon.icons.statements import Change, Hold, Rest, Return, Statement
+from thermicon.icons.words import nearest
+
+TIME = "time_s"
+CONTROL_OF: dict[str, Control | None] = {
+    "temperature_C": None,
+    "target_C": None,
+    "setpoint_C": None,
+    "display_C": "display",
+    "skin_C": "skin",
+}
+"""Columns that a recording may have, and what the icon then controls; None where the column does not tell."""
+
+MOST_ROWS, MOST_MB = 1_000_000, 200
+_FEW = 8
+# Comments, and the line by which spreadsheets tell one another the separator.
+_ASIDE = ("#", "sep=")
+
+# Codes that errors.TITLES does not have yet.
+_TITLES = {
+    "E013": "not a recording",
+    "E014": "not a reading",
+    "E015": "times out of order",
+    "E016": "begins away from baseline",
+}
+
+
+def from_csv(
+    path: str | Path,
+    *,
+    name: str | None = None,
+    column: str | None = None,
+    control: Literal["display", "skin"] = "display",
+    tolerance_K: float = 0.05,
+    baseline_C: float | None = None,
+) -> Icon:
+    """Return the icon whose course stays within ``tolerance_K`` of every reading of a CSV file.
+
+    The file has a column ``time_s`` (s, from any start) and one of ``temperature_C``, ``target_C``, ``setpoint_C``,
+    ``display_C`` and ``skin_C`` (°C), or the one named ``column``; commas, semicolons or tabs between them. A column
+    ``display_C`` or ``skin_C`` says what the icon controls, otherwise ``control`` does. A time that stands twice is a
+    step. The icon has the file's name unless ``name`` is given; its baseline is where the recording begins, unless
+    ``baseline_C`` prescribes one within the tolerance of that.
+
+    Raises ValueError that says what is wrong with the file, and in which row.
+
+    >>> import tempfile, pathlib
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "dip.csv"
+    ...     _ = path.write_text("time_s,skin_C\\n0,32.01\\n2,26\\n4,26.02\\n6,25.98\\n8,32\\n")
+    ...     print(from_csv(path))
+    icon dip {
+      cool to 26 °C over 2 s
+      hold for 4 s
+      return over 2 s
+    }
+    """
+    file = str(path)
+    if control not in ("display", "skin"):
+        raise ValueError(f'control must be "display" or "skin" for a recorded temperature, not {control!r}')
+    if isinstance(tolerance_K, bool) or not isinstance(tolerance_K, int | float) or not 0 < tolerance_K < math.inf:
+        raise ValueError(
+            f"tolerance_K must be a positive temperature difference in K, such as 0.05, not {tolerance_K!r}"
+        )
+    if name is not None and (wrong := name_fault(name)):
+        raise ValueError(f"name: {wrong}")
+    if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):
+        raise ValueError(f"baseline_C: {found[1]}")
+    chosen, times, levels, rows = _read(Path(path), file, column)
+    _check_times(file, times, rows)
+    _check_levels(file, chosen, levels, rows)
+    if baseline_C is not None and abs(baseline_C - levels[0]) > tolerance_K:
+        what = f"the recording begins at {levels[0]:g} °C, baseline_C is {baseline_C:g} °C"
+        help = f"an icon begins at baseline, here within {tolerance_K:g} K; leave baseline_C out, or cut the file"
+        raise _wrong("E016", f"{file}:{rows[0]}", what, help)
+    from thermicon.icons.polyline import fit_corners
+
+    try:
+        corners = fit_corners(_from_zero(times), levels, tolerance_K, baseline_C)
+    except ValueError as problem:
+        raise _wrong("E220", file, str(problem), "give a larger tolerance_K, or smooth or cut the recording") from None
+    frame = Frame(CONTROL_OF.get(chosen) or control, corners[1][0])
+    return Icon(name or _name(Path(path)), tuple(_statements(*corners)), frame)
+
+
+def _from_zero(times: list[float]) -> list[float]:
+    """Return times from 0 s, without the stray digits that differences of large times have."""
+    digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
+    return [round(time - times[0], digits) for time in times]
+
+
+def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Statement]:
+    baseline = levels[0]
+    for (start, before), (end, after) in pairwise(zip(times, levels, strict=True)):
+        duration = round(end - start, 9)
+        if duration == 0:
+            yield _at_once(before, after)
+        elif before == after:
+            yield Rest(duration) if after == baseline else Hold(duration)
+        elif after == baseline:
+            yield Return(duration_s=duration)
+        else:
+            yield Change("warm" if after > before else "cool", to_C=after, duration_s=duration)
+
+
+def _at_once(before: float, after: float) -> Statement:
+    """What a step of the recording becomes: two readings at one time. Here, and only here, that is decided."""
+    return Step("warm" if after > before else "cool", to_C=after)
+
+
+def _read(path: Path, file: str, column: str | None) -> tuple[str, list[float], list[float], list[int]]:
+    """Return the column's name, times (s), levels (°C) and the rows in which these stand in the file."""
+    text = _text(path, file)
+    lines = csv.reader(io.StringIO(text, newline=""), delimiter=(mark := _separator(text)))
+    header: list[str] = []
+    times, levels, rows = list[float](), list[float](), list[int]()
+    try:
+        for cells in lines:
+            if not any(cell.strip() for cell in cells) or cells[0].startswith(_ASIDE):
+                continue
+            place = f"{file}:{lines.line_num}"
+            if not header:
+                header = [cell.strip() for cell in cells]
+                chosen = _column(place, header, column)
+                at = header.index(TIME), header.index(chosen)
+                continue
+            if len(cells) > len(header) and any(cell.strip() for cell in cells[len(header) :]):
+                what = f"{len(cells)} cells, where the first line names {len(header)}"
+                help = "write decimal points, not commas; or put semicolons between the cells"
+                raise _wrong("E013", place, what, help)
+            first = not rows
+            times.append(_number(place, TIME, cells, at[0], mark, first))
+            levels.append(_number(place, chosen, cells, at[1], mark, first))
+            rows.append(lines.line_num)
+            if len(rows) > MOST_ROWS:
+                raise _wrong("E004", file, f"more than {MOST_ROWS:,} rows", "keep every tenth row, or cut the file")
+    except csv.Error as problem:
+        raise _wrong(
+            "E013", f"{file}:{lines.line_num}", f"this row cannot be read ({problem})", "save it as CSV"
+        ) from None
+    if not header:
+        raise _wrong("E013", file, "no line names the columns", f"the first line is such as: {TIME},temperature_C")
+    if len(rows) < 2:
+        what = f"{len(rows) or 'no'} row{'s' * (not rows)} below the names of the columns"
+        raise _wrong("E013", file, what, "at least two are needed, a start and an end")
+    return chosen, times, levels, rows
+
+
+def _text(path: Path, file: str) -> str:
+    try:
+        folder = path.is_dir()
+        size = 0 if folder else path.stat().st_size
+        data = b"" if folder or size > MOST_MB * 1e6 else path.read_bytes()
+    except FileNotFoundError:
+        raise _wrong("E001", file, "no file has this name", "check its folder and its spelling") from None
+    except (OSError, ValueError) as problem:
+        said = getattr(problem, "strerror", None) or problem
+        raise _wrong("E003", file, f"the system says: {said}", "check that you may read it") from None
+    if folder:
+        raise _wrong("E002", file, "a recording is one file", "name a .csv file in it")
+    if size > MOST_MB * 1e6:
+        raise _wrong("E004", file, f"{size / 1e6:,.0f} MB", f"at most {MOST_MB} MB are read; keep every tenth row")
+    if b"\0" in data:
+        what = f"a zero byte at byte offset {data.index(0)}"
+        raise _wrong("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        what = f"byte 0x{data[problem.start]:02X} is not UTF-8"
+        raise _wrong("E007", f"{file}:{line}", what, "save the file as CSV in UTF-8") from None
+    if not text.strip():
+        raise _wrong("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
+    return text
+
+
+def _separator(text: str) -> str:
+    head = next((line for line in io.StringIO(text) if line.strip() and not line.startswith(_ASIDE)), "")
+    marks = (",", ";", "\t")
+    return next((mark for mark in marks if TIME in [cell.strip(' "\r\n') for cell in head.split(mark)]), ",")
+
+
+def _column(place: str, header: list[str], column: str | None) -> str:
+    """Return the column with the temperatures."""
+    found = f"the columns are {', '.join(header[:_FEW])}{', …' if len(header) > _FEW else ''}"
+    if TIME not in header:
+        if all(re.fullmatch(r"[-+\d.,;eE\s]+", cell) for cell in header):
+            what, help = "this line holds numbers, not the names of columns", f"put {TIME},temperature_C above it"
+            raise _wrong("E013", place, what, help)
+        close = nearest(TIME, header) or next((cell for cell in header if cell.lower().startswith("t")), None)
+        hint = f"is it {close!r}? Its name must say that it is in seconds: " if close else "the time in s has the name "
+        raise _wrong("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
+    known = [cell for cell in header if cell in CONTROL_OF]
+    if column is None and len(known) > 1:
+        what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
+        raise _wrong("E013", place, what, f'say which: column="{known[0]}"')
+    if column is None and not known:
+        others = [cell for cell in header if cell != TIME]
+        meant = next((pair for pair in ((cell, _meant(cell)) for cell in others) if pair[1]), None)
+        hint = f"rename {meant[0]!r} to {meant[1]} if it is in °C, or say" if meant else "say"
+        what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
+        raise _wrong("E013", place, what, f'{hint} which is meant: column="{(others or ["name"])[0]}"')
+    chosen = column or known[0]
+    if chosen not in header or chosen == TIME:
+        close = nearest(chosen, [cell for cell in header if cell != TIME])
+        help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
+        raise _wrong("E013", place, f"no temperature is called {chosen!r}; {found}", help)
+    for cell in (TIME, chosen):
+        if header.count(cell) > 1:
+            raise _wrong("E013", place, f"the column {cell} is there twice", "rename or remove one of them")
+    return chosen
+
+
+def _meant(cell: str) -> str | None:
+    return "temperature_C" if cell.lower().startswith(("temp", "t_")) else nearest(cell, CONTROL_OF)
+
+
+def _number(place: str, column: str, cells: list[str], at: int, mark: str, first: bool) -> float:
+    cell = cells[at].strip() if at < len(cells) else ""
+    plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
+    try:
+        value = math.nan if "_" in plain else float(plain)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        what = f"{column} is {cell[:30]!r}, not a finite number" if cell else f"{column} is empty"
+        help = "fill it in, or remove the row; what lies between readings counts as straight"
+        if first and cell:
+            help = "units belong in the names of the columns; remove this row"
+        raise _wrong("E014", place, what, help)
+    return value
+
+
+def _check_times(file: str, times: list[float], rows: list[int]) -> None:
+    for n, (before, time) in enumerate(pairwise(times), start=1):
+        if time < before:
+            what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
+            raise _wrong("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording a file")
+        if n > 1 and time == times[n - 2]:
+            help = "two readings at one time are a step; write more decimals of the time"
+            raise _wrong("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
+    length = times[-1] - times[0]
+    if length == 0:
+        raise _wrong("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
+    if length > LONGEST_S:
+        help = f"an icon lasts at most {LONGEST_S:g} s; divide by 1000 if these are milliseconds, or cut the file"
+        raise _wrong("E221", file, f"{TIME} runs over {length:,.6g} s", help)
+
+
+def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) -> None:
+    out = next((n for n, level in enumerate(levels) if not LOWEST_C <= level <= HIGHEST_C), None)
+    if out is None:
+        return
+    middle = sorted(levels)[len(levels) // 2]
+    help = "correct or remove the reading, if it is a fault of the sensor"
+    if 200 < middle < 400:
+        help = "these look like kelvin: convert the column to °C"
+    elif HIGHEST_C < middle < 150:
+        help = "these look like °F: convert the column to °C"
+    elif not LOWEST_C <= middle <= HIGHEST_C:
+        help = "check the unit: the column must be in °C"
+    what = f"{column} is {levels[out]:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
+    raise _wrong("E219", f"{file}:{rows[out]}", what, help)
+
+
+def _name(path: Path) -> str:
+    name = re.sub(r"[\W_]+", "-", path.stem).strip("-")
+    return name if not name_fault(name) else f"recorded-{name}".rstrip("-")
+
+
+def _wrong(code: str, place: str, what: str, help: str) -> ValueError:
+    return ValueError(f"{place}  {code} {TITLES.get(code) or _TITLES[code]}\n  {what}\n  {help}")
