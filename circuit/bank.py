@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from thermicon.circuit.cores import cores
 from thermicon.circuit.network import PROBES, Network, network_of
 from thermicon.circuit.rig import Rig
 from thermicon.circuit.skin import Array
@@ -189,9 +189,9 @@ def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
 
     count = -(-lanes // LANES)
     blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)
-    cores = min(os.cpu_count() or 1, count)
-    if cores == 1:
+    used = min(cores(), count)
+    if used == 1:
         work(blocks)
         return
-    with ThreadPoolExecutor(cores) as pool:
-        list(pool.map(work, np.array_split(blocks, cores)))
+    with ThreadPoolExecutor(used) as pool:
+        list(pool.map(work, np.array_split(blocks, used)))

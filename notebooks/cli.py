@@ -14,11 +14,24 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks import handing, whatif
+from thermicon.notebooks import handing, searching, validation, whatif
+from thermicon.notebooks.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
-from thermicon.notebooks.options import Changes, CueFiles, Files, IconName, RigName, check_tail
+from thermicon.notebooks.options import (
+    Changes,
+    Cluster,
+    CueFiles,
+    Files,
+    IconName,
+    Keep,
+    ReportPage,
+    RigName,
+    Workers,
+    check_tail,
+)
 
 TRACKING = ("replay", "display", "ideal")
+RANKED_BY = ("model", "rules")
 
 app = typer.Typer(
     name="thermicon",
@@ -146,6 +159,14 @@ def rank_command(
     files: Files,
     people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people.")] = 200,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people.")] = 0,
+    by: Annotated[
+        str,
+        typer.Option("--by", metavar="|".join(RANKED_BY), help="Score by the model, or by rules of thumb alone."),
+    ] = "model",
+    parameters: Annotated[
+        int,
+        typer.Option("--parameters", metavar="N", help="Draws for the interval of the model's parameters; 0: none."),
+    ] = 128,
     tracking: Annotated[
         str | None,
         typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
@@ -156,38 +177,84 @@ def rank_command(
     trials: Annotated[
         int, typer.Option("--trials", metavar="N", help="Trials in all of the experiment foretold.")
     ] = 48,
+    choose: ChooseCount = None,
+    objective: ObjectiveName = None,
+    must: Must = None,
+    most_time: MostTime = None,
+    most_energy: MostEnergy = None,
+    edits: Annotated[
+        bool,
+        typer.Option("--edits", help="Find the cheapest edit for every pair that is not apart, not only the worst."),
+    ] = False,
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
     figure: Annotated[
         Path | None, typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures into DIR.")
     ] = None,
+    report: ReportPage = None,
+    workers: Workers = None,
+    cluster: Cluster = None,
+    keep: Keep = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
     """Predict what people detect, how soon, what they confuse, and how much information the set carries.
 
-    Several files are joined into one set.
+    Several files are joined into one set. With --by rules nothing but rules of thumb counts, and the model only says
+    where it disagrees.
     """
     check_changes(changes or [])
-    bounds = (("--people", people, 1, 100_000), ("--seed", seed, 0, 2**63 - 1), ("--trials", trials, 1, 1_000_000))
+    bounds = (
+        ("--people", people, 1, 100_000),
+        ("--seed", seed, 0, 2**63 - 1),
+        ("--trials", trials, 1, 1_000_000),
+        ("--parameters", parameters, 0, 10_000),
+    )
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
+    if parameters == 1:
+        raise usage("1 draw has no interval; ask for 2 or more, or 0 for none", "--parameters")
+    if by not in RANKED_BY:
+        raise usage(f"{by!r} is none of {', '.join(RANKED_BY)}", "--by")
     if tracking is not None and tracking not in TRACKING:
         raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+    if workers is not None and cluster is not None:
+        raise usage("is for this machine; a cluster has the workers that it has", "--workers")
+    if workers is not None and not 1 <= workers <= 1024:
+        raise usage(f"{workers} is outside 1 to 1024", "--workers")
+    picked = chosen_as(choose, objective, must, most_time, most_energy)
+    if picked is not None and by == "rules":
+        raise usage("icons are chosen by the model; leave out --by rules", "--choose")
     from thermicon.notebooks.ranking import Request, rank_files
 
-    request = Request(people=people, seed=seed, tracking=tracking, norm=norm, trials=trials)
-    rank_files(files, load_rig(rig, changes or []), request, json, figure)
+    request = Request(
+        people=people,
+        seed=seed,
+        tracking=tracking,
+        norm=norm,
+        trials=trials,
+        by=by,
+        parameters=parameters,
+        choosing=picked,
+        edits="all" if edits else "worst",
+        workers=workers,
+        cluster=cluster,
+        keep=keep,
+    )
+    rank_files(files, load_rig(rig, changes or []), request, json, figure, report)
 
 
 app.command("sweep")(whatif.sweep_command)
 app.command("compare")(whatif.compare_command)
+app.command("search")(searching.search_command)
 app.command("netlist")(whatif.netlist_command)
 app.command("convert")(handing.convert_command)
 app.command("cite")(handing.cite_command)
 app.command("explain")(handing.explain_command)
+app.command("sensitivity")(whatif.sensitivity_command)
+app.command("validate")(validation.validate_command)
 
 
 @app.command("rigs")

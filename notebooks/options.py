@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -18,6 +19,26 @@ RigName = Annotated[
 ]
 Changes = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be repeated.")
+]
+ReportPage = Annotated[
+    Path | None,
+    typer.Option("--report", metavar="OUT.html", readable=False, help="Write one page with everything, to mail."),
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Cores to work on.  [default: all of this machine]")
+]
+Cluster = Annotated[
+    str | None,
+    typer.Option("--cluster", metavar="ADDRESS", help="Work on a dask cluster instead: its scheduler's address."),
+]
+Keep = Annotated[
+    Path | None,
+    typer.Option(
+        "--keep",
+        metavar="DIR",
+        readable=False,
+        help="Keep finished parts in DIR.  [default: in the user's cache, until a long run is done]",
+    ),
 ]
 Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Time after the last corner.")]
 

@@ -102,9 +102,10 @@ def single_map(ranking: Ranking, kind: Literal["distance", "confusion"]) -> Figu
 def _maps(ranking: Ranking, kinds: tuple[Literal["distance", "confusion"], ...]) -> Figure:
     from matplotlib.figure import Figure
 
-    from thermicon.perception import draw
+    from thermicon.perception import draw, draw_heat
 
-    side = max(4.2, 1.8 + 0.45 * len(ranking.labels))
+    longest = max(map(len, map(draw_heat.short, ranking.labels)))
+    side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
     figure = Figure(figsize=(len(kinds) * (side + 0.6), side), layout="constrained")
     for kind, ax in zip(kinds, figure.subplots(1, len(kinds), squeeze=False)[0], strict=True):
         {"distance": draw.plot_distance, "confusion": draw.plot_confusion}[kind](ranking, ax=ax)

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from thermicon.notebooks.byrules import rules_caveat, rules_lines, rules_table
+from thermicon.notebooks.cache import kept
+from thermicon.notebooks.choices import choice_lines
 from thermicon.notebooks.cues import MOST_ICONS, read_set, warn_of_frames
 from thermicon.notebooks.door import note, usage
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
@@ -21,6 +24,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
+    from thermicon.perception.request import Choosing
 
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 MOST_DISAGREEMENTS = 5
@@ -28,16 +32,35 @@ MOST_DISAGREEMENTS = 5
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What ``rank`` was asked for: people, seed, tracking (None: by the icons' control), norm, trials."""
+    """What ``rank`` was asked for: people, seed, tracking (None: by the icons' control), norm, trials, by what.
+
+    ``parameters`` observers are drawn for the intervals that the observer's parameters leave open; 0 draws none.
+    ``choosing`` asks for the best few, ``edits`` for the cheapest edit of the ``worst`` pair or of ``all`` not apart.
+    ``workers`` are cores, ``cluster`` is the address of a scheduler to use instead, ``keep`` a folder of done parts.
+    """
 
     people: int = 200
     seed: int = 0
     tracking: str | None = None
     norm: str = "max"
     trials: int = 48
+    by: str = "model"
+    parameters: int = 128
+    choosing: Choosing | None = None
+    edits: str = "worst"
+    workers: int | None = None
+    cluster: str | None = None
+    keep: Path | None = None
 
 
-def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path | None, figures: Path | None) -> None:
+def rank_files(
+    files: Sequence[str],
+    rig: Rig,
+    request: Request,
+    json_out: Path | None,
+    figures: Path | None,
+    report_out: Path | None = None,
+) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, the rest where it was asked for."""
     from thermicon.perception import NORMS, rank
 
@@ -45,6 +68,10 @@ def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path 
         raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
     if json_out is not None:
         check_output(json_out, (), "JSON")
+    if report_out is not None:
+        check_output(report_out, (".html", ".htm"), "a report")
+        if report_out == STDOUT:
+            raise usage("- is no file; give the name of a page, such as report.html", "--report")
     if figures is not None:
         if not figures.is_dir() and (figures.exists() or figures.suffix.lower() in PICTURES):
             hint = figures.with_suffix("") if figures.suffix else "figures"
@@ -55,7 +82,8 @@ def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path 
         what = f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} are ranked at once"
         raise usage(f"{what}; narrow a family, or name its best members in a set of their own", "FILE")
     warn_of_frames(files, icons, rig)
-    with progress_bar("ranking") as progress:
+    what = f"{icons}\0{rig.document}\0{request}"
+    with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
         ranking = rank(
             icons,
             rig,
@@ -64,6 +92,13 @@ def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path 
             trials=request.trials,
             tracking=request.tracking,
             norm=request.norm,
+            by=request.by,
+            parameters=request.parameters,
+            choosing=request.choosing,
+            edits=request.edits if request.by == "model" else "none",
+            workers=request.workers,
+            cluster=request.cluster,
+            keep=keep,
             progress=progress,
         )
     text = ranking.to_json()
@@ -72,11 +107,22 @@ def rank_files(files: Sequence[str], rig: Rig, request: Request, json_out: Path 
             draft.write_text(text + "\n", encoding="utf-8")
         note(f"wrote {json_out}")
     if figures is not None:
+        from thermicon.notebooks.setfigures import write_figures
+
         write_figures(ranking, icons, rig, figures)
+    near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
+    if report_out is not None:
+        from thermicon.notebooks.asked import command_text
+        from thermicon.notebooks.report import report
+
+        made = report(ranking, icons, rig, command_text(files, rig, request), near)
+        with complete_or_absent(report_out) as draft:
+            draft.write_text(made, encoding="utf-8", newline="\n")
+        note(f"wrote {report_out}")
     if json_out == STDOUT:
         typer.echo(text)
     else:
-        show_ranking(json.loads(text), [row["icon"] for row in ranking.rows()], icons.title, cures(ranking, icons, rig))
+        show_ranking(json.loads(text), [row["icon"] for row in ranking.rows()], icons.title, near)
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
@@ -90,6 +136,14 @@ def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
 
 def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures: Mapping[str, str]) -> None:
     """Print what ``rank --json`` holds: a row an icon in this order, the set, the worst pair with its reasons."""
+    icons = sorted(result["icons"], key=lambda icon: order.index(icon["name"]))
+    troubles = [*trouble_lines(result["icons"], cures), *outside_lines(icons)]
+    heading = [title, ""] if title else []
+    space = [""] if troubles else []
+    if result["by"] == "rules":
+        told = [*rules_lines(result), *_told(result)]
+        show(*heading, rules_table(icons, result["pairs"]), "", *troubles, *space, *told, "", rules_caveat(result))
+        return
     made = table(
         "icon",
         "detected",
@@ -99,18 +153,24 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
         "most confused with",
         numbers=("detected", "onset", "correct"),
     )
-    for place, icon in sorted(enumerate(result["icons"]), key=lambda item: order.index(item[1]["name"])):
+    labels = result["confusion"]["labels"]
+    for icon in icons:
         made.add_row(
             icon["name"],
             percent(icon["detected_probability"]),
             seconds(icon["onset_s"]),
             icon["channel"] or "–",
             percent(icon["percent_correct"]),
-            _rival(result["confusion"], place),
+            rival(result["confusion"], labels.index(icon["name"])),
         )
-    troubles = trouble_lines(result["icons"], cures)
-    heading = [title, ""] if title else []
-    show(*heading, made, "", *troubles, *([""] if troubles else []), *set_lines(result), "", caveat(result))
+    best = ["", *choice_lines(result["chosen"])] if result["chosen"] else []
+    show(*heading, made, "", *troubles, *space, *set_lines(result), *best, *_told(result), "", caveat(result))
+
+
+def _told(result: dict[str, Any]) -> list[str]:
+    """What rules and model disagree on, with a line of space before it; nothing where they agree."""
+    found = result["set"]["rules_disagree"]
+    return ["", *disagreement_lines(found)] if found else []
 
 
 def caveat(result: dict[str, Any]) -> str:
@@ -142,7 +202,8 @@ def trouble_lines(icons: Sequence[dict[str, Any]], cures: Mapping[str, str]) -> 
     return lines
 
 
-def _rival(confusion: dict[str, Any], place: int) -> str:
+def rival(confusion: dict[str, Any], place: int) -> str:
+    """Return the icon that the one at this place is called most often by mistake, with the share."""
     row = confusion["probability"][place]
     others = [
         (share, label) for k, (share, label) in enumerate(zip(row, confusion["labels"], strict=True)) if k != place
@@ -155,22 +216,46 @@ def _rival(confusion: dict[str, Any], place: int) -> str:
 
 def set_lines(result: dict[str, Any]) -> list[str]:
     """Return the sentences about the whole set: what it scores, and which pair to mend first and why."""
+    lines = number_lines(result)
+    return [*lines, "", *worst_lines(result)] if result["set"]["worst_pair"] else lines
+
+
+def number_lines(result: dict[str, Any]) -> list[str]:
+    """Return what the whole set scores: proportion correct and information, with their intervals."""
     whole = result["set"]
     (low, high), bits = whole["percent_correct_interval"], whole["information_bits"]
     lines = [f"Set: {percent(whole['percent_correct'])} correct" + _range(result, percent(low), percent(high))]
+    if whole["percent_correct_parameter_interval"]:
+        low, high = whole["percent_correct_parameter_interval"]
+        lines.append(f"     {percent(low)} to {percent(high)} over the range of the model's parameters")
     if bits is not None:
         least, most = whole["information_bits_interval"]
         trials = "1 trial" if whole["trials"] == 1 else f"{whole['trials']} trials"
         lines += [
             f"     {bits:.2f} bits" + _range(result, f"{least:.2f}", f"{most:.2f}"),
+            *_bits_range(whole["information_bits_parameter_interval"]),
             f"     {whole['bits_per_s']:.2f} bits/s",
             f"     {whole['information_bits_plugin']:.2f} bits is what an experiment of {trials} would report",
         ]
-    if whole["worst_pair"]:
-        lines += ["", *_worst(result, whole["worst_pair"])]
-    if whole["rules_disagree"]:
-        lines += ["", *_disagreements(whole["rules_disagree"])]
     return lines
+
+
+def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
+    """Return one line for each way in which icons lie outside the data, with the icons that it holds for."""
+    held: dict[str, list[str]] = {}
+    for icon in icons:
+        for said in icon["outside_data"]:
+            held.setdefault(said, []).append(icon["name"])
+    every = len(icons) > 1
+    return [
+        f"Outside the data: {'all icons' if every and len(names) == len(icons) else ', '.join(names)}: {said}"
+        for said, names in held.items()
+    ]
+
+
+def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:
+    if interval is not None:
+        yield f"     {interval[0]:.2f} to {interval[1]:.2f} over the range of the model's parameters"
 
 
 def _range(result: dict[str, Any], low: str, high: str) -> str:
@@ -178,7 +263,7 @@ def _range(result: dict[str, Any], low: str, high: str) -> str:
     return "" if result["people"] == 1 else f"; for 95 % of people {low} to {high}"
 
 
-def _disagreements(found: Sequence[dict[str, Any]]) -> Iterator[str]:
+def disagreement_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     """Say where rules and model part, and why they may: the first few, pairs and icons each with its reason."""
     pairs = [each for each in found if "a" in each]
     icons = [each for each in found if "a" not in each]
@@ -193,26 +278,25 @@ def _disagreements(found: Sequence[dict[str, Any]]) -> Iterator[str]:
             yield f"  - and {len(some) - MOST_DISAGREEMENTS} more, all of them in --json"
 
 
-def _worst(result: dict[str, Any], names: Sequence[str]) -> Iterator[str]:
+def worst_lines(result: dict[str, Any]) -> Iterator[str]:
+    """Yield which pair is confused most often, why, and what would part it."""
     for pair in result["pairs"]:
-        if {pair["a"], pair["b"]} == set(names):
+        if [pair["a"], pair["b"]] == result["set"]["worst_pair"]:
             confused = percent(pair["confused_probability"])
             head = f"Worst pair: {pair['a']} and {pair['b']}"
             yield f"{head}, confused in {confused} of trials (d′ {number(pair['d_prime'])})"
             yield from (f"  - {reason}" for reason in pair["why"])
+            yield from edit_lines(pair)
 
 
-def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, folder: Path) -> None:
-    """Write distance.png, confusion.png and an overview for every icon into ``folder``, which is made if missing."""
-    from thermicon.circuit import simulate
-    from thermicon.notebooks.overview import single_map
-    from thermicon.notebooks.simulate import FELT_TAIL_S, draw_overview
-
-    folder.mkdir(exist_ok=True)
-    for kind in ("distance", "confusion"):
-        with complete_or_absent(folder / f"{kind}.png") as draft:
-            single_map(ranking, kind).savefig(draft, dpi=130)
-    for icon in icons:
-        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{icon.name}.png", rig.changes)
-    count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
-    note(f"wrote distance.png, confusion.png and {count} into {folder}")
+def edit_lines(pair: dict[str, Any]) -> Iterator[str]:
+    """Say which edit parts a pair most cheaply, or why none does; nothing where it is apart already."""
+    edit = pair["edit"]
+    if edit is not None:
+        added = f" ({number(edit['added_s'])} s longer)" if edit["added_s"] >= 0.05 else ""
+        yield (
+            f"  - cheapest edit: in {edit['icon']}, {edit['old']} → {edit['new']}{added}; "
+            f"then d′ {number(edit['d_prime'])}"
+        )
+    elif pair["no_edit"] and "already" not in pair["no_edit"]:
+        yield f"  - {pair['no_edit']}"

@@ -1,4 +1,4 @@
-"""The commands that ask what if: ``netlist``, ``sweep`` and ``compare``. They are put on the program in ``cli``."""
+"""The commands that ask what if: ``netlist``, ``sweep``, ``compare``, ``sensitivity``; ``cli`` puts them in place."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks.door import check_changes, load_rig
+from thermicon.notebooks.door import check_changes, load_rig, usage
 from thermicon.notebooks.options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
+METHODS = ("sobol", "morris")
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
@@ -85,3 +86,42 @@ def compare_command(
     from thermicon.notebooks.sides import Request
 
     compare(first, second, Request(file, icon, rig, tuple(changes or ())), figure)
+
+
+def sensitivity_command(
+    file: OneFile,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people of every run.")] = 24,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
+    method: Annotated[
+        str,
+        typer.Option("--method", metavar="|".join(METHODS), help="Shares of variance, or effects by SALib."),
+    ] = "sobol",
+    samples: Annotated[
+        int | None,
+        typer.Option(
+            "--samples", metavar="N", help="Base samples, a power of 2, or trajectories.  [default: 64; 16 for morris]"
+        ),
+    ] = None,
+    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="OUT.csv", readable=False, help="The table, or - for stdout."),
+    ] = None,
+    figure: Figure = None,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Tell which uncertain parameters of model, contact and skin move the prediction most: what to measure first."""
+    check_changes(changes or [])
+    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples or 2, 2, 65_536))
+    for option, value, least, most in bounds:
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+    if method not in METHODS:
+        raise usage(f"{method!r} is none of {', '.join(METHODS)}", "--method")
+    if samples is not None and method == "sobol" and samples & (samples - 1):
+        raise usage(f"{samples} is not a power of 2, which sobol needs, such as 64", "--samples")
+    from thermicon.notebooks.sensitivity import Request, sensitivity_file
+
+    request = Request(people=people, seed=seed, method=method, samples=samples, norm=norm)
+    sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)

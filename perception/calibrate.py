@@ -1,6 +1,7 @@
 """Set the observer's parameters, on the records marked `calibrate` and on nothing else.
 
-Records marked `assumed` enter with their intervals; records marked `predict` are never read.
+Records marked `assumed` enter with their intervals; records marked `predict` are never read. The
+constants of the second receptor model are those published for it, taken over as `reference`.
 `python -m thermicon.perception.calibrate` writes the shipped file again.
 """
 
@@ -8,42 +9,54 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from thermicon.circuit.records import Record, RecordError, Table, dump_records
+from thermicon.perception.channels import CHANNELS, NORMS
 from thermicon.perception.detection import criterion_of
-from thermicon.perception.distance import differences, memory_from_task
-from thermicon.perception.observer import CHANNELS, DATA, NORMS, Channel, Norm, Observer, load_thresholds
-from thermicon.perception.percept import perceive_many, uniform_clock
-from thermicon.perception.receptors import Array, receptor_drive
+from thermicon.perception.fits import SITE, neutral_flux, threshold_drive, with_unit_drives, wrist_factor
+from thermicon.perception.observer import DATA, Observer, load_thresholds
+from thermicon.perception.ratetask import gain_strength, memory_noise, memory_record, with_gain
 from thermicon.perception.sensation import amplitude_jnd
+from thermicon.perception.variants import VARIANTS, Model, Variable, drive_unit, source_of
 
-RIG = "thenar"
-SITE = "thenar"
-BASELINE_C = 32.0
 DIGITS = 4
-TAIL_S = 10.0
+MODEL_CONSTANTS = ("static gain", "dynamic gain", "window of counted impulses", "start of static discharge")
 COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.calibrate`.
 Set on the records marked `calibrate` in thresholds.toml; `use = "assumed"` has no data behind it.
 low and high are what the data or the assumption allow; nothing here was set on a predicted record.
+Numbers `from heat flow` and `from impulses` are those of the other variants, set by the same steps.
 Written by a program: change thresholds.toml and run it again."""
 
 
 def calibrate(thresholds: Table | None = None) -> Table:
-    """Records of the calibrated observer, from the shipped table or another one like it."""
-    known = _usable(load_thresholds() if thresholds is None else thresholds)
-    fixed = _taken_over(known)
-    slope = _slope(known)
-    criterion = _criterion(known)
-    known_so_far = (*fixed, slope, criterion)
-    unset = [_memory(norm, 0.0, 0.0, 0.0) for norm in NORMS]
-    draft = Observer.from_table(Table("draft", (*known_so_far, *_unit_drives(), *unset)))
-    drives = [_threshold_drive(known, channel, draft) for channel in CHANNELS]
-    memory = _memory_noise(known, Observer.from_table(Table("draft", (*known_so_far, *drives, *unset))))
-    return Table("observer.toml", tuple(_rounded(r) for r in (*known_so_far, *drives, *memory)))
+    """Records of the calibrated observer and its variants, from the shipped table or another one like it."""
+    table = load_thresholds() if thresholds is None else thresholds
+    known = _usable(table)
+    shared = (
+        *_taken_over(known),
+        *_model_constants(table),
+        *(neutral_flux(known, channel) for channel in CHANNELS),
+        _slope(known),
+        _criterion(known),
+    )
+    own = [record for variant in VARIANTS for record in _variant(known, shared, *variant)]
+    return Table("observer.toml", tuple(_rounded(r) for r in (*shared, *own)))
+
+
+def _variant(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> list[Record]:
+    """Records that hang on what the receptors go by and how, in the order in which each needs the others."""
+    draft = Observer.from_table(Table("draft", (*shared, *_unset(variable, model))), variable=variable, model=model)
+    strength = [gain_strength(known, draft)] if model == "adapting" else []
+    person = with_unit_drives(known, with_gain(draft, strength[0].central) if strength else draft)
+    return [
+        *strength,
+        *(threshold_drive(known, channel, person) for channel in CHANNELS),
+        *(wrist_factor(known, channel, person) for channel in CHANNELS),
+        *memory_noise(known, person),
+    ]
 
 
 def to_toml(observer: Table) -> str:
@@ -53,6 +66,12 @@ def to_toml(observer: Table) -> str:
 
 def _usable(table: Table) -> Table:
     return Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
+
+
+def _model_constants(table: Table) -> tuple[Record, ...]:
+    """Constants of the Ring & de Dear type, as published for it."""
+    published = Table(table.name, tuple(r for r in table if r.use == "reference"))
+    return tuple(record for quantity in MODEL_CONSTANTS for record in published.select(quantity))
 
 
 def _taken_over(known: Table) -> tuple[Record, ...]:
@@ -66,6 +85,8 @@ def _taken_over(known: Table) -> tuple[Record, ...]:
           for c in CHANNELS),
         known.one(f"{fast} time constant"),
         known.one(f"{fast} weight"),
+        known.one("gain control time constant"),
+        known.one("gain control scale"),
         replace(zone, quantity="neutral zone", low=low, high=high),
         *(_area_exponent(known.one("area exponent at threshold", channel=c)) for c in CHANNELS),
         replace(known.one("thermode area of the forced-choice thresholds"), quantity="reference area"),
@@ -136,113 +157,15 @@ def _slope(known: Table) -> Record:
     )
 
 
-def _threshold_drive(known: Table, channel: Channel, observer: Observer) -> Record:
-    """Peak receptor drive of a fast step as large as the forced-choice threshold."""
-    record = known.one("detection threshold", channel=channel, site=SITE)
-    rate = known.one("rate of the threshold step")
-    depth = known.one("receptor depth", channel=channel)
-
-    def drive(rate_K_per_s: float) -> float:
-        dt, traces = _receptors([_ramp(channel, record.central, rate_K_per_s)])
-        return float(receptor_drive(traces[0][channel], dt, channel, observer).max())
-
-    ends = [drive(r) for r in rate.interval]
-    value = drive(rate.central)
-    return Record(
-        quantity="drive of a threshold step",
-        unit="K",
-        source=f"calibrated on: {record.source}; depth {depth.central:g} mm: {depth.source}",
-        value=value,
-        low=min(*ends, value),
-        high=max(*ends, value),
-        channel=channel,
-        site=SITE,
-        method=f"skin-surface ramp of {record.central:g} K at {rate.central:g} K/s, held, on the {RIG} rig",
-        conditions=f"interval: rate of {rate.interval[0]:g} to {rate.interval[1]:g} K/s (assumed)",
-        confidence=record.confidence,
-        use="calibrate",
-    )
-
-
-def _memory_noise(known: Table, observer: Observer) -> list[Record]:
-    """Memory noise at which the rate task comes out as published, for each norm of distance."""
-    fraction = known.one("rate Weber fraction")
-    rates = known.one("rate of the rate task").interval
-    spans = known.one("span of the rate task").interval
-    criteria = known.one("criterion of the rate task").interval
-    found: dict[Norm, list[list[float]]] = {norm: [[] for _ in criteria] for norm in NORMS}
-    for rate, span in itertools.product(rates, spans):
-        cues = [_ramp("cold", span, rate), _ramp("cold", span, rate * (1.0 + fraction.central))]
-        dt, traces = _receptors(cues, end_s=span / rate + TAIL_S)
-        cold, warm = perceive_many(_stack(traces, "cold"), _stack(traces, "warm"), dt, observer)
-        apart = differences(cold[None], warm[None], dt, observer)
-        duration = dt * (cold.shape[-1] - 1)
-        for norm in NORMS:
-            for k, proportion in enumerate(criteria):
-                size = float(apart[norm][0, 0, 1])
-                found[norm][k].append(memory_from_task(size, proportion, observer, norm, duration))
-    records = []
-    for norm in NORMS:
-        ends = [_geometric_mean(values) for values in found[norm]]
-        every = [v for values in found[norm] for v in values]
-        spread = max(max(values) / min(values) for values in found[norm])
-        value = _geometric_mean(ends)
-        conditions = (
-            f"skin-surface coolings at {rates[0]:g} and {rates[1]:g} K/s over {spans[0]:g} and {spans[1]:g} K against "
-            f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
-            f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
-        )
-        made = _memory(norm, value, min(ends), max(ends))
-        records.append(replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions))
-    return records
-
-
-def _memory(norm: Norm, value: float, low: float, high: float) -> Record:
-    return Record(
-        quantity="memory noise",
-        unit="log units",
-        source="not calibrated yet",
-        value=value,
-        low=low,
-        high=high,
-        channel="both",
-        method=norm,
-        confidence="low",
-        use="calibrate",
-    )
-
-
-def _unit_drives() -> list[Record]:
-    return [Record("drive of a threshold step", "K", "not calibrated yet", value=1.0, channel=c) for c in CHANNELS]
-
-
-def _ramp(channel: Channel, size_K: float, rate_K_per_s: float) -> str:
-    verb = "cool" if channel == "cold" else "warm"
-    return f"  {verb} by {size_K:.9g} K at {rate_K_per_s:.9g} K/s\n  hold for {TAIL_S:g} s"
-
-
-def _receptors(cues: Sequence[str], end_s: float | None = None) -> tuple[float, list[dict[Channel, Array]]]:
-    """Step (s) and receptor temperatures of skin-controlled cues on the nominal rig, to one common end."""
-    from thermicon.circuit import Rig, simulate
-    from thermicon.icons import parse
-
-    head = f"cue 1\nset calibration {{\n  control skin\n  baseline {BASELINE_C:g} °C\n}}\n"
-    icons = parse(head + "\n".join(f"icon cue-{k} {{\n{body}\n}}" for k, body in enumerate(cues)))
-    rig = Rig.load(RIG)
-    runs = [simulate(icon, rig, rate_Hz=100) for icon in icons]
-    dt, rows = uniform_clock(runs[0].time_s)
-    rows = min([rows, *(uniform_clock(run.time_s)[1] for run in runs)])
-    if end_s is not None:
-        rows = min(rows, round(end_s / dt) + 1)
-    return dt, [{"cold": run.cold_receptor_C[:rows], "warm": run.warm_receptor_C[:rows]} for run in runs]
-
-
-def _stack(traces: Sequence[dict[Channel, Array]], channel: Channel) -> Array:
-    return np.stack([trace[channel] for trace in traces])
-
-
-def _geometric_mean(values: Sequence[float]) -> float:
-    return math.exp(sum(math.log(v) for v in values) / len(values))
+def _unset(variable: Variable, model: Model) -> list[Record]:
+    """What a draft of an observer needs before it is calibrated."""
+    variant, unit, source = source_of(variable, model), drive_unit(variable, model), "not calibrated yet"
+    return [
+        Record(f"gain control strength{variant}", "1", source, value=0.0),
+        *(Record(f"drive of a threshold step{variant}", unit, source, value=1.0, channel=c) for c in CHANNELS),
+        *(Record(f"threshold at the wrist{variant}", "1", source, value=1.0, channel=c) for c in CHANNELS),
+        *(replace(memory_record(norm, None, 0.0, 0.0, 0.0), quantity=f"memory noise{variant}") for norm in NORMS),
+    ]
 
 
 def _rounded(record: Record) -> Record:

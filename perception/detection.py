@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from thermicon.perception.observer import CHANNELS, Channel, Observer
 from thermicon.perception.parallel import over_rows
-from thermicon.perception.receptors import Array, as_rows
+from thermicon.perception.rows import Array, as_rows
 
 
 @dataclass(frozen=True, slots=True)

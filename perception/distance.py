@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from thermicon.perception.observer import NORMS, Norm, Observer, check_norm
 from thermicon.perception.parallel import over_rows
 from thermicon.perception.percept import Percept
-from thermicon.perception.receptors import Array, as_rows
+from thermicon.perception.rows import Array, as_rows
 
 
 def smooth(psi: ArrayLike, dt_s: float, uncertainty_s: float) -> Array:

@@ -1,28 +1,38 @@
-"""Pictures of percepts and rankings; each returns its axes and never shows a window."""
+"""Pictures of percepts and rankings; each returns its axes and never shows a window.
+
+Those of rankings are made in `draw_heat`, `draw_map` and `draw_table`.
+"""
 
 from __future__ import annotations
 
 import io
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from thermicon.circuit.draw import COOL, WARM
-from thermicon.perception.receptors import Array
+from thermicon.circuit.draw import COOL, WARM, new_axes
+from thermicon.perception.draw_heat import plot_confusion, plot_distance, plot_places
+from thermicon.perception.draw_map import plot_map
+from thermicon.perception.draw_table import plot_ranking
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from thermicon.perception.percept import Percept
-    from thermicon.perception.ranking import Ranking
 
 CLOCK = "response clock: with conduction and decision"
-MAP = "cividis"
+__all__ = [
+    "as_svg",
+    "plot_confusion",
+    "plot_distance",
+    "plot_map",
+    "plot_places",
+    "plot_ranking",
+    "plot_sensation",
+]
 
 
 def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
     """Both sensations on the clock of the receptors, and when the first is reported, which is later."""
-    axes = _axes(6.0, 3.2) if ax is None else ax
+    axes = new_axes(ax, (6.0, 3.2))
     axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
     axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
     if percept.onset_s is not None:
@@ -38,27 +48,6 @@ def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
     return axes
 
 
-def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Predicted confusions in per cent: rows the icon presented, columns the name it is answered with.
-
-    Every cell says its number, so there is no colour bar.
-    """
-    axes = _heat(ranking, 100.0 * ranking.confusion, ax, top=100.0)
-    axes.set_xlabel("answered")
-    axes.set_ylabel("presented")
-    axes.set_title(f"predicted confusions, % ({100 * ranking.percent_correct:.0f} % correct)")
-    return axes
-
-
-def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Predicted d′ of every pair, the median over people; every cell says its number, so there is no colour bar."""
-    axes = _heat(ranking, ranking.d_prime, ax, top=None)
-    axes.set_xlabel("… and")
-    axes.set_ylabel("d′ between …")
-    axes.set_title(f"predicted d′ between icons ({ranking.norm})")
-    return axes
-
-
 def as_svg(axes: Axes) -> str:
     """The figure of some axes as SVG text, for a notebook."""
     held = io.StringIO()
@@ -66,35 +55,3 @@ def as_svg(axes: Axes) -> str:
     figure.savefig(held, format="svg", bbox_inches="tight")
     text = held.getvalue()
     return text[text.index("<svg") :]
-
-
-def _heat(ranking: Ranking, values: Array, ax: Axes | None, top: float | None) -> Axes:
-    names, icons = ranking.labels, len(ranking.labels)
-    side = 1.8 + 0.62 * icons
-    axes = _axes(side + 0.6, side) if ax is None else ax
-    highest = float(values.max()) if top is None else top
-    axes.imshow(values, cmap=MAP, vmin=0.0, vmax=max(highest, 1e-9))
-    axes.set_xticks(np.arange(icons), names, rotation=40, ha="right", rotation_mode="anchor")
-    axes.set_yticks(np.arange(icons), names)
-    axes.tick_params(length=0)
-    size = 9.0 if icons <= 12 else max(4.0, 108.0 / icons)
-    for i in range(icons):
-        for j in range(icons):
-            shade = values[i, j] / max(highest, 1e-9)
-            axes.text(
-                j, i, _cell(values[i, j]), ha="center", va="center", fontsize=size, color="k" if shade > 0.5 else "w"
-            )
-    return axes
-
-
-def _cell(value: float) -> str:
-    return f"{value:.0f}" if value >= 9.95 else f"{value:.1f}"
-
-
-def _axes(width: float, height: float) -> Axes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure.add_subplot()

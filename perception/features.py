@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.perception.observer import Channel, Observer
-from thermicon.perception.percept import perceive
+from thermicon.perception.percept import Percept, perceive
 from thermicon.perception.receptors import Array
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 STILL_K = 1e-6
 SIDE_SHARE = 0.1
 """A direction counts when its excursion is more than this share of the larger one."""
+HELD_SHARE = 0.99
 
 
 def receptor_C(trace: Trace, channel: Channel) -> Array:
@@ -57,6 +58,30 @@ def excursion_rate_K_per_s(trace: Trace, channel: Channel) -> float:
     """Steepest rate towards that excursion before it is reached, K/s with its sign."""
     change = _change(receptor_C(trace, channel))
     return _attack(trace, change, int(change.argmin() if channel == "cold" else change.argmax()))
+
+
+def passing_s(trace: Trace, channel: Channel, threshold_K: float) -> float | None:
+    """When a receptor has changed by `threshold_K` in its own direction, s from the start; None where it never does."""
+    change = _change(receptor_C(trace, channel)) * (-1.0 if channel == "cold" else 1.0)
+    k = int((change >= threshold_K).argmax())
+    if change[k] < threshold_K:
+        return None
+    if k == 0:
+        return float(trace.time_s[0])
+    share = (threshold_K - change[k - 1]) / (change[k] - change[k - 1])
+    return float(trace.time_s[k - 1] + share * (trace.time_s[k] - trace.time_s[k - 1]))
+
+
+def peak_lead_s(trace: Trace, percept: Percept, channel: Channel) -> float | None:
+    """Predicted felt peak minus the peak of the skin in the same direction, s on the percept clock (< 0: felt first).
+
+    A peak that is held is dated by when it comes within 1 %. None where the channel feels nothing or the skin rests.
+    """
+    felt = percept.felt_peak_s(channel)
+    skin = _change(trace.skin_C) * (-1.0 if channel == "cold" else 1.0)
+    if felt is None or skin.max() < STILL_K:
+        return None
+    return felt - float(trace.time_s[int((skin >= HELD_SHARE * skin.max()).argmax())])
 
 
 def directions(trace: Trace) -> tuple[Channel, ...]:

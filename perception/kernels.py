@@ -16,19 +16,24 @@ SQRT_HALF = math.sqrt(0.5)
 INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
 
 
-def _drive(temperature: Any, step: Any, sign: float, low: float, high: float, weight: float, drive: Any) -> None:
-    """Receptor drive; `step` holds decay and time constants of integration, slow and fast part."""
+def _drive(
+    x: Any, step: Any, sign: float, low: float, high: float, weight: float, scale: float, strength: float, drive: Any
+) -> None:
+    """Receptor drive; `step` holds decay and time constants of integration, slow part, fast part and gain."""
     decay_i, from_i, to_i, tau_i = step[0, 0], step[0, 1], step[0, 2], step[0, 3]
     decay_s, from_s, to_s, tau_s = step[1, 0], step[1, 1], step[1, 2], step[1, 3]
     decay_f, from_f, to_f, tau_f = step[2, 0], step[2, 1], step[2, 2], step[2, 3]
+    decay_g, from_g, to_g = step[3, 0], step[3, 1], step[3, 2]
     gain_s = 1.0 / (tau_s - tau_i)
     gain_f = tau_f / (tau_f - tau_i)
-    for row in range(temperature.shape[0]):
-        x0 = temperature[row, 0]
+    for row in range(x.shape[0]):
+        x0 = x[row, 0]
         c0 = min(max(x0, low), high)
         input_i, input_f, clip_i, clip_s = x0, x0, c0, c0
-        for t in range(temperature.shape[1]):
-            x1 = temperature[row, t]
+        size0 = abs(x0 - c0) * (1.0 - weight)
+        recent = size0
+        for t in range(x.shape[1]):
+            x1 = x[row, t]
             c1 = min(max(x1, low), high)
             if t > 0:
                 input_i = decay_i * input_i + from_i * x0 + to_i * x1
@@ -37,7 +42,14 @@ def _drive(temperature: Any, step: Any, sign: float, low: float, high: float, we
                 clip_s = decay_s * clip_s + from_s * c0 + to_s * c1
             slow = input_i - (tau_s * clip_s - tau_i * clip_i) * gain_s
             fast = gain_f * (input_i - input_f)
-            drive[row, t] = max(0.0, sign * (slow + weight * (fast - slow)))
+            y = sign * (slow + weight * (fast - slow))
+            if strength > 0.0:
+                if t > 0:
+                    recent = decay_g * recent + from_g * size0 + to_g * abs(y)
+                size0 = abs(y)
+                if y > 0.0:
+                    y *= (1.0 + recent / scale) ** -strength
+            drive[row, t] = max(0.0, y)
             x0, c0 = x1, c1
 
 
@@ -120,36 +132,53 @@ def _detect(cold: Any, warm: Any, dt: float, criterion: float, tau: float, cross
         missed[row] = log_missed
 
 
-def _nearest(points: Any, noise: Any, counts: Any) -> None:
-    """Counts of the nearest point, for every person and presented point; noise used with both signs."""
-    people, icons, axes = points.shape
+def _nearest(points: Any, favour: Any, noise: Any, counts: Any) -> None:
+    """Counts of the nearest point (presented, answer) for one person; the innermost loops run over presented points."""
+    icons, axes = points.shape
     gram = np.empty((icons, icons))
-    projected = np.empty(icons)
+    along = np.empty((axes, icons))
+    projected, score, best = np.empty(icons), np.empty(icons), np.empty(icons, np.int64)
+    for j in range(icons):
+        own = 0.0
+        for k in range(axes):
+            along[k, j] = points[j, k]
+            own += points[j, k] * points[j, k]
+        for i in range(icons):
+            dot = 0.0
+            for k in range(axes):
+                dot += points[i, k] * points[j, k]
+            gram[j, i] = dot - 0.5 * own + favour[j]
+    for s in range(noise.shape[0]):
+        for j in range(icons):
+            projected[j] = 0.0
+        for k in range(axes):
+            for j in range(icons):
+                projected[j] += along[k, j] * noise[s, k]
+        for i in range(icons):
+            score[i] = gram[0, i] + projected[0]
+            best[i] = 0
+        for j in range(1, icons):
+            for i in range(icons):
+                value = gram[j, i] + projected[j]
+                better = value > score[i]
+                score[i] = value if better else score[i]
+                best[i] = j if better else best[i]
+        for i in range(icons):
+            counts[i, best[i]] += 1.0
+
+
+def _bend(points: Any, distances: Any, bent: Any) -> None:
+    """Root of the summed squares of what the distances between points (person, icon, axis) miss the given ones by."""
+    people, icons, axes = points.shape
     for p in range(people):
+        total = 0.0
         for i in range(icons):
             for j in range(icons):
-                dot = 0.0
-                own = 0.0
+                square = 0.0
                 for k in range(axes):
-                    dot += points[p, i, k] * points[p, j, k]
-                    own += points[p, j, k] * points[p, j, k]
-                gram[i, j] = dot - 0.5 * own
-        for s in range(noise.shape[1]):
-            for j in range(icons):
-                dot = 0.0
-                for k in range(axes):
-                    dot += points[p, j, k] * noise[p, s, k]
-                projected[j] = dot
-            for sign in (-1.0, 1.0):
-                for i in range(icons):
-                    best = 0
-                    score = -math.inf
-                    for j in range(icons):
-                        value = gram[i, j] + sign * projected[j]
-                        if value > score:
-                            score = value
-                            best = j
-                    counts[p, i, best] += 1.0
+                    square += (points[p, i, k] - points[p, j, k]) ** 2
+                total += (math.sqrt(square) - distances[p, i, j]) ** 2
+        bent[p] = math.sqrt(total)
 
 
 Loop = Callable[..., None]
@@ -162,3 +191,4 @@ blur: Loop = _compile(_blur)
 differences: Loop = _vector(_differences)
 detect: Loop = _compile(_detect)
 nearest: Loop = _compile(_nearest)
+bend: Loop = _compile(_bend)

@@ -51,17 +51,28 @@ def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: i
     (people, m, m), every person takes part in `experiments` experiments.
     """
     people = np.asarray(confusion, dtype=np.float64)
-    people = people[None] if people.ndim == 2 else people
-    icons = people.shape[-1]
-    if trials < 1:
-        raise ValueError(f"an experiment needs at least one trial, not {trials}")
-    shown = np.full(icons, trials // icons)
-    shown[: trials % icons] += 1
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 2]))
-    counts = rng.multinomial(shown[None, None, :], people[:, None], size=(people.shape[0], experiments, icons))
-    bits = _mutual_information(counts / trials)
+    bits = experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments)
     low, high = np.percentile(bits, [2.5, 97.5])
     return Plugin(float(bits.mean()), float(low), float(high), trials)
+
+
+def experiments_bits(confusion: Array, trials: int, seed: int, experiments: int, first: int = 0) -> Array:
+    """Bits that each of a person's experiments reports, (people, experiments), from `confusion` (people, m, m).
+
+    A person's experiments hang on the seed and on the person's number, which counts from `first`.
+    """
+    if trials < 1:
+        raise ValueError(f"an experiment needs at least one trial, not {trials}")
+    people, icons = confusion.shape[0], confusion.shape[-1]
+    shown = np.full(icons, trials // icons)
+    shown[: trials % icons] += 1
+    played = np.flatnonzero(shown)
+    found = np.empty((people, experiments))
+    for person in range(people):
+        rng = np.random.default_rng(np.random.SeedSequence([seed, 2], spawn_key=(first + person,)))
+        counts = rng.multinomial(shown[played], confusion[person, played], size=(experiments, len(played)))
+        found[person] = _mutual_information(counts / trials)
+    return found
 
 
 def _mutual_information(joint: Array) -> Array:

@@ -1,13 +1,20 @@
-"""Rows of arrays spread over the machine's cores; the result does not depend on how many."""
+"""Work spread over the machine's cores; the result does not depend on how many."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from functools import lru_cache
 from itertools import pairwise
+from typing import Any, TypeVar
+
+from thermicon.circuit.cores import at_most, cores
 
 SMALL = 200_000
+MOST_THREADS = 8
+Asked = TypeVar("Asked")
+Found = TypeVar("Found")
 
 
 def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
@@ -15,7 +22,7 @@ def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
 
     `work` must treat rows independently and release the interpreter lock, as the kernels do.
     """
-    chunks = min(os.cpu_count() or 1, 8, rows) if size > SMALL else 1
+    chunks = min(cores(), MOST_THREADS, rows) if size > SMALL else 1
     if chunks <= 1:
         work(slice(0, rows))
         return
@@ -23,3 +30,51 @@ def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
     with ThreadPoolExecutor(chunks) as pool:
         for done in [pool.submit(work, slice(a, b)) for a, b in pairwise(edges)]:
             done.result()
+
+
+def in_order(
+    work: Callable[[Asked], Found], each: Sequence[Asked], workers: int | None = None, most: int = MOST_THREADS
+) -> Iterator[Found]:
+    """Results of `work` in the order of `each`, by `workers` threads (None: the cores there are, up to `most`).
+
+    The kernels let go of the interpreter lock. No more than two results a worker wait to be taken.
+
+    >>> list(in_order(abs, [-2, 1]))
+    [2, 1]
+    """
+    allowed = min(cores(), most) if workers is None else workers
+    threads = max(1, min(allowed, len(each)))
+
+    def one(asked: Asked) -> Found:
+        with at_most(allowed // threads):
+            return work(asked)
+
+    with quiet_blas():
+        if threads == 1:
+            for asked in each:
+                yield one(asked)
+            return
+        pool = ThreadPoolExecutor(threads)
+        try:
+            waiting = [pool.submit(one, asked) for asked in each[: 2 * threads]]
+            for asked in each[2 * threads :]:
+                yield waiting.pop(0).result()
+                waiting.append(pool.submit(one, asked))
+            while waiting:
+                yield waiting.pop(0).result()
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def quiet_blas() -> Iterator[None]:
+    """Keep the linear algebra library on one thread: on matrices as small as ours its threads only wait, busily."""
+    with _blas().limit(limits=1, user_api="blas"):
+        yield
+
+
+@lru_cache(maxsize=1)
+def _blas() -> Any:
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()

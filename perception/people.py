@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from thermicon.circuit.records import Record
 from thermicon.perception.observer import load_thresholds
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 STANDARD = NormalDist()
 VELOCITY_SPAN = 1.5
 """Conduction velocities are cut off at this many SD: slower fibres would not reach the cord in a trial."""
+
+YOUNG_YEARS, OLD_YEARS = 25.0, 65.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,10 @@ class People:
     def __len__(self) -> int:
         return int(self.threshold_cold.size)
 
+    def part(self, start: int, stop: int) -> People:
+        """The persons from one number up to another."""
+        return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})
+
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
         contact = rig.contact.resistance_m2K_per_W
@@ -74,8 +81,12 @@ class People:
         )
 
 
-def draw_people(n: int, seed: int = 0) -> People:
+def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> People:
     """Draw n virtual people; person i is the same whatever n is, and channels are independent.
+
+    `age_years` raises both thresholds of a person by a factor for which there is no data: at 65 years
+    anything from none to a doubling, in proportion (of logarithms) before and after, none by 25.
+    None leaves age out, which is people of 20 to 30 years.
 
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
@@ -86,6 +97,8 @@ def draw_people(n: int, seed: int = 0) -> People:
     record = people_records()
     streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
+
+    aged = 1.0 if age_years is None else _aged(np.random.default_rng(np.random.SeedSequence([seed, 4])), n, age_years)
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * _normal(column[name]))
@@ -99,8 +112,8 @@ def draw_people(n: int, seed: int = 0) -> People:
         return _triangular(column[name], low, record[name].central, high)
 
     return People(
-        threshold_cold=lognormal("threshold_cold", math.log(10.0) * record["threshold_cold"].central),
-        threshold_warm=lognormal("threshold_warm", math.log(10.0) * record["threshold_warm"].central),
+        threshold_cold=aged * lognormal("threshold_cold", math.log(10.0) * record["threshold_cold"].central),
+        threshold_warm=aged * lognormal("threshold_warm", math.log(10.0) * record["threshold_warm"].central),
         memory=_uniform(column["memory"], *record["memory"].interval) / record["memory"].central,
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
@@ -132,6 +145,28 @@ def people_records() -> dict[str, Record]:
         "decision_s": table.one("decision and motor time"),
         "lapse": table.one("lapse rate"),
     }
+
+
+def age_factor(age_years: float, share: float = 0.5) -> float:
+    """Threshold at an age over that at 25 years; `share` (0–1) places it in the assumed interval.
+
+    >>> age_factor(25.0), age_factor(65.0, share=0.0)
+    (1.0, 1.0)
+    """
+    if not 18.0 <= age_years <= 100.0:
+        raise ValueError(f"an age of {age_years:g} years is not covered: give 18 to 100")
+    low, high = _old_age()
+    old = (max(age_years, YOUNG_YEARS) - YOUNG_YEARS) / (OLD_YEARS - YOUNG_YEARS)
+    return math.exp(old * (math.log(low) + share * math.log(high / low)))
+
+
+@lru_cache(maxsize=1)
+def _old_age() -> tuple[float, float]:
+    return load_thresholds().one("threshold in old age").interval
+
+
+def _aged(rng: np.random.Generator, n: int, age_years: float) -> Array:
+    return np.array([age_factor(age_years, share) for share in rng.random(n).tolist()], dtype=np.float64)
 
 
 def _normal(uniform: Array) -> Array:

@@ -1,4 +1,8 @@
-"""What a cue feels like: two traces of sensation, and when and where it was first felt."""
+"""What a cue feels like: two traces of sensation, when and where it was first felt, and when it peaked.
+
+Three clocks, each named where it is used: the receptor clock starts with the cue; the percept clock
+is later by conduction; the response clock by conduction and decision.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +12,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.perception.channels import CHANNELS, Channel
+from thermicon.perception.coverage import outside_data
 from thermicon.perception.detection import channel_name, detect
-from thermicon.perception.observer import Channel, Observer
-from thermicon.perception.receptors import Array, receptor_drive
-from thermicon.perception.sensation import sensation
+from thermicon.perception.observer import Observer
+from thermicon.perception.receptors import receptor_drive
+from thermicon.perception.rows import Array, as_rows
+from thermicon.perception.sensation import sense
+from thermicon.perception.variants import receptor_input
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +33,8 @@ class Percept:
 
     The receptor clock starts with the cue and counts no conduction; `onset_s` is on the response
     clock (crossing + conduction + decision) and None where nothing was felt, like `channel`.
+    `conduction_s` is what the percept clock is later by, cold and warm; `outside_data` has a sentence for
+    every way in which the trace lies outside what the prediction rests on.
     """
 
     psi_cold: Array
@@ -35,6 +45,8 @@ class Percept:
     detected_probability: float
     icon: str | None = None
     clock: str = "receptor"
+    conduction_s: tuple[float, float] = (0.0, 0.0)
+    outside_data: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("psi_cold", "psi_warm"):
@@ -54,6 +66,26 @@ class Percept:
         clock: Array = self.dt_s * np.arange(self.psi_cold.size, dtype=np.float64)
         return clock
 
+    def peak_s(self, channel: Channel) -> float | None:
+        """When the sensation of a channel is strongest, s on the receptor clock; None where it does not rise.
+
+        Between samples the peak is that of the parabola through the largest one and its neighbours.
+        """
+        psi = self.psi_cold if channel == "cold" else self.psi_warm
+        k = int(psi.argmax())
+        if not psi[k] > psi[0]:
+            return None
+        if k == psi.size - 1:
+            return self.dt_s * k
+        before, top, after = (float(v) for v in psi[k - 1 : k + 2])
+        bend = before - 2.0 * top + after
+        return self.dt_s * (k + (0.5 * (before - after) / bend if bend < 0.0 else 0.0))
+
+    def felt_peak_s(self, channel: Channel) -> float | None:
+        """When the sensation of a channel is felt to peak, s on the percept clock; None where it does not rise."""
+        peak = self.peak_s(channel)
+        return None if peak is None else peak + self.conduction_s[channel == "warm"]
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both sensations; returns the axes."""
         from thermicon.perception.draw import plot_sensation
@@ -61,11 +93,12 @@ class Percept:
         return plot_sensation(self, ax)
 
     def __repr__(self) -> str:
+        beyond = ", outside the data" if self.outside_data else ""
         felt = "not felt" if self.onset_s is None else f"felt at {self.onset_s:.2f} s by {self.channel}"
         return (
             f"Percept({self.icon or 'unnamed'}: {felt}, p {self.detected_probability:.3f}, "
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
-            f"{self.time_s[-1]:.3g} s, {self.clock} clock)"
+            f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
         )
 
     def _repr_html_(self) -> str:
@@ -75,17 +108,18 @@ class Percept:
 
 
 def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:
-    """Percept of one simulated trace by a nominal person (or `observer`).
+    """Percept of one simulated trace by a nominal person (or `observer`, of temperature or of heat flow).
 
-    `area_m2` is the trace's own area of contact unless given. The chain is receptor drive,
-    sensation, detection.
+    `area_m2` is the trace's own area of contact unless given; the site is the trace's. The chain is
+    receptor drive, sensation, detection.
     """
     person = Observer.load() if observer is None else observer
     area = trace.area_m2 if area_m2 is None else area_m2
     dt, rows = uniform_clock(trace.time_s)
-    temperatures = trace.cold_receptor_C[:rows], trace.warm_receptor_C[:rows]
-    cold, warm = perceive_many(*temperatures, dt, person, area_m2=area)
-    found = detect(cold, warm, dt, person, path_m=person.path_m(trace.site))
+    at_cold, at_warm = (receptor_input(trace, person.variable, channel)[:rows] for channel in CHANNELS)
+    cold, warm = perceive_many(at_cold, at_warm, dt, person, area_m2=area, site=trace.site)
+    path = person.path_m(trace.site)
+    found = detect(cold, warm, dt, person, path_m=path)
     felt = float(found.onset_s)
     return Percept(
         psi_cold=cold,
@@ -95,28 +129,36 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
         channel=channel_name(int(found.channel)),
         detected_probability=float(found.probability),
         icon=trace.icon,
+        conduction_s=(path / person.cold.velocity_m_per_s, path / person.warm.velocity_m_per_s),
+        outside_data=outside_data(trace),
     )
 
 
 def perceive_many(
-    cold_receptor_C: ArrayLike,
-    warm_receptor_C: ArrayLike,
+    cold_received: ArrayLike,
+    warm_received: ArrayLike,
     dt_s: float,
     observer: Observer,
     *,
     area_m2: float | None = None,
+    site: str | None = None,
     threshold_cold: ArrayLike = 1.0,
     threshold_warm: ArrayLike = 1.0,
 ) -> tuple[Array, Array]:
-    """Sensations (cold, warm) of many traces, shape (..., n_time) like the temperatures.
+    """Sensations (cold, warm) of many traces, shape (..., n_time) like what the receptors receive.
 
-    The threshold multipliers are one number or one for each leading index.
+    That is °C at the depth of each channel or, for an observer of heat flow, W/m² into the skin there
+    (`receptor_column` names the columns). The threshold multipliers are one number or one for each
+    leading index.
     """
-    cold_drive = receptor_drive(cold_receptor_C, dt_s, "cold", observer)
-    warm_drive = receptor_drive(warm_receptor_C, dt_s, "warm", observer)
-    cold = sensation(cold_drive, "cold", observer, area_m2=area_m2, threshold=threshold_cold)
-    warm = sensation(warm_drive, "warm", observer, area_m2=area_m2, threshold=threshold_warm)
-    return cold, warm
+    felt = []
+    multiples = {"cold": threshold_cold, "warm": threshold_warm}
+    for channel, received in zip(CHANNELS, (cold_received, warm_received), strict=True):
+        psi = receptor_drive(received, dt_s, channel, observer)
+        # In place: memory as large as the input is what takes long in a large batch.
+        sense(as_rows(psi)[0], psi, channel, observer, area_m2=area_m2, site=site, threshold=multiples[channel])
+        felt.append(psi)
+    return felt[0], felt[1]
 
 
 def uniform_clock(time_s: ArrayLike) -> tuple[float, int]:

@@ -6,37 +6,39 @@ import hashlib
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.perception.confusion import SAMPLES, Confusion, confuse
-from thermicon.perception.detection import detect
-from thermicon.perception.digits import decimals, significant
-from thermicon.perception.distance import differences, identification_dprime
+from thermicon.perception.choose import choose
+from thermicon.perception.chunks import RATE_HZ, Work, own_version
+from thermicon.perception.coverage import outside_data
+from thermicon.perception.edits import with_edits
 from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K
-from thermicon.perception.measures import information_bits, percent_correct, plugin_bits
-from thermicon.perception.observer import DATA, NORMS, Norm, Observer, check_norm
-from thermicon.perception.people import People, draw_people
-from thermicon.perception.percept import Percept, perceive, perceive_many, uniform_clock
+from thermicon.perception.gather import Gathered, Where, gather
+from thermicon.perception.intervals import DRAWS, parameter_intervals
+from thermicon.perception.judge import Scores
+from thermicon.perception.observer import DATA, Norm, Observer, check_norm
+from thermicon.perception.parts import course, course_parts
+from thermicon.perception.people import draw_people
+from thermicon.perception.percept import Percept, perceive
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
 from thermicon.perception.reasons import pair_reasons
 from thermicon.perception.receptors import Array
-from thermicon.perception.rules import icon_rules, pair_rules, passes
+from thermicon.perception.request import Choosing, check_asked
+from thermicon.perception.rules import icon_rules, pair_rules, rig_rules
+from thermicon.perception.rulescore import disagreements, icon_score, pair_margin, worst_by_rules
+from thermicon.perception.spread import spread_over_people
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
 
-RATE_HZ = 100.0
 TAIL_S = 10.0
-EXPERIMENTS = 20
-APART_DPRIME = 2.563
-"""The model calls a pair apart from here on: two icons on their own would be named 90 % correctly, Φ(d′/2) = 0.9."""
-FELT = 0.9
 RANKED_BY = ("model", "rules")
+EDITS = ("worst", "all", "none")
 
 Progress = Callable[[int, int], None]
 
@@ -51,17 +53,31 @@ def rank(
     tracking: str | None = None,
     norm: str = "max",
     by: str = "model",
+    parameters: int = DRAWS,
+    choosing: Choosing | None = None,
+    edits: str = "none",
+    workers: int | None = None,
+    cluster: str | None = None,
+    keep: Path | None = None,
     progress: Progress | None = None,
 ) -> Ranking:
     """Predict how well people tell the icons of a set apart when they name them from memory.
 
     Every icon is simulated to one common end, the longest icon plus 10 s, on the nominal rig and on
     that of each virtual person. `tracking` is `replay`, `display` or `ideal` (None: what suits the
-    icon's control); `norm` is `max`, `rms` or `integral`; `by` orders the rows. `progress` is called
-    with (steps done, steps in all). A pair's d′ is the median over people. Same arguments, same bytes.
-    Raises `ValueError` for a set without icons and for unknown names.
+    icon's control); `norm` is `max`, `rms` or `integral`. `by` is `model`, or `rules`: then icons
+    are ranked by rules alone, and the model only says where it disagrees. `parameters` observers are drawn
+    for the intervals that the observer's parameters leave open (0: none). `choosing` asks for the best few of the
+    icons, `edits` for the cheapest edit of the `worst` pair, of `all` that are not apart, or of `none`. `progress`
+    is called with (steps done, steps in all). A pair's d′ is the median over people.
+
+    The work goes in chunks of people, to `workers` threads (None: one a core) or to the dask cluster whose scheduler
+    has the address `cluster`; with a folder `keep`, finished chunks stay there and a run that was ended goes on from
+    them. None of it changes the result: same arguments, same bytes.
+
+    Raises `ValueError` for a set without icons, for unknown names, a single draw, and a choice that cannot be made.
     """
-    from thermicon.circuit import duration_s, simulate_all, simulate_many
+    from thermicon.circuit import duration_s, simulate_all
 
     members = list(icons)
     if not members:
@@ -69,26 +85,38 @@ def rank(
     chosen = check_norm(norm)
     if by not in RANKED_BY:
         raise ValueError(f"a ranking is by {' or '.join(RANKED_BY)}, not by {by!r}")
-    report = _steps(progress, 4)
+    if edits not in EDITS:
+        raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
+    if choosing is not None:
+        check_asked(choosing, [icon.name for icon in members])
+    if parameters < 0 or parameters == 1:
+        raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
+    draws = parameters if by == "model" else 0
+    where = Where(workers, cluster, keep)
     observer = Observer.load()
     crowd = draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen)
+    report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     percepts = [perceive(trace, observer) for trace in traces]
     report()
 
-    batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, tracking=tracking)
-    report()
-    felt = _felt(batch.cold_C, batch.warm_C, batch.time_s, rig, crowd, observer)
-    report()
-
-    judged = {n: _judged(felt, n, crowd, observer, seed, SAMPLES if n == chosen else SAMPLES // 4) for n in NORMS}
-    made = _assemble(members, traces, percepts, felt, judged, chosen, observer)
-    confusion = judged[chosen][1]
-    correct, bits = percent_correct(confusion.probability), information_bits(confusion.probability)
+    all_ = gather(work, where, report)
+    made = _assemble(members, traces, percepts, all_, chosen, observer)
+    worst = _worst(made.pairs) if by == "model" else worst_by_rules(made.pairs)
+    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle)
+    picked = None
+    if choosing is not None:
+        picked = choose(choosing, members, rig, traces, all_.d_prime, crowd, seed=seed, tracking=tracking, norm=chosen)
+        report()
+    predicted = Scores(all_.correct, all_.bits, all_.detected)
+    intervals = (
+        parameter_intervals(all_.thin, crowd, predicted, chosen, draws=draws, seed=seed, step=report) if draws else None
+    )
     ranking = Ranking(
-        version=_version(),
+        version=own_version(),
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         seed=seed,
@@ -98,87 +126,68 @@ def rank(
         norm=chosen,
         content_hash=_hash(icons, rig),
         icons=made.icons,
-        pairs=made.pairs,
-        confusion=confusion.pooled,
-        percent_correct=float(correct.mean()),
-        percent_correct_interval=_interval(correct),
-        information_bits=float(bits.mean()),
-        information_bits_interval=_interval(bits),
-        bits_per_s=float(bits.mean()) / (sum(durations) / len(durations)),
-        information_bits_plugin=plugin_bits(confusion.probability, trials, seed, EXPERIMENTS).mean,
+        pairs=pairs,
+        confusion=all_.pooled,
+        percent_correct=float(all_.correct.mean()),
+        percent_correct_interval=_interval(all_.correct),
+        information_bits=float(all_.bits.mean()),
+        information_bits_interval=_interval(all_.bits),
+        bits_per_s=float(all_.bits.mean()) / (sum(durations) / len(durations)),
+        information_bits_plugin=float(all_.plugin.mean()),
         trials=trials,
-        worst_pair=_worst(made.pairs),
-        rules_disagree=_disagree(made.icons, made.pairs),
-        norm_sensitivity={n: float(percent_correct(judged[n][1].probability).mean()) for n in NORMS if n != chosen},
-        stress=float(np.median(confusion.stress)),
-        standard_error=confusion.standard_error,
+        worst_pair=worst,
+        rules_disagree=disagreements(made.icons, made.pairs),
+        norm_sensitivity=dict(all_.by_norm.items()),
+        stress=float(np.median(all_.stress)),
+        standard_error=all_.standard_error,
+        person_standard_error=all_.person_standard_error,
+        rules=rig_rules(rig),
+        parameter_intervals=intervals,
+        chosen=picked,
+        spread=spread_over_people(all_.d_prime, all_.each_correct),
     )
     report()
     return ranking
 
 
 @dataclass(frozen=True, slots=True)
-class _Felt:
-    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s."""
-
-    apart: dict[Norm, Array]
-    probability: Array
-    duration_s: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Scores:
+class _Made:
     icons: tuple[IconScore, ...]
     pairs: tuple[PairScore, ...]
-
-
-def _felt(cold_C: Array, warm_C: Array, time_s: Array, rig: Rig, crowd: People, observer: Observer) -> _Felt:
-    dt, rows = uniform_clock(time_s)
-    cold, warm = perceive_many(
-        cold_C[..., :rows],
-        warm_C[..., :rows],
-        dt,
-        observer,
-        area_m2=rig.contact.area_m2,
-        threshold_cold=crowd.threshold_cold[:, None],
-        threshold_warm=crowd.threshold_warm[:, None],
-    )
-    found = detect(
-        cold,
-        warm,
-        dt,
-        observer,
-        path_m=observer.path_m(rig.site) * crowd.path[:, None],
-        velocity_cold_m_per_s=crowd.velocity_cold_m_per_s[:, None],
-        velocity_warm_m_per_s=crowd.velocity_warm_m_per_s[:, None],
-        decision_s=crowd.decision_s[:, None],
-    )
-    return _Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1))
-
-
-def _judged(
-    felt: _Felt, norm: Norm, crowd: People, observer: Observer, seed: int, samples: int
-) -> tuple[Array, Confusion]:
-    memory = crowd.memory[:, None, None]
-    d_prime = identification_dprime(felt.apart[norm], observer, norm, felt.duration_s, memory)
-    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples)
 
 
 def _assemble(
     icons: Sequence[Icon],
     traces: Sequence[Trace],
     percepts: Sequence[Percept],
-    felt: _Felt,
-    judged: dict[Norm, tuple[Array, Confusion]],
+    all_: Gathered,
     norm: Norm,
     observer: Observer,
-) -> _Scores:
-    d_prime, confusion = judged[norm]
-    middle, pooled = np.median(d_prime, axis=0), confusion.pooled
-    detected = felt.probability.mean(axis=0)
+) -> _Made:
+    middle, pooled, detected = all_.middle, all_.pooled, all_.detected
+    pairs = []
+    courses = [course(trace, percept, observer) for trace, percept in zip(traces, percepts, strict=True)]
+    for i, j in combinations(range(len(icons)), 2):
+        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
+        rules = pair_rules(traces[i], traces[j])
+        pairs.append(
+            PairScore(
+                a=icons[i].name,
+                b=icons[j].name,
+                d_prime=float(middle[i, j]),
+                confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
+                why=tuple(reason.text for reason in why),
+                rules=rules,
+                rules_margin=pair_margin(rules),
+                parts=course_parts(courses[i], courses[j], observer),
+            )
+        )
     scored = []
     for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
         safe, reason, cautions = _verdict(trace)
+        own = icon_rules(trace, percept)
+        against = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
+        share, margin = icon_score(own, against)
         scored.append(
             IconScore(
                 name=icon.name,
@@ -193,23 +202,13 @@ def _assemble(
                 safe=safe,
                 reason=reason,
                 cautions=cautions,
-                rules=icon_rules(trace, percept),
+                rules=own,
+                rules_score=share,
+                rules_margin=margin,
+                outside_data=outside_data(trace),
             )
         )
-    pairs = []
-    for i, j in combinations(range(len(icons)), 2):
-        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
-        pairs.append(
-            PairScore(
-                a=icons[i].name,
-                b=icons[j].name,
-                d_prime=float(middle[i, j]),
-                confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
-                why=tuple(reason.text for reason in why),
-                rules=pair_rules(traces[i], traces[j], percepts[i], percepts[j]),
-            )
-        )
-    return _Scores(tuple(scored), tuple(pairs))
+    return _Made(tuple(scored), tuple(pairs))
 
 
 def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
@@ -236,30 +235,6 @@ def _worst(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
     return first.a, first.b
 
 
-def _disagree(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tuple[dict[str, Any], ...]:
-    """Icons and pairs that rules and model judge differently, with what each says."""
-    found: list[dict[str, Any]] = []
-    for icon in icons:
-        rules = passes(icon.rules, "change at the receptor", "rate at the receptor")
-        model = icon.detected_probability >= FELT
-        if rules != model:
-            shown, limit = significant(icon.detected_probability, FELT, least=2)
-            said = f"{icon.name}: rules say {_felt_word(rules)}, the model {shown} detected (felt from {limit})"
-            found.append({"icon": icon.name, "rules": rules, "model": model, "text": said})
-    for pair in pairs:
-        apart = pair.d_prime >= APART_DPRIME
-        if pair.rules_pass != apart:
-            word = "told apart" if pair.rules_pass else "not told apart"
-            shown = f"{pair.d_prime:.{decimals(pair.d_prime, APART_DPRIME, 1)}f}"
-            said = f"{pair.a} and {pair.b}: rules say {word}, the model d′ {shown} (apart from {APART_DPRIME})"
-            found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": apart, "text": said})
-    return tuple(found)
-
-
-def _felt_word(rules: bool) -> str:
-    return "felt" if rules else "not felt"
-
-
 def _interval(values: Array) -> tuple[float, float]:
     low, high = np.percentile(values, [2.5, 97.5])
     return float(low), float(high)
@@ -275,13 +250,6 @@ def _steps(progress: Progress | None, total: int) -> Callable[[], None]:
             progress(done, total)
 
     return step
-
-
-def _version() -> str:
-    try:
-        return version("thermicon")
-    except PackageNotFoundError:
-        return "unknown"
 
 
 def _hash(icons: IconSet, rig: Rig) -> str:

@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.perception.intervals import ParameterIntervals
 from thermicon.perception.observer import Channel
+from thermicon.perception.parts import Part
 from thermicon.perception.receptors import Array
 from thermicon.perception.rules import TOLD_APART, RuleResult
+from thermicon.perception.rulescore import counted
+from thermicon.perception.spread import Spread
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
+
+    from thermicon.perception.choose import Choice
+    from thermicon.perception.edit import Edit, NoEdit
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +30,9 @@ class IconScore:
 
     `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
     attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` says why the icon is not
-    safe, cannot be reached, or both; `cautions` are the soft limits of safety that it passes.
+    safe, cannot be reached, or both; `cautions` are the soft limits of safety that it passes; `outside_data`
+    says where no data stand behind the prediction. `rules_score` is the share passed of its own rules and of
+    its pairs told apart, `rules_margin` the smallest normalised margin among them.
     """
 
     name: str
@@ -40,12 +47,20 @@ class IconScore:
     safe: bool
     reason: str | None
     rules: tuple[RuleResult, ...]
+    rules_score: float
+    rules_margin: float | None
     cautions: tuple[str, ...] = ()
+    outside_data: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class PairScore:
-    """One pair: median d′ over people, share of confusions (either way, mean of both), why, rules."""
+    """One pair: median d′ over people, share of confusions (either way, mean of both), why, rules.
+
+    `rules_margin` is how safely rules tell it apart, in shares of a threshold (None: by direction alone). `edit` is
+    the cheapest edit that parts the two, or why there is none (None: not looked for); `parts` are those of the distance
+    for a nominal person.
+    """
 
     a: str
     b: str
@@ -53,6 +68,9 @@ class PairScore:
     confused_probability: float
     why: tuple[str, ...]
     rules: tuple[RuleResult, ...]
+    rules_margin: float | None = None
+    edit: Edit | NoEdit | None = None
+    parts: tuple[Part, ...] = ()
 
     @property
     def rules_pass(self) -> bool:
@@ -66,7 +84,11 @@ class Ranking:
 
     Per cent correct is 0–1 and information in bits, each with the 2.5–97.5 % interval over people.
     `rig_changes` are what was changed on the rig for this question, such as `contact.area_cm2=4`.
-    `stress` and `standard_error` are the accuracy of the confusion matrix, not spread over people.
+    `stress` and the standard errors (of the pooled cell, and of the cell of one person, that sampling blurs most) are
+    the accuracy of confusions, not spread over people.
+    `parameter_intervals` is what the observer's parameters leave open (None: not asked for). `by` says what
+    the icons are ranked by and which worst pair is told; the model's numbers are there in both cases. `chosen` are
+    the best few of them, where asked for; `spread` is what pictures need of single people.
     """
 
     version: str
@@ -92,7 +114,12 @@ class Ranking:
     norm_sensitivity: dict[str, float]
     stress: float
     standard_error: float
+    person_standard_error: float
+    rules: tuple[RuleResult, ...] = ()
+    parameter_intervals: ParameterIntervals | None = None
     rig_changes: tuple[str, ...] = ()
+    chosen: Choice | None = None
+    spread: Spread | None = None
 
     def __post_init__(self) -> None:
         own = np.array(self.confusion, dtype=np.float64)
@@ -116,19 +143,30 @@ class Ranking:
             matrix[i, j] = matrix[j, i] = pair.d_prime
         return matrix
 
+    @property
+    def rules_score(self) -> float | None:
+        """Share of pairs that rules alone tell apart; None for one icon."""
+        return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
+
     def rows(self) -> list[dict[str, Any]]:
-        """One plain row for each icon, the best first: by per cent correct, or by its rules when `by` is rules."""
+        """One plain row for each icon, the best first: by per cent correct, or by its rules when `by` is rules.
+
+        By rules, what only the model gives is None.
+        """
+        model = self.by == "model"
         return [
             {
                 "icon": icon.name,
-                "percent_correct": icon.percent_correct,
-                "detected_probability": icon.detected_probability,
-                "onset_s": icon.onset_s,
-                "channel": icon.channel,
+                "percent_correct": icon.percent_correct if model else None,
+                "detected_probability": icon.detected_probability if model else None,
+                "onset_s": icon.onset_s if model else None,
+                "channel": icon.channel if model else None,
                 "peak_change_cold_K": icon.peak_change_K[0],
                 "peak_change_warm_K": icon.peak_change_K[1],
-                "rules_passed": sum(r.passed for r in icon.rules),
-                "rules": len(icon.rules),
+                "rules_score": icon.rules_score,
+                "rules_margin": icon.rules_margin,
+                "rules_passed": sum(r.passed for r in counted(icon.rules)),
+                "rules": len(counted(icon.rules)),
                 "pairs_apart_by_rules": self._pairs_apart(icon.name),
                 "reachable": icon.reachable,
                 "safe": icon.safe,
@@ -145,41 +183,15 @@ class Ranking:
 
     def to_dict(self) -> dict[str, Any]:
         """The contract of `rank --json` as plain data: what does not exist is None, never NaN."""
-        many = len(self.icons) > 1
-        made: dict[str, Any] = _plain(
-            {
-                "thermicon": self.version,
-                "rig": self.rig,
-                "rig_changes": list(self.rig_changes),
-                "seed": self.seed,
-                "people": self.people,
-                "tracking": self.tracking,
-                "by": self.by,
-                "norm": self.norm,
-                "content_hash": self.content_hash,
-                "icons": [_icon(icon) for icon in self.icons],
-                "pairs": [_pair(pair) for pair in self.pairs],
-                "confusion": {"labels": list(self.labels), "probability": self.confusion.tolist()},
-                "set": {
-                    "percent_correct": self.percent_correct,
-                    "percent_correct_interval": list(self.percent_correct_interval),
-                    "information_bits": self.information_bits if many else None,
-                    "information_bits_interval": list(self.information_bits_interval) if many else None,
-                    "bits_per_s": self.bits_per_s if many else None,
-                    "information_bits_plugin": self.information_bits_plugin if many else None,
-                    "trials": self.trials,
-                    "worst_pair": None if self.worst_pair is None else list(self.worst_pair),
-                    "rules_disagree": list(self.rules_disagree),
-                    "norm_sensitivity": self.norm_sensitivity,
-                },
-                "chosen": None,
-            }
-        )
-        return made
+        from thermicon.perception.rankfile import ranking_file
+
+        return ranking_file(self)
 
     def to_json(self) -> str:
         """That contract as text, the same bytes for the same arguments."""
-        return json.dumps(self.to_dict(), ensure_ascii=False, indent=1, allow_nan=False)
+        from thermicon.perception.rankfile import as_text
+
+        return as_text(self.to_dict())
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the pooled confusion matrix; returns the axes."""
@@ -190,12 +202,18 @@ class Ranking:
     def __repr__(self) -> str:
         low, high = self.percent_correct_interval
         icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
+        where = with_changes(self.rig, self.rig_changes)
+        if self.by == "rules":
+            worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
+            apart = sum(pair.rules_pass for pair in self.pairs)
+            pairs = f", {apart} of {len(self.pairs)} pairs told apart" if self.pairs else ""
+            return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
         crowd = "1 person" if self.people == 1 else f"{self.people} people"
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
         bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         return (
-            f"Ranking(predicted: {icons} on {with_changes(self.rig, self.rig_changes)}, {crowd}, "
+            f"Ranking(predicted: {icons} on {where}, {crowd}, "
             f"{100 * self.percent_correct:.1f} % correct{spread}{bits}{worst})"
         )
 
@@ -209,7 +227,8 @@ class Ranking:
 
     def _order(self, icon: IconScore) -> tuple[float, float, str]:
         if self.by == "rules":
-            return (-self._pairs_apart(icon.name), -sum(r.passed for r in icon.rules), icon.name)
+            margin = float("inf") if icon.rules_margin is None else icon.rules_margin
+            return (-icon.rules_score, -margin, icon.name)
         return (-icon.percent_correct, 0.0, icon.name)
 
 
@@ -220,51 +239,3 @@ def with_changes(rig: str, changes: Sequence[str]) -> str:
     ('thenar with contact.area_cm2=4', 'thenar')
     """
     return f"{rig} with {', '.join(changes)}" if changes else rig
-
-
-def _icon(icon: IconScore) -> dict[str, Any]:
-    def both(values: tuple[float | None, float | None]) -> dict[str, float | None]:
-        return {"cold_receptor": values[0], "warm_receptor": values[1]}
-
-    return {
-        "name": icon.name,
-        "detected_probability": icon.detected_probability,
-        "onset_s": icon.onset_s,
-        "channel": icon.channel,
-        "peak_change_K": both(icon.peak_change_K),
-        "attack_K_per_s": both(icon.attack_K_per_s),
-        "delay_s": both(icon.delay_s),
-        "percent_correct": icon.percent_correct,
-        "reachable": icon.reachable,
-        "safe": icon.safe,
-        "reason": icon.reason,
-        "cautions": list(icon.cautions),
-        "rules": [r.to_dict() for r in icon.rules],
-    }
-
-
-def _pair(pair: PairScore) -> dict[str, Any]:
-    return {
-        "a": pair.a,
-        "b": pair.b,
-        "d_prime": pair.d_prime,
-        "confused_probability": pair.confused_probability,
-        "why": list(pair.why),
-        "rules": [r.to_dict() for r in pair.rules],
-        "edit": None,
-    }
-
-
-def _plain(held: Any) -> Any:
-    """Plain JSON data: a number that is not finite does not exist."""
-    if isinstance(held, dict):
-        return {str(key): _plain(value) for key, value in held.items()}
-    if isinstance(held, list | tuple):
-        return [_plain(value) for value in held]
-    if isinstance(held, bool | np.bool_):
-        return bool(held)
-    if isinstance(held, int | np.integer):
-        return int(held)
-    if isinstance(held, float | np.floating):
-        return float(held) if math.isfinite(held) else None
-    return held

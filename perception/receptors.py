@@ -1,9 +1,15 @@
-"""Temperature at receptor depth → receptor drive: integration, then adaptation.
+"""What reaches a receptor → receptor drive: integration, adaptation, gain lowered by recent drive.
 
-Both filters are exact for input that is linear between samples. Adaptation is a level that
-follows the temperature clipped to the neutral zone: inside it adaptation is complete, outside
-it a hold keeps a residue. The cold channel has a fast part beside the slow one; that part
-follows the unclipped temperature, so it answers to change alone.
+Integration and adaptation are exact for input that is linear between samples. Adaptation is a
+level that follows the input clipped to the neutral zone: inside it adaptation is complete,
+outside it a hold keeps a residue. The cold channel has a fast part beside the slow one; that part
+follows the unclipped input, so it answers to change alone. Gain falls as (1 + r/s)^−p, where r is
+the recent size of the drive, of either sign (a receptor that was just silenced is slow to answer
+as well), averaged exponentially; r takes the size as linear between samples, which at 100 Hz and
+time constants of 1 s and more changes drive by less than 0.1 %.
+
+The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin. An observer of
+the Ring & de Dear model counts impulses instead (`impulses`).
 """
 
 from __future__ import annotations
@@ -13,17 +19,23 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from thermicon.perception.observer import Channel, Observer
+from thermicon.perception.channels import Channel, sign_of
+from thermicon.perception.impulses import counted_impulses
+from thermicon.perception.observer import Observer
 from thermicon.perception.parallel import over_rows
+from thermicon.perception.rows import as_rows
 
 Array = NDArray[np.float64]
+BLOCK = 16
+"""Rows counted at once, few enough that what lies between the steps stays in the processor's cache."""
 
 
-def receptor_drive(temperature_C: ArrayLike, dt_s: float, channel: Channel, observer: Observer) -> Array:
-    """Drive (K, never negative) of one channel for temperatures at its depth.
+def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer: Observer) -> Array:
+    """Drive (never negative, in `observer.drive_unit`) of one channel for what reaches its receptors.
 
-    `temperature_C` has shape (..., n_time) on a uniform clock of `dt_s`; the drive has the same
-    shape. At the first sample the receptor is adapted as far as the neutral zone allows.
+    `received` has shape (..., n_time) on a uniform clock of `dt_s`: temperature in °C at the depth
+    of the channel or, as `observer.variable` says, heat flow there in W/m² into the skin. The drive
+    has the same shape. At the first sample the receptor is adapted as far as the neutral zone allows.
 
     >>> import numpy as np
     >>> cooling = 32.0 - np.minimum(np.arange(0.0, 4.0, 0.01), 1.0)
@@ -32,27 +44,31 @@ def receptor_drive(temperature_C: ArrayLike, dt_s: float, channel: Channel, obse
     """
     from thermicon.perception import kernels
 
-    rows, shape = as_rows(temperature_C)
-    receptor = observer.receptor(channel)
-    taus = (observer.integration_s, receptor.slow_s, receptor.fast_s)
-    step = np.array([_step(dt_s, tau) for tau in taus])
+    rows, shape = as_rows(received)
     drive = np.empty_like(rows)
-    sign = -1.0 if channel == "cold" else 1.0
+
+    def count(part: slice) -> None:
+        for start in range(part.start, part.stop, BLOCK):
+            block = slice(start, min(start + BLOCK, part.stop))
+            drive[block] = counted_impulses(rows[block], dt_s, channel, observer)
+
+    if observer.model == "ring-de-dear":
+        over_rows(count, rows.shape[0], rows.size)
+        return drive.reshape(shape)
+    receptor = observer.receptor(channel)
+    taus = (observer.integration_s, receptor.slow_s, receptor.fast_s, receptor.gain_s)
+    step = np.array([_step(dt_s, tau) for tau in taus])
+    low, high = observer.neutral(channel)
+    scale = receptor.gain_scale * receptor.threshold_drive
+    sign = sign_of(channel)
 
     def work(part: slice) -> None:
-        low, high = observer.neutral_low_C, observer.neutral_high_C
-        kernels.drive(rows[part], step, sign, low, high, receptor.fast_weight, drive[part])
+        kernels.drive(
+            rows[part], step, sign, low, high, receptor.fast_weight, scale, receptor.gain_strength, drive[part]
+        )
 
     over_rows(work, rows.shape[0], rows.size)
     return drive.reshape(shape)
-
-
-def as_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:
-    """(rows, n_time) view of a contiguous float64 array, and the shape it came in."""
-    array = np.ascontiguousarray(values, dtype=np.float64)
-    if array.ndim == 0 or array.shape[-1] < 2:
-        raise ValueError(f"a trace needs at least two samples on its last axis, not shape {array.shape}")
-    return array.reshape(-1, array.shape[-1]), array.shape
 
 
 def _step(dt_s: float, tau_s: float) -> tuple[float, float, float, float]:

@@ -11,51 +11,75 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.perception.observer import Channel, Observer
+from thermicon.perception.channels import Channel
+from thermicon.perception.observer import Observer
 from thermicon.perception.parallel import over_rows
-from thermicon.perception.receptors import Array, as_rows
+from thermicon.perception.rows import Array, as_rows
 
 
 def sensation(
-    drive_K: ArrayLike,
+    drive: ArrayLike,
     channel: Channel,
     observer: Observer,
     *,
     area_m2: float | None = None,
+    site: str | None = None,
     threshold: ArrayLike = 1.0,
 ) -> Array:
-    """Sensation ψ in d′ units, of shape (..., n_time) like the drive.
+    """Sensation ψ in d′ units, of shape (..., n_time) like the drive (`observer.drive_unit`).
 
-    `area_m2` is the area of contact (None: the reference area); `threshold` multiplies the
-    thresholds of this person, one number or one for each leading index.
+    `area_m2` is the area of contact (None: the reference area), `site` where on the body (None: the
+    thenar); `threshold` multiplies the thresholds of this person, age included, one number or one
+    for each leading index.
 
     >>> person = Observer.load()
-    >>> step = [[0.0, person.cold.threshold_drive_K]]
+    >>> step = [[0.0, person.cold.threshold_drive]]
     >>> round(float(sensation(step, "cold", person)[0, 1]), 12)
     1.0
     """
+    rows, shape = as_rows(drive)
+    psi = np.empty(shape)
+    sense(rows, psi, channel, observer, area_m2=area_m2, site=site, threshold=threshold)
+    return psi
+
+
+def sense(
+    rows: Array,
+    psi: Array,
+    channel: Channel,
+    observer: Observer,
+    *,
+    area_m2: float | None,
+    site: str | None,
+    threshold: ArrayLike,
+) -> None:
+    """Fill `psi` (..., n_time) with the sensation of drives seen as rows; both may be the same memory."""
     from thermicon.perception import kernels
 
-    rows, shape = as_rows(drive_K)
-    unit = observer.receptor(channel).threshold_drive_K / sensitivity(channel, observer, area_m2)
+    shape, felt = psi.shape, psi.reshape(rows.shape)
+    unit = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
     multiples = np.broadcast_to(np.asarray(threshold, dtype=np.float64), shape[:-1])
     scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
-    psi = np.empty_like(rows)
 
     def work(part: slice) -> None:
-        kernels.sensation(rows[part], scale[part], observer.a, observer.b, psi[part])
+        kernels.sensation(rows[part], scale[part], observer.a, observer.b, felt[part])
 
     over_rows(work, rows.shape[0], rows.size)
-    return psi.reshape(shape)
 
 
-def sensitivity(channel: Channel, observer: Observer, area_m2: float | None) -> float:
-    """How much smaller thresholds are than on the reference area: (A/A_ref)^exponent."""
+def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, site: str | None = None) -> float:
+    """How much smaller thresholds are than on the thenar at the reference area: (A/A_ref)^exponent over the site's.
+
+    >>> person = Observer.load()
+    >>> sensitivity("cold", person, None, "thenar")
+    1.0
+    """
+    factor = observer.site_factor(channel, site)
     if area_m2 is None:
-        return 1.0
+        return 1.0 / factor
     if not area_m2 > 0.0:
         raise ValueError(f"the area of contact must be above 0 m², not {area_m2:g} m²")
-    return math.pow(area_m2 / observer.reference_area_m2, observer.receptor(channel).area_exponent)
+    return math.pow(area_m2 / observer.reference_area_m2, observer.receptor(channel).area_exponent) / factor
 
 
 def psi_of_multiple(u: float, a: float) -> float:

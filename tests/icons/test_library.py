@@ -8,7 +8,15 @@ import pytest
 from thermicon.icons import CueErrors, format_text, library_names, load_library, parse, read_cue
 
 SIX = load_library("six-icons")
-NAMES = ("cooling-step-skin", "pulse-sequences", "search-space", "six-icons", "wave-shapes", "wilson-ramps")
+NAMES = (
+    "cooling-step-skin",
+    "pulse-sequences",
+    "search-space",
+    "six-icons",
+    "wave-confusions",
+    "wave-shapes",
+    "wilson-ramps",
+)
 
 
 def test_the_shipped_sets() -> None:

@@ -16,12 +16,13 @@ TOP = {
 }
 ICON = {
     *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
-    *("percent_correct", "reachable", "safe", "reason", "cautions", "rules"),
+    *("percent_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "outside_data"),
 }
-PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit"}
+PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit", "told_apart_by_rules"}
 SET = {
     *("percent_correct", "percent_correct_interval", "information_bits", "information_bits_interval", "bits_per_s"),
     *("information_bits_plugin", "trials", "worst_pair", "rules_disagree", "norm_sensitivity"),
+    *("percent_correct_parameter_interval", "information_bits_parameter_interval", "rules_score", "rules"),
 }
 
 
@@ -188,9 +189,9 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
-    from thermicon.notebooks.ranking import _disagreements
+    from thermicon.notebooks.ranking import disagreement_lines
 
-    said = list(_disagreements([{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}]))
+    said = list(disagreement_lines([{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}]))
     assert said == [
         "Rules and model disagree: rules ask for a change and a rate, the model for a cautious observer who notices",
         "  - a: rules say felt, the model 0.52 detected (felt from 0.9)",
@@ -206,7 +207,7 @@ def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> N
     assert " bits" not in said.stdout
     folder = tmp_path / "figures"
     said = cli("rank", path, "--people", 5, "--figure", folder)
-    assert said.stderr == f"wrote distance.png, confusion.png and 1 overview into {folder}\n"
+    assert said.stderr == f"wrote ranking.png, distance.png, confusion.png and 1 overview into {folder}\n"
 
 
 def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -216,6 +217,86 @@ def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Pa
     assert sorted(path.name for path in folder.iterdir()) == [
         "confusion.png",
         "distance.png",
+        "map.png",
         "overview-cool-step.png",
         "overview-warm-step.png",
+        "places.png",
+        "ranking.png",
     ]
+
+
+def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "rank.json"
+    said = cli("rank", two, "--people", 8, "--parameters", 8, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    found = json.loads(out.read_text(encoding="utf-8"))["set"]
+    (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("percent_correct", "information_bits"))
+    assert f"     {100 * low:.0f} % to {100 * high:.0f} % over the range of the model's parameters\n" in said.stdout
+    assert f"     {least:.2f} to {most:.2f} over the range of the model's parameters\n" in said.stdout
+    assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--by", "luck"), "'--by': 'luck' is none of model, rules"),
+        (("--parameters", 1), "'--parameters': 1 draw has no interval; ask for 2 or more, or 0 for none"),
+        (("--parameters", -1), "'--parameters': -1 is outside 0 to 10000"),
+    ],
+)
+def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
+    said = cli("rank", two, *options)
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_by_rules_the_table_has_no_number_of_the_model(cli: Cli, tmp_path: Path) -> None:
+    out = tmp_path / "rank.json"
+    said = cli("rank", "six-icons", "--people", 20, "--by", "rules", "--json", out)
+    assert said.exit_code == 0, said.stderr
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+    words = " ".join(said.stdout.split())
+    for word in ("detected", "onset channel", "correct", " bits"):
+        assert word not in words
+    assert "icon score rules passed pairs apart least margin fails" in words
+    assert "Set: rules tell 15 of 15 pairs apart" in words
+    assert "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes" in words
+    assert "Worst pair by rules: warming-step and linear-warming, told apart - amplitude difference (warm): " in words
+    assert "Scored by rules of thumb alone on the thenar rig: the share of rules passed" in words
+    assert "Rules on latency and felt peak need the model and are not counted" in words
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert (found["by"], found["set"]["percent_correct"]) == ("rules", None)
+    for each in found["set"]["rules_disagree"]:
+        assert each["text"].split(": rules say")[0] in words
+
+
+def test_by_rules_one_icon_and_what_fails(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "one.cue"
+    path.write_text(
+        "cue 1\nset s { control skin; baseline 29 °C }\nicon only { warm by 0.1 °C at 1 °C/s; hold for 2 s }\n",
+        encoding="utf-8",
+    )
+    words = " ".join(cli("rank", path, "--people", 1, "--by", "rules").stdout.split())
+    assert "only 0 % 0 of 3 – " in words
+    assert "change at the receptor (warm), rate at the receptor (warm), neutral zone (cold)" in words
+    assert "Worst pair" not in words
+    assert "(1 virtual person, seed 0)" in words
+
+
+def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "far.cue"
+    cues = "".join(f"icon {n} {{ cool by {k} °C at 6 °C/s; return at 6 °C/s }}\n" for n, k in (("a", 4), ("b", 2)))
+    path.write_text(f"cue 1\nset s {{ control skin }}\n{cues}", encoding="utf-8")
+    options = ("--people", 1, "--parameters", 0, "--rig", "fingertip")
+    for more in ((), ("--by", "rules")):
+        words = " ".join(cli("rank", path, *options, *more).stdout.split())
+        assert "Outside the data: all icons: no detection threshold is on record for the fingertip: those of " in words
+    assert "Outside the data" not in cli("rank", path, "--people", 1, "--parameters", 0).stdout
+
+
+def test_what_is_outside_is_said_once_with_its_icons() -> None:
+    from thermicon.notebooks.ranking import outside_lines
+
+    icons = [{"name": n, "outside_data": ["too fast"] if n != "b" else []} for n in "abc"]
+    assert outside_lines(icons) == ["Outside the data: a, c: too fast"]
+    assert outside_lines(icons[:1]) == ["Outside the data: a: too fast"]

@@ -3,10 +3,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermicon.circuit.records import RecordError, Table, load_records
+from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.perception import Observer, amplitude_jnd, false_alarms, load_thresholds
-from thermicon.perception.calibrate import calibrate, to_toml
+from thermicon.perception.calibrate import MODEL_CONSTANTS, calibrate, to_toml
+from thermicon.perception.fits import with_unit_drives
 from thermicon.perception.observer import CHANNELS, DATA, NORMS
+from thermicon.perception.ratetask import rate_task, with_gain
+from thermicon.perception.variants import VARIANTS, source_of
 
 SHIPPED = DATA / "observer.toml"
 AGAIN = "the observer is out of date: run python -m thermicon.perception.calibrate"
@@ -28,15 +31,63 @@ def test_predicted_records_do_not_reach_the_observer() -> None:
     )
     assert other != table
     assert to_toml(calibrate(other)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
-    kept = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
+    kept = Table(table.name, tuple(r for r in table if r.use != "predict"))
     assert to_toml(calibrate(kept)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+
+
+def test_references_reach_only_the_model_that_is_theirs() -> None:
+    table = load_thresholds()
+
+    def doubled(record: Record) -> Record:
+        own = record.use == "reference" and record.quantity not in MODEL_CONSTANTS
+        return replace(record, value=2.0 * record.central, low=None, high=None) if own else record
+
+    other = Table(table.name, tuple(doubled(r) for r in table))
+    assert other != table
+    assert to_toml(calibrate(other)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
 
 
 def test_every_number_of_the_observer_says_where_it_is_from() -> None:
     for record in load_records(SHIPPED):
-        assert record.use in ("calibrate", "assumed")
+        assert record.use in ("calibrate", "assumed") or record.quantity in MODEL_CONSTANTS
         assert "not calibrated" not in record.source
-    assert {r.method for r in load_records(SHIPPED).select("memory noise")} == set(NORMS)
+    for variant in VARIANTS:
+        found = load_records(SHIPPED).select(f"memory noise{source_of(*variant)}")
+        assert {r.method for r in found} == set(NORMS)
+
+
+def test_gain_control_makes_the_rate_task_depend_least_on_its_conditions() -> None:
+    """Its strength is what the independence of rate and span says, and no limits or icons say anything."""
+    table, shipped = load_thresholds(), load_records(SHIPPED)
+    record = shipped.one("gain control strength")
+    spread = {}
+    for strength in (0.0, record.central, record.interval[1], 0.8):
+        person = with_unit_drives(table, with_gain(Observer.load(), strength))
+        sizes = [case.size["max"] for case in rate_task(table, person)]
+        spread[strength] = max(sizes) / min(sizes)
+    assert record.interval[0] == 0.0
+    assert spread[record.central] < spread[0.0]
+    assert spread[record.interval[1]] <= spread[0.0] < spread[0.8]
+
+
+def test_the_threshold_step_is_felt_as_one_with_gain_control() -> None:
+    """Unit drive and gain scale are found together: u = 1 at the peak of the very step."""
+    for variant in VARIANTS:
+        person = Observer.load(variable=variant[0], model=variant[1])
+        again = with_unit_drives(load_thresholds(), person)
+        for channel in CHANNELS:
+            drive, own = again.receptor(channel).threshold_drive, person.receptor(channel).threshold_drive
+            assert drive == pytest.approx(own, rel=2e-4)
+
+
+def test_what_is_not_pinned_down_says_so() -> None:
+    shipped = load_records(SHIPPED)
+    strength = shipped.one("gain control strength")
+    assert strength.interval[0] < strength.central < strength.interval[1]
+    assert "pin down only its upper end" in strength.conditions
+    for quantity in ("gain control time constant", "gain control scale"):
+        assert shipped.one(quantity).source.startswith("no source")
+        assert shipped.one(quantity).use == "assumed"
 
 
 def test_the_slope_keeps_the_amplitude_thresholds_in_their_bands() -> None:

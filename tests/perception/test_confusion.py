@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import confuse, equal_percent_correct, percent_correct
-from thermicon.perception.confusion import embed
+from thermicon.perception.confusion import SAMPLES, embed, sampling_error
 
 
 def equal(d: float, icons: int = 6) -> np.ndarray:
@@ -64,7 +64,71 @@ def test_two_hundred_people_are_quick() -> None:
     assert time.perf_counter() - start < 1.0
 
 
+@pytest.mark.parametrize("icons", [3, 6, 12])
+@pytest.mark.parametrize("d", [0.5, 1.5, 3.0])
+def test_one_person_is_within_the_stated_error_of_the_integral(icons: int, d: float) -> None:
+    found = confuse(equal(d, icons), lapse=0.0, seed=3)
+    exact = equal_percent_correct(d, icons)
+    assert found.person_standard_error <= 0.005
+    assert np.diagonal(found.probability[0]) == pytest.approx(np.full(icons, exact), abs=4 * 0.005)
+    off = (1.0 - exact) / (icons - 1)
+    assert found.probability[0][~np.eye(icons, dtype=bool)] == pytest.approx(off, abs=4 * 0.005)
+    assert percent_correct(found.pooled) == pytest.approx(exact, abs=0.005)
+
+
+def test_sampling_agrees_with_brute_force() -> None:
+    rng = np.random.default_rng(7)
+    points = rng.normal(0.0, 1.5, (7, 3))
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    brute = np.zeros((7, 7))
+    for i in range(7):
+        felt = points[i] + rng.standard_normal((200_000, 3))
+        nearest = ((felt[:, None] - points[None]) ** 2).sum(axis=-1).argmin(axis=1)
+        brute[i] = np.bincount(nearest, minlength=7) / 200_000
+    found = confuse(apart, lapse=0.0)
+    assert found.stress[0] == pytest.approx(0.0, abs=1e-6)
+    assert np.abs(found.probability[0] - brute).max() < 4 * (found.person_standard_error + sampling_error(0.5, 200_000))
+
+
+def test_the_stated_error_is_no_less_than_the_scatter_between_seeds() -> None:
+    rng = np.random.default_rng(1)
+    points = rng.normal(0.0, 1.0, (8, 5))
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    many = [confuse(apart, lapse=0.0, seed=seed, samples=512) for seed in range(60)]
+    scatter = np.std([found.probability[0] for found in many], axis=0, ddof=1).max()
+    assert 0.5 * many[0].person_standard_error < scatter < 1.3 * many[0].person_standard_error
+    assert sampling_error(0.5, SAMPLES) < 0.005
+
+
+def test_a_bias_towards_a_name_follows_signal_detection() -> None:
+    cdf = NormalDist().cdf
+    found = confuse([[0.0, 2.0], [2.0, 0.0]], lapse=0.0, bias=[0.6, 0.0]).pooled
+    assert found[0, 0] == pytest.approx(cdf(1.0 + 0.3), abs=1e-12)
+    assert found[1, 1] == pytest.approx(cdf(1.0 - 0.3), abs=1e-12)
+    same = confuse(np.zeros((2, 2)), lapse=0.0, bias=[0.0, 1.0]).pooled
+    assert same[:, 1] == pytest.approx([1.0, 1.0])
+    line = np.abs(np.subtract.outer([0.0, 2.0, 40.0], [0.0, 2.0, 40.0]))
+    three = confuse(line, lapse=0.0, bias=[0.6, 0.0, 0.0])
+    assert three.pooled[0, 0] == pytest.approx(cdf(1.3), abs=4 * three.standard_error)
+    assert three.pooled[1, 1] == pytest.approx(cdf(0.7), abs=4 * three.standard_error)
+
+
+def test_lapses_have_no_bias() -> None:
+    found = confuse(equal(40.0), lapse=0.06, bias=[3.0, 0, 0, 0, 0, 0])
+    assert found.pooled[0] == pytest.approx([0.95, 0.01, 0.01, 0.01, 0.01, 0.01], abs=1e-12)
+
+
+def test_the_noise_hangs_on_the_number_of_the_person() -> None:
+    many = np.repeat(equal(1.5)[None], 5, axis=0)
+    late = confuse(many[2:], seed=4, first=2)
+    assert np.array_equal(late.probability, confuse(many, seed=4).probability[2:])
+
+
 def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"at least one sample is needed, not 0"):
+        confuse(equal(1.0), samples=0)
+    with pytest.raises(ValueError, match=r"bias must be finite"):
+        confuse(equal(1.0), bias=np.full(6, np.inf))
     with pytest.raises(ValueError, match=r"d_prime must have shape \(people, icons, icons\), not \(2, 3\)"):
         confuse(np.zeros((2, 3)))
     with pytest.raises(ValueError, match=r"d_prime must be finite"):

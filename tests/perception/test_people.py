@@ -6,6 +6,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import People, draw_people, people_records
+from thermicon.perception.people import age_factor
 
 
 def test_the_first_people_are_the_same_whatever_the_number() -> None:
@@ -42,7 +43,20 @@ def test_people_change_the_rig() -> None:
         assert own.module == rig.module
 
 
+def test_age_raises_thresholds_within_the_assumed_interval() -> None:
+    young, old = draw_people(300, seed=2), draw_people(300, seed=2, age_years=65.0)
+    ratio = old.threshold_cold / young.threshold_cold
+    assert ratio == pytest.approx(old.threshold_warm / young.threshold_warm)
+    assert (ratio.min(), ratio.max()) == (pytest.approx(1.0, abs=0.02), pytest.approx(2.0, abs=0.02))
+    assert np.array_equal(draw_people(9, seed=2, age_years=25.0).threshold_cold, young.threshold_cold[:9])
+    assert np.array_equal(draw_people(9, seed=2, age_years=65.0).threshold_cold, old.threshold_cold[:9])
+    assert np.array_equal(old.memory, young.memory)
+    assert age_factor(45.0) == pytest.approx(2.0**0.25)
+
+
 def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"an age of 12 years is not covered: give 18 to 100"):
+        draw_people(3, age_years=12.0)
     with pytest.raises(ValueError, match=r"at least one person is needed, not 0"):
         draw_people(0)
     columns: dict[str, Any] = {field.name: np.ones(2) for field in fields(People)}

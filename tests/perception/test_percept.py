@@ -42,6 +42,30 @@ def _at(trace: Any, site: str) -> Any:
     return replace(trace, site=site)
 
 
+def test_felt_peaks_are_later_by_conduction(cue: Any, observer: Observer) -> None:
+    percept = perceive(cue(change=-4.0, rate=2.0, hold=0.0), observer)
+    peak, felt = percept.peak_s("cold"), percept.felt_peak_s("cold")
+    assert peak is not None
+    assert 1.9 < peak < 2.1
+    assert felt == pytest.approx(peak + 0.7 / 2.0)
+    assert percept.conduction_s == (pytest.approx(0.35), pytest.approx(1.4))
+    assert perceive(cue(change=0.0), observer).felt_peak_s("warm") is None
+
+
+def test_a_peak_lies_between_samples_and_may_lie_at_the_end() -> None:
+    time = 0.1 * np.arange(60)
+    percept = Percept(5.0 - (time - 2.34) ** 2, time, 0.1, None, None, 0.0)
+    assert percept.peak_s("cold") == pytest.approx(2.34, abs=1e-9)
+    assert percept.peak_s("warm") == pytest.approx(5.9)
+
+
+def test_a_percept_says_that_it_is_outside_the_data(cue: Any, observer: Observer) -> None:
+    assert perceive(cue(change=-4.0), observer).outside_data == ()
+    far = perceive(cue(change=-19.0), observer)
+    assert "13" in far.outside_data[0]
+    assert repr(far).endswith("receptor clock, outside the data)")
+
+
 def test_plot_returns_axes(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
     axes = percept.plot()

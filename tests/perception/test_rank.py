@@ -11,12 +11,13 @@ from thermicon.perception import Ranking, perceive, rank
 TOP = "thermicon rig rig_changes seed people tracking by norm content_hash icons pairs confusion set chosen"
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s percent_correct reachable safe "
-    "reason cautions rules"
+    "reason cautions rules rules_score rules_margin outside_data detected_parameter_interval"
 )
-PAIR = "a b d_prime confused_probability why rules edit"
+PAIR = "a b d_prime confused_probability why rules edit told_apart_by_rules rules_margin no_edit parts"
 SET = (
     "percent_correct percent_correct_interval information_bits information_bits_interval bits_per_s "
-    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity"
+    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity percent_correct_parameter_interval "
+    "information_bits_parameter_interval parameter_draws rules_score rules"
 )
 
 
@@ -27,7 +28,7 @@ def rig() -> Rig:
 
 @pytest.fixture(scope="module")
 def ranking(rig: Rig) -> Ranking:
-    return rank(load_library("six-icons"), rig, people=12, seed=7)
+    return rank(load_library("six-icons"), rig, people=12, seed=7, parameters=4)
 
 
 @pytest.fixture(scope="module")
@@ -72,10 +73,15 @@ def test_numbers_hang_together(held: Any) -> None:
 def test_same_arguments_same_bytes(ranking: Ranking, rig: Rig) -> None:
     calls: list[tuple[int, int]] = []
     again = rank(
-        load_library("six-icons"), rig, people=12, seed=7, progress=lambda done, total: calls.append((done, total))
+        load_library("six-icons"),
+        rig,
+        people=12,
+        seed=7,
+        parameters=4,
+        progress=lambda done, total: calls.append((done, total)),
     )
     assert again.to_json() == ranking.to_json()
-    assert calls == [(1, 4), (2, 4), (3, 4), (4, 4)]
+    assert calls == [(k, 8) for k in range(1, 9)]
     assert "NaN" not in ranking.to_json()
 
 
@@ -86,7 +92,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert ranking.to_frame().shape == (6, len(rows[0]))
     assert repr(ranking).startswith("Ranking(predicted: 6 icons on thenar, 12 people, ")
     axes = ranking.plot()
-    assert [t.get_text() for t in axes.get_xticklabels()] == list(ranking.labels)
+    assert sorted(t.get_text() for t in axes.get_xticklabels()) == sorted(ranking.labels)
     assert axes.get_title().startswith("predicted confusions, %")
     assert ranking._repr_html_().startswith("<svg")
     from thermicon.perception.draw import plot_distance
@@ -108,7 +114,7 @@ def test_every_icon_is_felt_later_than_the_windows_usually_quoted(ranking: Ranki
 
 def test_what_was_changed_on_the_rig_is_told(rig: Rig) -> None:
     other = rig.with_(**{"contact.area_cm2": 4}).with_set(["driver.current_limit_A=1.2"])
-    ranking = rank(load_library("wave-shapes"), other, people=1)
+    ranking = rank(load_library("wave-shapes"), other, people=1, parameters=0)
     assert ranking.to_dict()["rig_changes"] == ["contact.area_cm2=4", "driver.current_limit_A=1.2"]
     assert " on thenar with contact.area_cm2=4, driver.current_limit_A=1.2, 1 person, " in repr(ranking)
     assert "[" not in repr(ranking)
@@ -118,7 +124,9 @@ BY_CURRENT = "cue 1\nset s { control current; baseline 32 °C }\nicon a { %s }"
 
 
 def test_a_current_beyond_the_driver_is_not_reachable(rig: Rig) -> None:
-    icon = rank(parse(BY_CURRENT % "to 1.6 A at 0.4 A/s; hold for 0.1 s; to 0.1 A at 0.4 A/s"), rig, people=1).icons[0]
+    icon = rank(
+        parse(BY_CURRENT % "to 1.6 A at 0.4 A/s; hold for 0.1 s; to 0.1 A at 0.4 A/s"), rig, people=1, parameters=0
+    ).icons[0]
     assert (icon.reachable, icon.safe) == (False, True)
     assert icon.reason is not None
     assert "1.6 A" in icon.reason
@@ -126,7 +134,7 @@ def test_a_current_beyond_the_driver_is_not_reachable(rig: Rig) -> None:
 
 
 def test_what_is_neither_safe_nor_reachable_says_both(rig: Rig) -> None:
-    icon = rank(parse(BY_CURRENT % "to -3 A at 20 A/s; hold for 20 s"), rig, people=1).icons[0]
+    icon = rank(parse(BY_CURRENT % "to -3 A at 20 A/s; hold for 20 s"), rig, people=1, parameters=0).icons[0]
     assert (icon.reachable, icon.safe) == (False, False)
     assert icon.reason is not None
     assert "hard" in icon.reason
@@ -136,7 +144,7 @@ def test_what_is_neither_safe_nor_reachable_says_both(rig: Rig) -> None:
 
 def test_soft_limits_are_cautions(rig: Rig) -> None:
     text = "cue 1\nset s { control display; baseline 32 °C }\nicon a { cool by 12 °C at 2 °C/s; hold for 9 s }"
-    ranking = rank(parse(text), rig, people=1)
+    ranking = rank(parse(text), rig, people=1, parameters=0)
     assert ranking.icons[0].safe
     assert ranking.icons[0].reason is None
     assert any("soft" in caution for caution in ranking.icons[0].cautions)
@@ -145,12 +153,12 @@ def test_soft_limits_are_cautions(rig: Rig) -> None:
 
 def test_one_icon_has_no_bits_in_its_repr(rig: Rig) -> None:
     text = "cue 1\nset s { control skin; baseline 32 °C }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
-    ranking = rank(parse(text), rig, people=2)
+    ranking = rank(parse(text), rig, people=2, parameters=0)
     assert repr(ranking) == "Ranking(predicted: 1 icon on thenar, 2 people, 100.0 % correct [100, 100])"
     from thermicon.perception.draw import plot_distance
 
     assert [cell.get_text() for cell in ranking.plot().texts] == ["100"]
-    assert [cell.get_text() for cell in plot_distance(ranking).texts] == ["0.0"]
+    assert [cell.get_text() for cell in plot_distance(ranking).texts] == ["0"]
 
 
 def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
@@ -158,7 +166,7 @@ def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
     a, b = (
         f"icon {n} {{ cool by {k} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n" for n, k in (("a", 3), ("b", 3.3))
     )
-    (found,) = rank(parse(head + a + b), rig, people=2).rules_disagree
+    (found,) = rank(parse(head + a + b), rig, people=2, parameters=0).rules_disagree
     assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
     assert found["text"].startswith("a and b: rules say told apart, the model d′ ")
     assert float(found["text"].split("d′ ")[1].split()[0]) < 2.563
@@ -167,7 +175,7 @@ def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
 
 def test_what_does_not_exist_is_null(rig: Rig) -> None:
     text = "cue 1\nset s { control skin; baseline 32 °C }\nicon faint { cool by 0.01 °C at 0.1 °C/s; hold for 1 s }"
-    held = json.loads(rank(parse(text), rig, people=2).to_json())
+    held = json.loads(rank(parse(text), rig, people=2, parameters=0).to_json())
     icon, whole = held["icons"][0], held["set"]
     assert icon["onset_s"] is None
     assert icon["channel"] is None
@@ -181,7 +189,7 @@ def test_what_does_not_exist_is_null(rig: Rig) -> None:
 def test_identical_icons_are_guessed(rig: Rig) -> None:
     body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
     text = f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon a {body}\nicon b {body}"
-    ranking = rank(parse(text), rig, people=3)
+    ranking = rank(parse(text), rig, people=3, parameters=0)
     assert ranking.percent_correct == pytest.approx(0.5)
     assert ranking.information_bits == pytest.approx(0.0, abs=1e-9)
     assert ranking.pairs[0].d_prime == pytest.approx(0.0)
@@ -191,8 +199,55 @@ def test_identical_icons_are_guessed(rig: Rig) -> None:
 
 def test_ranking_by_rules_orders_by_rules(rig: Rig) -> None:
     rows = rank(load_library("wave-shapes"), rig, people=2, by="rules").rows()
-    keys = [(row["pairs_apart_by_rules"], row["rules_passed"]) for row in rows]
+    keys = [(row["rules_score"], row["rules_margin"]) for row in rows]
     assert keys == sorted(keys, reverse=True)
+    for row in rows:
+        assert row["rules_score"] == (row["rules_passed"] + row["pairs_apart_by_rules"]) / (
+            row["rules"] + len(rows) - 1
+        )
+
+
+def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> None:
+    by_rules = rank(load_library("six-icons"), rig, people=12, seed=7, by="rules")
+    held = json.loads(by_rules.to_json())
+    assert held["by"] == "rules"
+    assert list(held["set"]) == SET.split()
+    for icon in held["icons"]:
+        assert list(icon) == ICON.split()
+        for key in ("detected_probability", "onset_s", "channel", "percent_correct", "detected_parameter_interval"):
+            assert icon[key] is None
+        assert 0.0 <= icon["rules_score"] <= 1.0
+    for pair in held["pairs"]:
+        assert (pair["d_prime"], pair["confused_probability"]) == (None, None)
+        assert pair["why"] == [rule["text"] for rule in pair["rules"]]
+        assert pair["told_apart_by_rules"] == pair["rules"][-1]["pass"]
+    whole = held["set"]
+    for key in ("percent_correct", "percent_correct_interval", "information_bits", "information_bits_interval"):
+        assert whole[key] is None
+    for key in ("bits_per_s", "information_bits_plugin", "percent_correct_parameter_interval", "parameter_draws"):
+        assert whole[key] is None
+    assert whole["norm_sensitivity"] == {}
+    assert held["confusion"]["probability"] is None
+    assert whole["rules_score"] == 1.0
+    assert [rule["rule"] for rule in whole["rules"]] == ["depth (cold)", "depth (warm)"]
+    # Both modes name the same places where rules and model part, and the model changes nothing in the score.
+    model = json.loads(ranking.to_json())
+    assert whole["rules_disagree"] == model["set"]["rules_disagree"]
+    assert [icon["rules_score"] for icon in held["icons"]] == [icon["rules_score"] for icon in model["icons"]]
+    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs told apart, worst pair ")
+
+
+def test_the_worst_pair_by_rules_is_the_one_nearest_to_failing(rig: Rig) -> None:
+    head = "cue 1\nset s { control display; baseline 32 °C }\n"
+    body = "; hold for 2 s; return at 3 °C/s }\n"
+    icons = "".join(f"icon {n} {{ cool by {k} °C at 3 °C/s{body}" for n, k in (("a", 3), ("b", 3.05), ("c", 3.4)))
+    by_rules = rank(parse(head + icons), rig, people=2, by="rules")
+    assert by_rules.worst_pair == ("a", "b")
+    assert by_rules.rules_score == pytest.approx(2 / 3)
+    assert by_rules.rows()[0]["icon"] == "c"
+    (pair,) = (p for p in by_rules.pairs if {p.a, p.b} == {"a", "b"})
+    assert pair.rules_margin is not None
+    assert pair.rules_margin < 0
 
 
 def test_a_real_trace_is_perceived(rig: Rig) -> None:
@@ -210,4 +265,4 @@ def test_messages(rig: Rig) -> None:
     with pytest.raises(ValueError, match=r"a ranking is by model or rules, not by 'luck'"):
         rank(icons, rig, by="luck")
     with pytest.raises(ValueError, match=r"at least one person"):
-        rank(icons, rig, people=0)
+        rank(icons, rig, people=0, parameters=0)

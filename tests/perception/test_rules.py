@@ -2,7 +2,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.perception import Observer, RuleResult, icon_rules, load_rules, pair_rules, perceive
+from thermicon.circuit import Rig
+from thermicon.perception import Observer, RuleResult, icon_rules, load_rules, pair_rules, perceive, rig_rules
 from thermicon.perception.rules import TOLD_APART
 
 
@@ -15,9 +16,9 @@ def scored(cue: Any, observer: Observer, **changes: Any) -> dict[str, RuleResult
     return by_name(icon_rules(trace, perceive(trace, observer)))
 
 
-def pair(cue: Any, observer: Observer, a: dict[str, Any], b: dict[str, Any]) -> dict[str, RuleResult]:
+def pair(cue: Any, a: dict[str, Any], b: dict[str, Any]) -> dict[str, RuleResult]:
     one, two = cue(name="a", **a), cue(name="b", **b)
-    return by_name(pair_rules(one, two, perceive(one, observer), perceive(two, observer)))
+    return by_name(pair_rules(one, two))
 
 
 def test_a_clear_cooling_passes(cue: Any, observer: Observer) -> None:
@@ -36,7 +37,11 @@ def test_a_small_slow_warming_fails(cue: Any, observer: Observer) -> None:
     assert found["change at the receptor (warm)"].margin == pytest.approx(-0.05)
     text = "rate at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
     assert found["rate at the receptor (warm)"].text == text
-    latency = found["latency (warm)"]
+    assert not any(name.startswith("latency") for name in found)  # the window is for rates over 0.1 K/s
+
+
+def test_an_icon_that_is_not_felt_has_no_latency(cue: Any, observer: Observer) -> None:
+    latency = scored(cue, observer, change=0.15)["latency (warm)"]
     assert (latency.passed, latency.value, latency.margin) == (False, None, None)
     assert latency.text == "latency: the icon is not felt, so it has no onset to hold against 0.5 to 0.9 s"
 
@@ -64,7 +69,7 @@ def test_a_rule_with_one_end_has_no_lower_threshold(cue: Any, observer: Observer
 
 
 def test_an_icon_that_is_not_felt_keeps_both_ends_of_the_window(cue: Any, observer: Observer) -> None:
-    latency = scored(cue, observer, change=0.15, rate=0.05)["latency (warm)"]
+    latency = scored(cue, observer, change=0.15)["latency (warm)"]
     assert (latency.threshold_low, latency.threshold) == (0.5, 0.9)
 
 
@@ -74,15 +79,15 @@ def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: 
     assert text == f"change at the receptor (cold): {-change:g} K against at least 0.11 K: {said}"
 
 
-def test_directions_tell_apart(cue: Any, observer: Observer) -> None:
-    found = pair(cue, observer, {"change": -4.0}, {"change": 4.0})
+def test_directions_tell_apart(cue: Any) -> None:
+    found = pair(cue, {"change": -4.0}, {"change": 4.0})
     assert found["direction"].text == "direction: a cools, b warms: directions differ"
     assert found[TOLD_APART].passed
     assert not any(name.startswith("amplitude") for name in found)
 
 
-def test_equal_cues_are_not_told_apart(cue: Any, observer: Observer) -> None:
-    found = pair(cue, observer, {"change": -4.0}, {"change": -4.05})
+def test_equal_cues_are_not_told_apart(cue: Any) -> None:
+    found = pair(cue, {"change": -4.0}, {"change": -4.05})
     assert found["direction"].text == "direction: a cools, b cools: directions are the same"
     assert found["peak (cold)"].text == "peak (cold): 0.05 K against at least 0.07 K: fails"
     assert found["rate ratio (cold)"].value == pytest.approx(1.0)
@@ -92,28 +97,92 @@ def test_equal_cues_are_not_told_apart(cue: Any, observer: Observer) -> None:
     assert not found[TOLD_APART].passed
 
 
-def test_each_of_ours_alone_tells_apart(cue: Any, observer: Observer) -> None:
-    peak = pair(cue, observer, {"change": 4.0}, {"change": 4.1})
+def test_each_of_ours_alone_tells_apart(cue: Any) -> None:
+    peak = pair(cue, {"change": 4.0}, {"change": 4.1})
     assert peak[TOLD_APART].text == "told apart: by peak (warm)"
     assert peak["amplitude difference (warm)"].margin == pytest.approx(0.01)
-    rate = pair(cue, observer, {"change": -4.0, "rate": 3.0}, {"change": -4.0, "rate": 4.5})
+    rate = pair(cue, {"change": -4.0, "rate": 3.0}, {"change": -4.0, "rate": 4.5})
     assert rate[TOLD_APART].text == "told apart: by rate ratio (cold)"
-    late = pair(cue, observer, {"change": -4.0}, {"change": -4.0, "lag_s": 0.3})
+    late = pair(cue, {"change": -4.0}, {"change": -4.0, "lag_s": 0.3})
     assert late[TOLD_APART].text == "told apart: by onset (cold)"
 
 
-def test_unfelt_icons_have_no_onset(cue: Any, observer: Observer) -> None:
-    one = pair(cue, observer, {"change": -4.0}, {"change": -0.05})
-    assert one["onset (cold)"].text == "onset: only one of the two is felt"
-    none = pair(cue, observer, {"change": -0.05}, {"change": -0.04})
-    assert none["onset (cold)"].text == "onset: neither is felt"
+def test_icons_below_every_threshold_have_no_onset(cue: Any) -> None:
+    one = pair(cue, {"change": -4.0}, {"change": -0.05})
+    assert one["onset (cold)"].text == "onset: only one of the two passes the threshold of a receptor"
+    none = pair(cue, {"change": -0.05}, {"change": -0.04})
+    assert none["onset (cold)"].text == "onset: neither passes the threshold of a receptor"
     assert none["onset (cold)"].value is None
     assert not none["onset (cold)"].passed
 
 
 def test_rules_are_records_that_say_whose_they_are() -> None:
     for record in load_rules():
-        assert record.get("scope") in ("icon", "pair")
+        assert record.get("scope") in ("icon", "pair", "set")
+        assert record.get("basis") in ("trace", "rig", "model")
         assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
     assert {r.quantity for r in ours} == {"direction", "peak", "rate ratio", "onset", TOLD_APART}
+
+
+def test_every_rule_of_the_design_is_there() -> None:
+    said = {(r.quantity, r.channel): (r.low, r.value, r.high) for r in load_rules()}
+    assert said["change at the receptor", "warm"][1] == 0.2
+    assert said["change at the receptor", "cold"][1] == 0.11
+    assert said["rate at the receptor", "both"][1] == 0.1
+    assert said["latency", "cold"] == (0.3, None, 0.5)
+    assert said["latency", "warm"] == (0.5, None, 0.9)
+    assert said["amplitude difference", "cold"] == (0.02, 0.07, 0.07)
+    assert said["amplitude difference", "warm"] == (0.03, 0.09, 0.09)
+    assert said["neutral zone", "both"] == (30.0, None, 36.0)
+    assert (said["depth", "cold"][1], said["depth", "warm"][1]) == (0.15, 0.3)
+    assert ("felt peak", "cold") in said
+    assert ("felt peak", "warm") in said
+    assert (said["peak", "cold"][1], said["peak", "warm"][1], said["rate ratio", "both"][1]) == (0.07, 0.09, 1.43)
+    assert (said["onset", "cold"][1], said["onset", "warm"][1]) == (0.2, 0.4)
+
+
+def test_a_slow_icon_that_is_felt_has_no_latency_window(cue: Any, observer: Observer) -> None:
+    slow = scored(cue, observer, change=5.0, rate=0.09, hold=1.0, end_s=130.0)
+    assert not slow["rate at the receptor (warm)"].passed
+    assert not any(name.startswith("latency") for name in slow)
+
+
+def test_felt_peaks_are_held_against_the_published_signs(cue: Any, observer: Observer) -> None:
+    warm = scored(cue, observer, change=4.0, rate=1.0, hold=0.0)["felt peak (warm)"]
+    assert warm.passed
+    assert warm.value is not None
+    assert warm.value > 0
+    assert (
+        warm.text
+        == f"felt peak (warm): predicted {warm.value:.2f} s after that of the skin, published after it: passes"
+    )
+    cold = scored(cue, observer, change=-4.0, rate=1.0, hold=0.0)["felt peak (cold)"]
+    assert cold.value is not None
+    assert cold.passed == (cold.value < 0)
+    assert cold.margin == -cold.value
+
+
+def test_only_latency_and_felt_peak_come_from_the_model(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=-4.0)
+    assert {r.quantity for r in found.values() if r.from_model} == {"latency", "felt peak"}
+    assert not any(r.from_model for r in pair(cue, {"change": 4.0}, {"change": -4.0}).values())
+    assert found["latency (cold)"].to_dict()["from_model"] is True
+
+
+def test_depths_are_a_rule_on_the_rig() -> None:
+    cold, warm = rig_rules(Rig.load("thenar"))
+    assert (cold.passed, warm.passed) == (True, True)
+    assert cold.text == (
+        "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes; on this rig that is inside the stratum corneum"
+    )
+    deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
+    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.195))
+    assert deep.text.endswith("0.5 mm against 0.295 to 0.305 mm: fails; on this rig that is inside the dermis")
+
+
+def test_margins_are_compared_in_shares_of_their_threshold(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=-0.22)
+    assert found["change at the receptor (cold)"].normalised_margin == pytest.approx(1.0)
+    assert found["neutral zone (cold)"].normalised_margin == pytest.approx(2.0 / 3.0)
+    assert scored(cue, observer, change=-0.05)["latency (cold)"].normalised_margin is None

@@ -1,0 +1,95 @@
+"""Many people on many icons: receptor temperatures → what each feels → whom each confuses with whom."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermicon.perception.confusion import SAMPLES, Confusion, confuse
+from thermicon.perception.detection import detect
+from thermicon.perception.distance import differences, identification_dprime
+from thermicon.perception.measures import information_bits, percent_correct
+from thermicon.perception.observer import Norm, Observer
+from thermicon.perception.people import People
+from thermicon.perception.percept import perceive_many, uniform_clock
+from thermicon.perception.receptors import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What the receptors of every person went through: °C of shape (people, icons, n_time), clock in s, area in m²."""
+
+    cold_C: Array
+    warm_C: Array
+    time_s: Array
+    site: str
+    area_m2: float
+
+    def thinned(self, people: int, every: int) -> Played:
+        """The first people of them at every k-th instant, on arrays of their own."""
+        cold, warm = (np.ascontiguousarray(held[:people, :, ::every]) for held in (self.cold_C, self.warm_C))
+        return Played(cold, warm, self.time_s[::every], self.site, self.area_m2)
+
+
+@dataclass(frozen=True, slots=True)
+class Felt:
+    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s."""
+
+    apart: dict[Norm, Array]
+    probability: Array
+    duration_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Scores:
+    """What one observer's constants make of it: per person proportion correct and bits, per icon the detected share."""
+
+    percent_correct: Array
+    information_bits: Array
+    detected: Array
+
+
+def feel(played: Played, crowd: People, observer: Observer) -> Felt:
+    """What every person feels of every icon, and how far apart the icons are for them."""
+    dt, rows = uniform_clock(played.time_s)
+    cold, warm = perceive_many(
+        played.cold_C[..., :rows],
+        played.warm_C[..., :rows],
+        dt,
+        observer,
+        area_m2=played.area_m2,
+        site=played.site,
+        threshold_cold=crowd.threshold_cold[:, None],
+        threshold_warm=crowd.threshold_warm[:, None],
+    )
+    found = detect(
+        cold,
+        warm,
+        dt,
+        observer,
+        path_m=observer.path_m(played.site) * crowd.path[:, None],
+        velocity_cold_m_per_s=crowd.velocity_cold_m_per_s[:, None],
+        velocity_warm_m_per_s=crowd.velocity_warm_m_per_s[:, None],
+        decision_s=crowd.decision_s[:, None],
+    )
+    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1))
+
+
+def judge(
+    felt: Felt, norm: Norm, crowd: People, observer: Observer, seed: int, samples: int = SAMPLES, first: int = 0
+) -> tuple[Array, Confusion]:
+    """Pairwise d′ from memory (people, icons, icons) by one norm, and the confusions that follow.
+
+    `first` is the number of the first person, on which the noise hangs.
+    """
+    memory = crowd.memory[:, None, None]
+    d_prime = identification_dprime(felt.apart[norm], observer, norm, felt.duration_s, memory)
+    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+
+
+def score(played: Played, crowd: People, observer: Observer, norm: Norm, seed: int, samples: int) -> Scores:
+    """The whole chain for one observer, without what only a report needs."""
+    felt = feel(played, crowd, observer)
+    confusion = judge(felt, norm, crowd, observer, seed, samples)[1].probability
+    return Scores(percent_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

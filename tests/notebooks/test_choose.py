@@ -1,0 +1,136 @@
+"""``rank --choose``, its edits, and ``search``: what scripts read, what people read, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.icons import parse
+
+Cli = Callable[..., Any]
+FEW = ("--people", 12, "--parameters", 0)
+CHOSEN = ["icons", "objective", "value", "optimal", "bound", "at_own_range"]
+EDIT = ["icon", "old", "new", "cost", "added_s", "d_prime"]
+
+
+@pytest.fixture(scope="module")
+def families(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("search") / "families.cue"
+    path.write_text(
+        "cue 1\nset both { site thenar; control display; baseline 32 °C }\n"
+        "icon dip(depth in 2..6 step 2 °C) { cool by depth at 3 °C/s; return at 3 °C/s }\n"
+        "icon rise(height in 2..4 step 1 °C) { warm by height at 2 °C/s; return at 2 °C/s }\n",
+        encoding="utf-8",
+    )
+    return path
+
+
+@pytest.fixture
+def ranked(cli: Cli, tmp_path: Path) -> Callable[..., dict[str, Any]]:
+    def run(*more: object) -> dict[str, Any]:
+        out = tmp_path / "rank.json"
+        said = cli("rank", "six-icons", *FEW, *more, "--json", out)
+        assert said.exit_code == 0, said.stderr
+        found: dict[str, Any] = json.loads(out.read_text(encoding="utf-8"))
+        return {**found, "stdout": said.stdout}
+
+    return run
+
+
+@pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
+def test_the_json_says_what_was_chosen(ranked: Callable[..., dict[str, Any]], objective: str) -> None:
+    found = ranked("--choose", 3, "--objective", objective, "--must", "double-dip")
+    chosen = found["chosen"]
+    assert [key for key in chosen if key in CHOSEN] == CHOSEN
+    assert len(chosen["icons"]) == 3
+    assert "double-dip" in chosen["icons"]
+    assert chosen["objective"] == objective
+    assert chosen["optimal"] is True
+    assert chosen["value"] == chosen["bound"]
+    if objective == "worst":
+        pairs = [p["d_prime"] for p in found["pairs"] if {p["a"], p["b"]} <= set(chosen["icons"])]
+        assert chosen["value"] == min(pairs)
+    assert "Best 3 of 6, by " in found["stdout"]
+    assert "at the range of all 6: " in found["stdout"]
+    assert "at their own range: " in found["stdout"]
+
+
+def test_without_the_question_nothing_is_chosen(ranked: Callable[..., dict[str, Any]]) -> None:
+    found = ranked()
+    assert found["chosen"] is None
+    assert "Best" not in found["stdout"]
+
+
+def test_the_worst_pair_has_an_edit_and_others_on_request(ranked: Callable[..., dict[str, Any]]) -> None:
+    found = ranked()
+    edits = {(p["a"], p["b"]): p["edit"] for p in found["pairs"] if p["edit"] or p["no_edit"]}
+    assert list(edits) == [tuple(found["set"]["worst_pair"])]
+    edit = edits[tuple(found["set"]["worst_pair"])]
+    assert list(edit) == EDIT
+    assert f"cheapest edit: in {edit['icon']}," in found["stdout"]
+    every = ranked("--edits")
+    close = {(p["a"], p["b"]) for p in every["pairs"] if p["d_prime"] < 2.563}
+    assert close <= {(p["a"], p["b"]) for p in every["pairs"] if p["edit"] or p["no_edit"]}
+
+
+def test_limits_are_kept(ranked: Callable[..., dict[str, Any]]) -> None:
+    chosen = ranked("--choose", 3, "--most-time", 24, "--most-energy", 22)["chosen"]
+    assert chosen["total_s"] <= 24
+    assert chosen["total_J"] <= 22
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "told"),
+    [
+        (("--choose", 7), 1, "7 icons cannot be chosen: there are only 6 icons"),
+        (("--choose", 3, "--must", "double-dop"), 1, "did you mean double-dip?"),
+        (("--choose", 3, "--most-time", 5), 1, "stay within a total of 5 s"),
+        (("--choose", 1), 2, "1 cannot be told apart; choose 2 icons or more"),
+        (("--choose", 3, "--objective", "best"), 2, "'best' is none of worst, correct, bits, bits-per-s"),
+        (("--objective", "bits"), 2, "belongs to --choose K"),
+        (("--must", "double-dip"), 2, "belongs to --choose K"),
+        (("--choose", 3, "--most-energy", -1), 2, "-1 J is not above 0"),
+        (("--choose", 3, "--by", "rules"), 2, "icons are chosen by the model"),
+    ],
+)
+def test_bad_choices(cli: Cli, options: tuple[object, ...], code: int, told: str) -> None:
+    said = cli("rank", "six-icons", *FEW, *options)
+    assert said.exit_code == code
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_path: Path) -> None:
+    out = tmp_path / "found.cue"
+    asked = ("search", families, "--choose", 3, "--evaluations", 40, "--people", 6, "--seed", 4)
+    said = cli(*asked, "-o", out)
+    assert said.exit_code == 0, said.stderr
+    assert f"wrote {out}" in said.stderr
+    found = parse(out.read_text(encoding="utf-8"))
+    assert len(found) == 3
+    assert all("seed 4" in icon.metadata.tags for icon in found)
+    told = " ".join(said.stdout.split())
+    assert "before after" in told
+    assert "predictions of a model, not measurements, and the set was searched for on that same model" in told
+    assert cli(*asked, "-o", "-").stdout == out.read_text(encoding="utf-8")
+    assert cli("check", out).exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "told"),
+    [
+        (("six-icons",), 1, "nothing to search: the file has no family"),
+        (("search-space", "--choose", 1), 2, "1 is outside 2 to 64"),
+        (("search-space", "--evaluations", 2), 2, "2 is outside 10 to 1000000"),
+        (("search-space", "--objective", "all"), 2, "'all' is none of worst, correct, bits, bits-per-s"),
+        (("search-space", "-o", "found.txt"), 1, "a set of icons is written as .cue, not .txt"),
+        (("search-space", "--norm", "mean"), 2, "'mean' is none of max, rms, integral"),
+    ],
+)
+def test_bad_searches(cli: Cli, options: tuple[object, ...], code: int, told: str) -> None:
+    said = cli("search", *options)
+    assert said.exit_code == code
+    assert told in " ".join(said.stderr.replace("│", " ").split())

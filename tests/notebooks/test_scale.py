@@ -1,0 +1,78 @@
+"""``thermicon rank`` on more or fewer cores, on a cluster that is not there, and going on where it was ended."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.notebooks import cache
+
+Cli = Callable[..., Any]
+
+
+def test_workers_change_no_byte_and_parts_are_kept_where_asked(cli: Cli, two: Path, tmp_path: Path) -> None:
+    outs = []
+    for extra in ((), ("--workers", 1), ("--workers", 3, "--keep", tmp_path / "kept"), ("--keep", tmp_path / "kept")):
+        outs.append(tmp_path / f"{len(outs)}.json")
+        said = cli("rank", two, "--people", 5, "--parameters", 0, "--json", outs[-1], *extra)
+        assert said.exit_code == 0, said.stderr
+    assert len({out.read_bytes() for out in outs}) == 1
+    assert len(list((tmp_path / "kept").glob("*/*.parquet"))) == 1
+
+
+@pytest.mark.parametrize("number", ["0", "-2", "5000"])
+def test_a_number_of_workers_that_makes_no_sense(cli: Cli, two: Path, number: str) -> None:
+    said = cli("rank", two, "--workers", number)
+    assert said.exit_code == 2
+    assert f"{number} is outside 1 to 1024" in said.stderr
+
+
+def test_no_people_and_both_kinds_of_workers(cli: Cli, two: Path) -> None:
+    assert "0 is outside 1 to 100000" in cli("rank", two, "--people", 0).stderr
+    said = cli("rank", two, "--workers", 2, "--cluster", "tcp://127.0.0.1:1")
+    assert said.exit_code == 2
+    assert "is for this machine; a cluster has the workers that it has" in said.stderr
+
+
+def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
+    pytest.importorskip("distributed")
+    said = cli("rank", two, "--people", 2, "--cluster", "nowhere")
+    assert said.exit_code == 1
+    assert "'nowhere' is not the address of a scheduler" in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+def test_a_folder_for_parts_that_is_a_file(cli: Cli, two: Path, tmp_path: Path) -> None:
+    (tmp_path / "kept").write_text("")
+    said = cli("rank", two, "--people", 2, "--keep", tmp_path / "kept")
+    assert said.exit_code == 1
+    assert "is a file; give the name of a folder" in said.stderr
+
+
+def test_long_work_is_kept_until_it_is_done(
+    cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "cache"))
+    with pytest.raises(KeyboardInterrupt), cache.kept(None, cache.LONG_PAIRS, "work") as folder:
+        assert folder is not None
+        (folder / "part").write_text("")
+        raise KeyboardInterrupt
+    assert folder is not None
+    with cache.kept(None, cache.LONG_PAIRS, "work") as again:
+        assert again == folder
+        assert (folder / "part").exists()
+    assert not folder.exists()
+    with cache.kept(None, cache.LONG_PAIRS - 1, "work") as none:
+        assert none is None
+
+
+def test_the_error_of_sampling_is_in_the_json(cli: Cli, tmp_path: Path) -> None:
+    out = tmp_path / "six.json"
+    said = cli("rank", "six-icons", "--people", 20, "--parameters", 0, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    found = json.loads(out.read_text(encoding="utf-8"))["confusion"]
+    assert 0 < found["standard_error"] < found["person_standard_error"] < 0.005

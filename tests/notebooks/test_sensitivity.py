@@ -1,0 +1,101 @@
+"""``thermicon sensitivity``: what to measure first, as a table for people and a file for scripts."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+Cli = Callable[..., Any]
+QUICK = ("--people", 3, "--samples", 2)
+
+
+def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "out.csv", tmp_path / "out.png"
+    said = cli("sensitivity", two, *QUICK, "-o", out, "--figure", picture)
+    assert said.exit_code == 0, said.stderr
+    assert said.stderr == f"wrote {out}\nwrote {picture}\n"
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+    frame = pd.read_csv(out)
+    words = " ".join(said.stdout.split())
+    assert words.startswith("Two for a test parameter interval correct bits correct low–high ")
+    assert f"Measure these first; the rest moves the prediction less: - {frame['parameter'][0]}" in words
+    assert "(total Sobol indices); beside them per cent correct at the low and at the high end" in words
+    assert "predictions for 3 virtual people on the thenar rig (seed 0, max norm), " in words
+    assert {"memory noise (max)", "contact resistance"} <= set(frame["parameter"])
+    assert picture.stat().st_size > 10_000
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path) -> None:
+    said = [cli("sensitivity", two, *QUICK, "--seed", 4, "-o", "-").stdout for _ in range(2)]
+    assert said[0] == said[1]
+    assert list(pd.read_csv(io.StringIO(said[0])).columns[:5]) == ["parameter", "unit", "low", "value", "high"]
+
+
+def test_morris_and_a_what_if(cli: Cli, two: Path) -> None:
+    said = cli("sensitivity", two, *QUICK, "--method", "morris", "--set", "contact.area_cm2=4")
+    words = " ".join(said.stdout.split())
+    assert "in points of per cent correct and in bits (Morris)" in words
+    assert "on the thenar rig with contact.area_cm2=4 (seed 0, max norm)" in words
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--people", 0), "'--people': 0 is outside 1 to 10000"),
+        (("--samples", 1), "'--samples': 1 is outside 2 to 65536"),
+        (("--samples", 10), "'--samples': 10 is not a power of 2, which sobol needs, such as 64"),
+        (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
+        (("--method", "luck"), "'--method': 'luck' is none of sobol, morris"),
+        (("--norm", "mean"), "'--norm': 'mean' is none of max, rms, integral"),
+    ],
+)
+def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
+    said = cli("sensitivity", two, *options)
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_one_icon_is_bad_input(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "one.cue"
+    path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s }\n", encoding="utf-8")
+    said = cli("sensitivity", path)
+    assert said.exit_code == 1
+    assert said.stderr == f"{path}: a sensitivity needs at least two icons: one alone is never confused\n"
+
+
+def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path: Path) -> None:
+    said = cli("sensitivity", two, "-o", tmp_path / "out.txt")
+    assert said.exit_code == 1
+    assert "a table of sensitivities is written as .csv or .parquet, not .txt" in said.stderr
+
+
+def test_without_salib_the_cure_is_told(cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    for part in ("sample", "analyze"):
+        monkeypatch.setitem(sys.modules, f"SALib.{part}.morris", None)
+    said = cli("sensitivity", two, *QUICK, "--method", "morris")
+    assert said.exit_code == 1
+    assert said.stderr == (
+        "the method morris needs SALib, which is not installed: "
+        'pip install "thermicon[psychometrics]", or use the method sobol\n'
+    )
+
+
+def test_nothing_that_moves_and_what_to_do() -> None:
+    from thermicon.notebooks.sensitivity import HOW, how, sentences
+    from thermicon.perception import Sensitivity, observer_parameters
+    from thermicon.perception.stage import OTHERS
+
+    still = Sensitivity("sobol", "thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
+    assert sentences(still)[0] == "None of these moves the prediction."
+    assert "1 virtual person on the thenar rig" in sentences(still)[-1]
+    known = {parameter.name.split(" (")[0] for parameter in observer_parameters()} | set(OTHERS)
+    assert set(HOW) <= known
+    assert how("integration time constant") == ""

@@ -1,0 +1,180 @@
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, Trace, duration_s, simulate_all
+from thermicon.icons import Icon, parse
+from thermicon.perception import ChoiceError, Choosing, appraise, choose, draw_people, energy_J
+from thermicon.perception.appraise import distances
+from thermicon.perception.people import People
+
+HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
+GOOD = (
+    "icon a { cool by 2 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }\n"
+    "icon b { cool by 5 °C at 3 °C/s; hold for 1 s; return at 3 °C/s }\n"
+    "icon c { warm by 2 °C at 1 °C/s; hold for 3 s; return at 1 °C/s }\n"
+    "icon d { warm by 4 °C at 3 °C/s; hold for 1 s; return at 2 °C/s }\n"
+    "icon e { cool by 5 °C at 1 °C/s; return at 3 °C/s }\n"
+)
+TWICE = "icon twice { cool by 5 °C at 3 °C/s; hold for 0.5 s; hold for 0.5 s; return at 3 °C/s }\n"
+HOT = "icon hot { warm by 20 °C at 3 °C/s; hold for 5 s; return at 3 °C/s }\n"
+FAST = "icon fast { cool by 12 °C at 60 °C/s; return at 60 °C/s }\n"
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def crowd() -> People:
+    return draw_people(12, 1)
+
+
+class Pool:
+    """Icons with what `rank` knows of them."""
+
+    def __init__(self, text: str, rig: Rig, crowd: People) -> None:
+        self.icons: list[Icon] = list(parse(HEAD + text))
+        self.rig, self.crowd = rig, crowd
+        self.traces: tuple[Trace, ...] = simulate_all(self.icons, rig, end_s=30.0)
+        self.d, self.durations = distances(self.icons, rig, crowd)
+
+    def choose(self, *arguments: Any, **more: Any) -> Any:
+        return choose(Choosing(*arguments, **more), self.icons, self.rig, self.traces, self.d, self.crowd, seed=1)
+
+
+@pytest.fixture(scope="module")
+def pool(rig: Rig, crowd: People) -> Pool:
+    return Pool(GOOD, rig, crowd)
+
+
+@pytest.fixture(scope="module")
+def bad(rig: Rig, crowd: People) -> Pool:
+    return Pool(GOOD + TWICE + HOT + FAST, rig, crowd)
+
+
+def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool) -> None:
+    found = pool.choose(3)
+    middle = np.median(pool.d, axis=0)
+    values = {c: min(middle[a, b] for a, b in combinations(c, 2)) for c in combinations(range(5), 3)}
+    best = max(values, key=lambda c: values[c])
+    assert found.icons == tuple(pool.icons[k].name for k in best)
+    assert found.value == found.bound == values[best]
+    assert found.optimal
+    a, b = ([icon.name for icon in pool.icons].index(name) for name in found.worst_pair)
+    assert middle[a, b] == found.value
+
+
+def test_the_best_for_each_person_is_counted(pool: Pool) -> None:
+    found = pool.choose(3)
+    own = [[i.name for i in pool.icons].index(name) for name in found.icons]
+    losses = []
+    for d in pool.d:
+        values = {c: min(d[a, b] for a, b in combinations(c, 2)) for c in combinations(range(5), 3)}
+        losses.append(max(values.values()) - values[tuple(own)])
+    assert found.best_share == pytest.approx(np.mean(np.array(losses) <= 1e-9))
+    assert found.loss == pytest.approx(np.median(losses))
+
+
+def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig, crowd: People) -> None:
+    found = pool.choose(3, "bits")
+    chosen = [icon for icon in pool.icons if icon.name in found.icons]
+    assert found.at_own_range == appraise(chosen, rig, people=crowd, seed=1)
+    assert found.optimal
+    assert found.value == found.bound
+    assert found.seen == 10
+
+
+def test_time_and_energy_are_those_of_the_traces(pool: Pool, rig: Rig) -> None:
+    free = pool.choose(3)
+    chosen = [k for k, icon in enumerate(pool.icons) if icon.name in free.icons]
+    lengths = [duration_s(pool.icons[k], rig) for k in chosen]
+    assert free.total_s == pytest.approx(sum(lengths))
+    energy = 0.0
+    for k, length in zip(chosen, lengths, strict=True):
+        trace = pool.traces[k]
+        rows = trace.time_s < length - 1e-9
+        steps = np.minimum(np.append(trace.time_s[1:], np.inf), length) - trace.time_s
+        energy += float((trace.voltage_V * trace.current_A * steps)[rows].sum())
+    assert free.total_J == pytest.approx(energy)
+    less = pool.choose(3, most_s=free.total_s - 0.5)
+    assert less.total_s <= free.total_s - 0.5
+    assert less.value <= free.value
+    frugal = pool.choose(3, most_J=free.total_J - 0.5)
+    assert frugal.total_J <= free.total_J - 0.5
+
+
+def test_energy_is_the_integral_of_voltage_times_current(pool: Pool) -> None:
+    trace = pool.traces[0]
+    whole = float((trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s)).sum())
+    assert energy_J(trace, 30.0) == pytest.approx(whole)
+    assert energy_J(trace, 3.0) + float(trace.voltage_V[300] * trace.current_A[300] * 0.005) == pytest.approx(
+        energy_J(trace, 3.005)
+    )
+
+
+@pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
+def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> None:
+    one = pool.choose(3, objective, ("a",))
+    assert one == pool.choose(3, objective, ("a",))
+    assert "a" in one.icons
+    assert list(one.to_dict()["at_own_range"]) == [
+        *("worst_pair", "d_prime", "percent_correct", "information_bits", "bits_per_s")
+    ]
+
+
+def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:
+    found = bad.choose(5)
+    why = dict(found.excluded)
+    assert set(found.icons) == {"a", "b", "c", "d", "e"}
+    assert why["twice"] == "moves in the same way as b"
+    assert why["hot"].startswith("is not safe: ")
+    assert why["fast"].startswith(("is not reached: ", "is not safe: "))
+    # Whom one asks for by name is kept, and the other of the two is left out.
+    assert dict(bad.choose(3, must=("twice",)).excluded)["b"] == "moves in the same way as twice"
+
+
+def test_what_is_too_much_is_told(bad: Pool, pool: Pool) -> None:
+    with pytest.raises(ChoiceError, match=r"^6 icons cannot be chosen: there are only 5 icons$"):
+        pool.choose(6)
+    with pytest.raises(ChoiceError, match=r"^6 icons cannot be chosen: only 5 of 8 are left \(twice moves .*; hot is"):
+        bad.choose(6)
+    with pytest.raises(ChoiceError, match=r"^no icon is called 'twise', which must be .*; did you mean twice\?$"):
+        bad.choose(3, must=("twise",))
+    with pytest.raises(ChoiceError, match=r"^hot must be among the chosen but cannot be: it is not safe: "):
+        bad.choose(3, must=("hot",))
+    with pytest.raises(
+        ChoiceError, match=r"^twice must be among the chosen but cannot be: it moves in the same way as b$"
+    ):
+        bad.choose(3, must=("b", "twice"))
+    with pytest.raises(ChoiceError, match=r"^no 3 of the 5 icons stay within a total of 5 s \(the 3 shortest last 1"):
+        pool.choose(3, most_s=5.0)
+    with pytest.raises(
+        ChoiceError, match=r"^no 3 of the 5 icons with a among them .* of 0.1 J \(the 3 most frugal take"
+    ):
+        pool.choose(3, must=("a",), most_J=0.1)
+
+
+def test_one_icon_is_no_pool(rig: Rig, crowd: People) -> None:
+    alone = Pool(GOOD.split("\n")[0], rig, crowd)
+    with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: there is only 1 icon$"):
+        alone.choose(2)
+    none = Pool(HOT + HOT.replace("icon hot", "icon hotter").replace("20 °C", "19 °C"), rig, crowd)
+    with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: none is left \(hot is not safe"):
+        none.choose(2)
+
+
+def test_what_no_set_can_answer() -> None:
+    with pytest.raises(ChoiceError, match=r"^1 cannot be chosen: at least 2 icons are needed"):
+        Choosing(1)
+    with pytest.raises(ChoiceError, match=r"^3 icons must be among 2: choose more, or ask for fewer$"):
+        Choosing(2, must=("a", "b", "c"))
+    with pytest.raises(ChoiceError, match=r"^the objective is one of worst, correct, bits, bits-per-s, not 'best'$"):
+        Choosing(2, "best")  # type: ignore[arg-type]
+    with pytest.raises(ChoiceError, match=r"^the total time must be above 0, not -1 s$"):
+        Choosing(2, most_s=-1.0)
+    with pytest.raises(ChoiceError, match=r"^the total energy must be above 0, not nan J$"):
+        Choosing(2, most_J=float("nan"))

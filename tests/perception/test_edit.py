@@ -1,0 +1,132 @@
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, duration_s, judge_safety, simulate
+from thermicon.icons import Icon, load_library, parse
+from thermicon.perception import Edit, NoEdit, cheapest_edit, draw_people
+from thermicon.perception.appraise import distances
+from thermicon.perception.numbers import numbers_of, repeated, with_number
+from thermicon.perception.rulescore import APART_DPRIME
+
+PEOPLE = 40
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def six() -> list[Icon]:
+    return list(load_library("six-icons"))
+
+
+@pytest.fixture(scope="module")
+def found(six: list[Icon], rig: Rig) -> Edit:
+    edit = cheapest_edit(six, rig, "warming-step", "linear-warming", people=PEOPLE)
+    assert isinstance(edit, Edit)
+    return edit
+
+
+def changed(six: list[Icon], edit: Edit) -> list[Icon]:
+    return [edit.edited if icon.name == edit.icon else icon for icon in six]
+
+
+def test_an_edit_is_one_line_that_reads_back(six: list[Icon], found: Edit) -> None:
+    before = next(icon for icon in six if icon.name == found.icon)
+    assert parse(str(found.edited))[found.icon] == found.edited
+    old, new = (text.splitlines() for text in (str(before), str(found.edited)))
+    differ = [(a.strip(), b.strip()) for a, b in zip(old, new, strict=True) if a != b]
+    assert differ == [(found.old, found.new)]
+
+
+def test_it_parts_the_pair_for_people_and_harms_no_other(six: list[Icon], found: Edit, rig: Rig) -> None:
+    crowd = draw_people(PEOPLE, 0)
+    names = [icon.name for icon in six]
+    i, j, edited = names.index("warming-step"), names.index("linear-warming"), names.index(found.icon)
+    before = np.median(distances(six, rig, crowd)[0], axis=0)
+    after = np.median(distances(changed(six, found), rig, crowd)[0], axis=0)
+    assert before[i, j] < APART_DPRIME <= after[i, j]
+    assert found.d_prime == pytest.approx(after[i, j], abs=0.01)
+    for k in set(range(6)) - {i, j}:
+        assert after[edited, k] >= min(before[edited, k] - 0.11, 2.0 * APART_DPRIME)
+
+
+def test_it_is_safe_and_reached_and_costs_what_is_said(six: list[Icon], found: Edit, rig: Rig) -> None:
+    trace = simulate(found.edited, rig)
+    assert trace.reachable
+    assert judge_safety(trace).safe
+    before = next(icon for icon in six if icon.name == found.icon)
+    added = duration_s(found.edited, rig) - duration_s(before, rig)
+    one, two = numbers_of(before, 32.0), numbers_of(found.edited, 32.0)
+    ratios = [abs(np.log(b.value / a.value)) for a, b in zip(one, two, strict=True) if a.value != b.value]
+    assert len(ratios) == 1
+    assert found.added_s == pytest.approx(added)
+    assert found.cost == pytest.approx(ratios[0] + 0.1 * max(added, 0.0))
+
+
+def test_the_same_arguments_give_the_same_edit(six: list[Icon], found: Edit, rig: Rig) -> None:
+    assert cheapest_edit(six, rig, "warming-step", "linear-warming", people=PEOPLE) == found
+
+
+def test_what_is_apart_needs_no_edit(six: list[Icon], rig: Rig) -> None:
+    edit = cheapest_edit(six, rig, "cooling-step", "warming-step", people=8)
+    assert isinstance(edit, NoEdit)
+    assert "is told apart already (from 2.56)" in edit.reason
+
+
+def test_what_no_edit_can_do_is_told(six: list[Icon], rig: Rig) -> None:
+    edit = cheapest_edit(six, rig, "warming-step", "linear-warming", wanted=30.0, people=8)
+    assert isinstance(edit, NoEdit)
+    assert edit.reason.startswith("no single edit parts them to d′ 30: the farthest that a safe and reachable one")
+
+
+def test_a_repeat_is_an_edit(rig: Rig) -> None:
+    text = (
+        "cue 1\nset two { site thenar; control display; baseline 32 °C }\n"
+        "icon x { cool by 3 °C at 3 °C/s; return at 3 °C/s; total at most 9 s }\n"
+        "icon y { cool by 3.1 °C at 3 °C/s; return at 3 °C/s }\n"
+    )
+    icons = list(parse(text))
+    twice = repeated(icons[0], 2)
+    assert duration_s(twice, rig) == 4.0
+    assert "repeat 2 {" in str(twice)
+    assert "total at most 9 s" in str(twice)
+    edit = cheapest_edit(icons, rig, "x", "y", people=8)
+    assert isinstance(edit, Edit)
+    assert edit.d_prime >= APART_DPRIME
+
+
+def test_numbers_are_found_and_changed_within_repeats() -> None:
+    icon = load_library("six-icons")["double-dip"]
+    numbers = numbers_of(icon, 32.0)
+    assert [(n.path, n.field, n.value) for n in numbers] == [
+        ((0,), "count", 2.0),
+        ((0, 0), "by_K", 3.0),
+        ((0, 0), "rate_K_per_s", 3.0),
+        ((0, 1), "duration_s", 1.0),
+        ((0, 2), "rate_per_s", 3.0),
+        ((0, 3), "duration_s", 1.0),
+    ]
+    for number in numbers:
+        new = with_number(icon, number, number.times(2.0))
+        assert [n.value for n in numbers_of(new, 32.0) if n.path == number.path and n.field == number.field] == [
+            2.0 * number.value
+        ]
+        assert sum(a != b for a, b in zip(str(icon).split(), str(new).split(), strict=True)) == 1
+
+
+def test_a_temperature_counts_from_the_baseline(rig: Rig) -> None:
+    icons = parse("cue 1\nset { baseline 32 °C }\nicon to-it { cool to 28 °C at 2 °C/s; return at 2 °C/s }")
+    number = next(n for n in numbers_of(icons["to-it"], 32.0) if n.field == "to_C")
+    assert number.times(1.5) == 26.0
+    assert number.ratio_to(26.0) == pytest.approx(np.log(1.5))
+
+
+def test_bad_questions(six: list[Icon], rig: Rig) -> None:
+    with pytest.raises(KeyError, match="nobody"):
+        cheapest_edit(six, rig, "warming-step", "nobody")
+    with pytest.raises(
+        ValueError, match=r"^a pair of two icons is parted by a d′ above 0: double-dip, double-dip, 2\.563"
+    ):
+        cheapest_edit(six, rig, "double-dip", "double-dip")

@@ -1,0 +1,93 @@
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from thermicon.perception.bounds import pair_losses, upper_bound
+from thermicon.perception.choose import pick
+from thermicon.perception.confusion import confuse
+from thermicon.perception.measures import information_bits, percent_correct
+from thermicon.perception.namings import Namings, Objective
+from thermicon.perception.widest import Limits
+
+OBJECTIVES: tuple[Objective, ...] = ("correct", "bits", "bits-per-s")
+
+
+def pool(seed: int, n: int, people: int = 3, size: float = 1.5) -> Namings:
+    rng = np.random.default_rng(seed)
+    x = rng.normal(size=(n, 2)) * size
+    d = np.linalg.norm(x[:, None] - x[None], axis=-1)
+    each = d[None] * rng.uniform(0.7, 1.3, size=(people, 1, 1))
+    return Namings.of(each, np.full(people, 0.03), rng.uniform(2.0, 8.0, size=n), seed)
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize(("n", "count", "must"), [(6, 2, ()), (7, 3, (4,)), (6, 6, ()), (7, 4, (2, 6))])
+def test_enumeration_is_brute_force(objective: Objective, n: int, count: int, must: tuple[int, ...]) -> None:
+    held = pool(n, n)
+    found = held.enumerated(count, objective, must, np.empty((0, n)), ())
+    assert found is not None
+    allowed = [c for c in combinations(range(n), count) if set(must) <= set(c)]
+    scores = [held.score(c, objective) for c in allowed]
+    assert found[0] == allowed[int(np.argmax(scores))]
+    assert found[1] == max(scores)
+    assert found[2] == len(allowed)
+
+
+def test_enumeration_keeps_limits() -> None:
+    held = pool(2, 7)
+    limits = Limits(held.durations_s[None], (float(np.sort(held.durations_s)[:4].sum()) - 1.0,))
+    found = held.enumerated(3, "correct", (), limits.costs, limits.most)
+    allowed = [c for c in combinations(range(7), 3) if limits.kept(c)]
+    assert found is not None
+    assert 0 < found[2] == len(allowed) < math.comb(7, 3)
+    assert found[1] == max(held.score(c, "correct") for c in allowed)
+    assert held.enumerated(3, "correct", (), limits.costs, (1.0,)) is None
+
+
+def test_a_score_is_what_the_confusions_of_the_set_give() -> None:
+    # In two dimensions nothing is bent, so that the whole pool as a set is the matrix of `confuse`, but for noise.
+    rng = np.random.default_rng(4)
+    x = rng.normal(size=(5, 2)) * 2.0
+    d = np.linalg.norm(x[:, None] - x[None], axis=-1)[None].repeat(24, axis=0)
+    held = Namings.of(d, np.full(24, 0.02), np.full(5, 4.0), 0)
+    named = confuse(d, lapse=0.02).probability
+    assert held.score(range(5), "correct") == pytest.approx(float(percent_correct(named).mean()), abs=0.01)
+    assert held.score(range(5), "bits") == pytest.approx(float(information_bits(named).mean()), abs=0.06)
+    assert held.score(range(5), "bits-per-s") == held.score(range(5), "bits") / 4.0
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("size", [0.5, 1.5, 4.0])
+def test_no_choice_exceeds_the_bound(objective: Objective, size: float) -> None:
+    for seed in range(4):
+        held = pool(seed, 7, size=size)
+        for count in (2, 3, 5):
+            bound = upper_bound(held, count, objective)
+            assert max(held.score(c, objective) for c in combinations(range(7), count)) <= bound + 1e-9
+
+
+def test_two_alike_lose_a_bit_and_two_far_apart_none() -> None:
+    d = np.array([[0.0, 0.0, 9.0], [0.0, 0.0, 9.0], [9.0, 9.0, 0.0]])
+    lost = pair_losses(Namings.of(d[None], np.zeros(1), np.ones(3), 0))
+    assert lost[0, 1] == pytest.approx(1.0, abs=1e-6)
+    assert lost[0, 2] < 1e-4
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+def test_many_icons_are_climbed_to_under_a_bound(objective: Objective) -> None:
+    held = pool(1, 40)
+    middle = np.sqrt(2.0 * np.maximum(held.half, 0.0)).mean(axis=0)
+    one, two = (pick(middle, held, 8, objective, (3,), None, seed=5) for _ in range(2))
+    assert one == two
+    assert one is not None
+    assert not one.optimal
+    assert 3 in one.chosen
+    assert one.value <= one.bound
+    # No single swap betters it.
+    for place in range(8):
+        for other in set(range(40)) - set(one.chosen):
+            if one.chosen[place] != 3:
+                trial = sorted({*one.chosen} - {one.chosen[place]} | {other})
+                assert held.score(trial, objective) <= one.value + 1e-9

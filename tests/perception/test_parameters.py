@@ -1,0 +1,72 @@
+import numpy as np
+import pytest
+
+from thermicon.circuit.records import Record
+from thermicon.perception import CHANNELS, Observer, Parameter, observer_at, observer_parameters
+from thermicon.perception.parameters import _in_thresholds, latin, parameter_name
+
+
+def test_what_is_uncertain_is_what_the_file_says() -> None:
+    names = [p.name for p in observer_parameters("max")]
+    assert len(names) == len(set(names))
+    assert {"slope of sensation", "memory noise (max)", "onset uncertainty", "reference area"} <= set(names)
+    assert "memory noise (rms)" not in names
+    assert "memory noise (rms)" in [p.name for p in observer_parameters("rms")]
+    # What differs between people is their spread; a neutral zone is a range, not an uncertain number.
+    for left in ("conduction velocity", "decision time", "lapse rate", "neutral zone", "drive of a threshold step"):
+        assert not [name for name in names if name.startswith(left)]
+    assert all(p.source and p.use in ("calibrate", "assumed") for p in observer_parameters())
+
+
+def test_other_sites_bring_other_parameters() -> None:
+    here, there = ({p.name for p in observer_parameters("max", site)} for site in ("thenar", "forearm"))
+    assert here < there
+    assert there - here == {"threshold at the wrist (cold)", "threshold at the wrist (warm)"}
+
+
+def test_nothing_moved_is_the_shipped_observer() -> None:
+    assert observer_at({}) == Observer.load()
+    again = observer_at({p.name: p.value for p in observer_parameters()})
+    assert again == Observer.load()
+
+
+def test_every_parameter_moves_the_observer() -> None:
+    for parameter in observer_parameters():
+        assert observer_at({parameter.name: parameter.low}) != Observer.load(), parameter
+
+
+def test_published_thresholds_stay_what_they_are() -> None:
+    for values in ({"slow adaptation time constant (warm)": 40.0}, {"fast adaptation weight (cold)": 0.75}):
+        moved, shipped = observer_at(values), Observer.load()
+        for channel in CHANNELS:
+            assert _in_thresholds(moved, channel) == pytest.approx(_in_thresholds(shipped, channel), rel=1e-8)
+
+
+def test_an_unknown_parameter_is_named() -> None:
+    with pytest.raises(ValueError, match=r"the observer has no parameter 'memory': it has .*memory noise \(max\)"):
+        observer_at({"memory": 1.0})
+
+
+def test_a_parameter_needs_an_interval() -> None:
+    with pytest.raises(ValueError, match=r"t: 1, 1, 1 is not an interval about a value"):
+        Parameter("t", 1.0, 1.0, 1.0, "s", "x", "assumed")
+
+
+def test_wide_intervals_are_drawn_in_logarithms() -> None:
+    assert Parameter("t", 1.0, 5.0, 100.0, "s", "x", "assumed").at(0.5) == pytest.approx(10.0)
+    assert Parameter("t", 1.0, 1.2, 1.4, "s", "x", "assumed").at(0.5) == pytest.approx(1.2)
+    assert repr(Parameter("t", 1.0, 1.2, 1.4, "s", "Me 1999", "assumed")) == "Parameter(t: 1.2 [1, 1.4] s; Me 1999)"
+
+
+def test_a_latin_hypercube_has_one_draw_a_stratum() -> None:
+    shares = latin(3, 8, seed=4)
+    assert shares.shape == (8, 3)
+    assert (np.sort((shares * 8).astype(int), axis=0) == np.arange(8)[:, None]).all()
+    assert (shares == latin(3, 8, seed=4)).all()
+    assert (shares != latin(3, 8, seed=5)).any()
+
+
+def test_names_tell_channels_and_norms_apart() -> None:
+    record = Record("area exponent", "1", "x", value=1.0, channel="cold")
+    assert parameter_name(record) == "area exponent (cold)"
+    assert parameter_name(Record("path length to the cord", "m", "x", value=1.0, site="hand")).endswith("(hand)")

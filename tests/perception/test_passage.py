@@ -1,0 +1,72 @@
+import math
+from statistics import NormalDist
+
+import numpy as np
+import pytest
+
+from thermicon.perception import Observer, detect, false_alarms
+from thermicon.perception.passage import ResponseTimes, log_survival, response_times
+
+
+def test_nothing_is_answered_as_often_as_false_alarms_say(observer: Observer) -> None:
+    flat = np.zeros(501)
+    survived = 2.0 * log_survival(flat, 0.01, 2.5, 0.3)[-1]
+    assert -math.expm1(survived) == pytest.approx(false_alarms(2.5, 0.3, 5.0), rel=1e-9)
+    assert log_survival(flat, 0.01, 2.5, 0.3)[0] == pytest.approx(math.log(NormalDist().cdf(2.5)))
+
+
+def test_the_end_agrees_with_the_compiled_detection(observer: Observer) -> None:
+    t = np.arange(0.0, 3.0, 0.01)
+    psi = np.stack([np.minimum(0.8 * t, 1.5), 2.5 * np.sin(t)])
+    missed = log_survival(psi, 0.01, observer.criterion, 0.3)[:, -1]
+    silent = log_survival(np.zeros_like(psi), 0.01, observer.criterion, 0.3)[:, -1]
+    found = detect(psi, np.zeros_like(psi), 0.01, observer)
+    assert found.probability == pytest.approx(-np.expm1(missed - silent), abs=2e-3)
+
+
+def test_times_agree_with_drawn_noise(observer: Observer) -> None:
+    """Quartiles of first passages of 20,000 noisy rises, by counting."""
+    rng, dt, tau, criterion = np.random.default_rng(2), 0.01, 0.3, 3.34
+    t = np.arange(0.0, 2.0, dt)
+    rise = 4.0 * t
+    lag = np.arange(-120, 121) * dt
+    window = np.exp(-((lag / tau) ** 2))
+    window /= math.sqrt(float((window**2).sum()))
+    spectrum = np.fft.rfft(window, 512)
+    times = []
+    for _ in range(20):
+        white = rng.normal(size=(1000, 240 + t.size))
+        noise = np.fft.irfft(np.fft.rfft(white, 512) * spectrum, 512)[:, 240 : 240 + t.size]
+        passed = rise + noise >= criterion
+        times += [float(t[row.argmax()]) for row in passed if row.any()]
+    found = response_times(rise, 0 * rise, dt, observer, conduction_s=(0.0, 0.0), decision_s=0.0)
+    for share in (0.25, 0.5, 0.75):
+        assert found.quantile(share)[0] == pytest.approx(np.quantile(times, share), abs=0.02)
+
+
+def test_conduction_and_decision_come_on_top_and_decide_who_is_first(observer: Observer) -> None:
+    t = np.arange(0.0, 2.0, 0.01)
+    steep = np.minimum(200.0 * t, 40.0)
+    found = response_times(
+        np.stack([steep, steep, 0 * steep]),
+        np.stack([0 * steep, steep, 0 * steep]),
+        0.01,
+        observer,
+        conduction_s=(0.35, np.array([1.4, 1.4, 1.4])),
+        decision_s=0.2,
+    )
+    middle = found.quantile()
+    assert middle[0] == pytest.approx(3.34 / 200 + 0.35 + 0.2, abs=0.015)
+    assert middle[1] == pytest.approx(middle[0], abs=1e-9)
+    assert math.isinf(middle[2])
+    assert found.cold_share[:2] == pytest.approx([1.0, 1.0], abs=1e-3)
+    assert found.time_s[-1] > 2.0 + 1.4
+    assert "3 rows" in repr(found)
+
+
+def test_messages(observer: Observer) -> None:
+    found = response_times(np.zeros(9), np.zeros(9), 0.01, observer, conduction_s=(0.3, 1.0), decision_s=0.2)
+    with pytest.raises(ValueError, match=r"a share of trials lies between 0 and 1, not 1"):
+        found.quantile(1.0)
+    with pytest.raises(ValueError, match=r"response times: \(1, 3\) probabilities for 2 times"):
+        ResponseTimes(np.zeros(2), np.zeros((1, 3)), np.zeros(1))

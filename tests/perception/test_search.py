@@ -1,0 +1,109 @@
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, judge_safety, simulate
+from thermicon.icons import IconSet, load_library, parse
+from thermicon.perception import ChoiceError, Searched, appraise, search
+from thermicon.perception.genes import born, drawn, member, value_at
+
+SMALL = (
+    "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"
+    "icon plain { cool by 2 °C at 1 °C/s; return at 1 °C/s }\n"
+    "icon dip(depth in 2..6 step 2 °C, rate in 1..3 step 1 °C/s) { cool by depth at rate; return at 3 °C/s }\n"
+    "icon rise(height in [2, 4] °C, n in 1..2 step 1) { repeat n { warm by height at 2 °C/s; return at 2 °C/s } }\n"
+)
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def small() -> IconSet:
+    return parse(SMALL)
+
+
+@pytest.fixture(scope="module")
+def found(small: IconSet, rig: Rig) -> Searched:
+    return search(small, rig, count=4, evaluations=150, people=12, seed=3)
+
+
+def test_the_set_is_plain_icons_that_say_where_they_come_from(found: Searched, small: IconSet) -> None:
+    assert parse(str(found.found)) == found.found
+    assert not found.found.families
+    assert len(found.found) == 4
+    assert found.found["plain"] == small["plain"]
+    for icon in found.found:
+        if icon.name != "plain":
+            assert icon.name.startswith(("dip-", "rise-"))
+            assert {"found by search", "seed 3"} <= set(icon.metadata.tags)
+            assert icon.metadata.tags[-1].startswith(("from dip depth=", "from rise height="))
+
+
+def test_every_icon_is_safe_and_reached(found: Searched, rig: Rig) -> None:
+    for icon in found.found:
+        trace = simulate(icon, rig)
+        assert trace.reachable
+        assert judge_safety(trace).safe
+
+
+def test_before_and_after_are_recomputed(found: Searched, rig: Rig) -> None:
+    assert found.after == appraise(tuple(found.found), rig, people=12, seed=3)
+    assert found.before == appraise(found.start, rig, people=12, seed=3)
+    assert found.after.d_prime >= found.before.d_prime
+
+
+def test_the_same_seed_gives_the_same_set(found: Searched, small: IconSet, rig: Rig) -> None:
+    again = search(small, rig, count=4, evaluations=150, people=12, seed=3)
+    assert str(again.found) == str(found.found)
+    assert again == found
+
+
+@pytest.mark.parametrize("objective", ["correct", "bits-per-s"])
+def test_one_icon_of_each_family(small: IconSet, rig: Rig, objective: str) -> None:
+    made = search(small, rig, objective=objective, evaluations=80, people=6)  # type: ignore[arg-type]
+    assert [icon.name for icon in made.found] == ["plain", "dip-1", "rise-1"]
+    assert made.after.value(made.objective) >= made.before.value(made.objective)
+
+
+def test_a_span_is_continuous_and_a_list_is_not() -> None:
+    family = load_library("search-space").families[0]
+    rng = np.random.default_rng(0)
+    gene = born(family, (0.5, 0.5, 0.5, 0.5))
+    assert gene is not None
+    moved = [gene.moved(rng, 0.2) for _ in range(40)]
+    made = [one for one in moved if one is not None]
+    values = [dict(part.split("=") for part in one.icon.name.split("_")[1:]) for one in made]
+    assert len({v["depth"] for v in values}) > 6
+    assert all(1.0 <= float(v["depth"]) <= 6.0 and 1.0 <= float(v["rate"]) <= 3.0 for v in values)
+    assert {v["pause"] for v in values} == {"0.5", "2"}
+    assert {v["times"] for v in values} == {"1", "2"}
+
+
+def test_a_sample_is_of_members(small: IconSet) -> None:
+    dip, rise = small.families
+    genes = drawn((dip, rise), 20, np.random.default_rng(0))
+    assert [gene.icon.name for gene in genes] == [icon.name for icon in (*dip, *rise)]
+    assert [gene.icon.statements for gene in genes] == [icon.statements for icon in (*dip, *rise)]
+    assert member(dip, [0.0, 1.0]).statements == dip.member({"depth": 2, "rate": 3}).statements
+    assert value_at(rise.parameters[1], 0.2) == 1.0
+
+
+def test_what_cannot_be_searched(small: IconSet, rig: Rig) -> None:
+    with pytest.raises(ChoiceError, match=r"^nothing to search: the file has no family, such as icon dip"):
+        search(load_library("six-icons"), rig)
+    with pytest.raises(ChoiceError, match=r"^one icon is never confused: ask for 2 or more"):
+        search(parse("cue 1\nicon a(x in [2, 3] K) { cool by x at 1 K/s; return at 1 K/s }"), rig)
+    with pytest.raises(ChoiceError, match=r"^one icon is never confused"):
+        search(small, rig, count=1)
+    with pytest.raises(ChoiceError, match=r"^the objective is one of worst, correct, bits, bits-per-s, not 'all'$"):
+        search(small, rig, objective="all")  # type: ignore[arg-type]
+    plays = "cue 1\nicon a { cool by 1 K at 1 K/s; return at 1 K/s }\nicon b(n in [1, 2]) { repeat n { play a } }"
+    with pytest.raises(ChoiceError, match=r"^family b plays another icon, which a search cannot carry along$"):
+        search(parse(plays), rig)
+    hot = "cue 1\nset { baseline 32 °C }\nicon a(x in [20, 21] K) { warm by x at 2 K/s; hold for 9 s; return at 2 K/s }"
+    with pytest.raises(
+        ChoiceError, match=r"^no 2 icons can be played together: 2 of 2 .* the first of which is not safe"
+    ):
+        search(parse(hot), rig, count=2)

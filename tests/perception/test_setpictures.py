@@ -1,0 +1,157 @@
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import Ranking, rank
+from thermicon.perception.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
+from thermicon.perception.draw_heat import clustered_order, heat, light_map
+from thermicon.perception.draw_map import label_offsets, text_width
+from thermicon.perception.map import between, map_of, perceptual_map
+from thermicon.perception.spread import MOST_PEOPLE, Spread, place_probability, spread_over_people
+
+
+@pytest.fixture(scope="module")
+def ranking() -> Ranking:
+    return rank(load_library("wilson-ramps"), Rig.load("thenar"), people=8, seed=1, parameters=0)
+
+
+def boxes(axes: Axes, texts: list[str]) -> list[tuple[float, float, float, float]]:
+    figure = axes.figure
+    figure.draw_without_rendering()
+    found = [t for t in axes.texts if t.get_text() in texts]
+    return [t.get_window_extent().extents for t in found]
+
+
+def covered(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    return min(a[2], b[2]) - max(a[0], b[0]) > 0.5 and min(a[3], b[3]) - max(a[1], b[1]) > 0.5
+
+
+def test_near_icons_stand_side_by_side() -> None:
+    line = np.array([[0.0], [9.0], [1.0], [8.0], [2.0]])
+    order = clustered_order(between(line)).tolist()
+    assert order == [0, 2, 4, 3, 1]
+    assert clustered_order(np.zeros((2, 2))).tolist() == [0, 1]
+    assert sorted(clustered_order(np.zeros((4, 4))).tolist()) == [0, 1, 2, 3]
+
+
+def test_heat_maps_are_in_that_order_and_say_every_number(ranking: Ranking) -> None:
+    order = clustered_order(ranking.d_prime)
+    assert order.tolist() != list(range(8))
+    for axes, values in ((plot_distance(ranking), ranking.d_prime), (plot_confusion(ranking), 100 * ranking.confusion)):
+        names = [ranking.labels[k] for k in order]
+        assert [label.get_text() for label in axes.get_xticklabels()] == names
+        assert [label.get_text() for label in axes.get_yticklabels()] == names
+        shown = np.array([float(t.get_text()) for t in axes.texts]).reshape(8, 8)
+        assert shown == pytest.approx(values[np.ix_(order, order)], abs=0.51)
+        assert len(axes.figure.axes) == 1
+    plain = plot_confusion(ranking, clustered=False)
+    assert [label.get_text() for label in plain.get_xticklabels()] == list(ranking.labels)
+
+
+def test_shades_grow_darker_all_the_way_in_grey() -> None:
+    red, green, blue, _ = light_map()(np.linspace(0, 1, 50)).T
+    grey = 0.299 * red + 0.587 * green + 0.114 * blue
+    assert np.all(np.diff(grey) < 0)
+    assert grey[0] > 0.99
+
+
+def test_numbers_are_readable_on_every_shade() -> None:
+    axes = heat(["a"] * 11, ["b"], np.linspace(0.0, 1.0, 11)[None])
+    for text, value in zip(axes.texts, np.linspace(0.0, 1.0, 11), strict=True):
+        grey = np.dot(light_map()(value)[:3], [0.299, 0.587, 0.114])
+        assert abs(grey - (1.0 if text.get_color() == "w" else 0.13)) > 0.35
+
+
+def test_many_icons_have_a_colour_bar_instead_of_numbers() -> None:
+    names = [f"icon-{k}" for k in range(31)]
+    axes = heat(names, names, np.ones((31, 31)))
+    assert not axes.texts
+    assert len(axes.figure.axes) == 2
+
+
+def test_very_long_names_lose_their_middle() -> None:
+    axes = heat(["x"], ["a" * 30 + "b" * 30], np.ones((1, 1)))
+    (label,) = axes.get_yticklabels()
+    assert label.get_text() == "a" * 22 + "…" + "b" * 21
+
+
+def test_the_map_shows_every_icon_and_its_stress(ranking: Ranking) -> None:
+    found = map_of(ranking)
+    axes = plot_map(found)
+    assert axes.get_title("left") == f"perceptual map (stress {found.stress:.2f})"
+    assert {t.get_text() for t in axes.texts} == {*ranking.labels, "ellipses: 50 % of 8 people"}
+    assert len(axes.patches) == 16
+    for a, b in combinations(boxes(axes, list(ranking.labels)), 2):
+        assert not covered(a, b)
+    assert found.plot().get_xlabel() == "d′"
+
+
+@pytest.mark.parametrize("icons", [1, 2, 12])
+def test_names_do_not_cover_one_another(icons: int) -> None:
+    names = [f"ramp_extent={k}_rate=1" for k in range(icons)]
+    points = np.random.default_rng(3).normal(size=(icons, 3))
+    axes = plot_map(perceptual_map(between(points), names))
+    found = boxes(axes, names)
+    assert len(found) == icons
+    assert not any(covered(a, b) for a, b in combinations(found, 2))
+    left, low, right, high = axes.get_window_extent().extents
+    assert all(left - 2 < box[0] and box[2] < right + 2 and low - 2 < box[1] and box[3] < high + 2 for box in found)
+
+
+def test_names_of_icons_at_one_point_are_all_there() -> None:
+    dots = np.full((4, 2), 150.0)
+    offsets = label_offsets(dots, ["same"] * 4, np.array([300.0, 300.0]))
+    assert len({tuple(offset) for offset in offsets.round(3).tolist()}) == 4
+    assert text_width("wide name", 9.0) > text_width("name", 9.0) > 20
+    assert text_width(" ", 9.0) == 0.0
+
+
+def test_places_are_probabilities(ranking: Ranking) -> None:
+    assert ranking.spread is not None
+    held = ranking.spread.place_probability
+    assert held.sum(axis=0) == pytest.approx(1.0)
+    assert held.sum(axis=1) == pytest.approx(1.0)
+    axes = plot_places(ranking)
+    best = sorted(ranking.icons, key=lambda icon: (-icon.percent_correct, icon.name))
+    assert [label.get_text() for label in axes.get_yticklabels()] == [icon.name for icon in best]
+    assert [label.get_text() for label in axes.get_xticklabels()] == [str(k) for k in range(1, 9)]
+    assert axes.get_title() == "place of each icon, % of 8 people"
+    with pytest.raises(ValueError, match="keeps no places of single people"):
+        plot_places(replace(ranking, spread=None))
+
+
+def test_equal_icons_share_their_places() -> None:
+    shared = place_probability(np.array([[0.931, 0.929, 0.5]]))
+    assert shared.tolist() == [[0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.0, 0.0, 1.0]]
+
+
+def test_few_people_are_kept_of_many() -> None:
+    crowd, icons = MOST_PEOPLE + 5, 3
+    kept = spread_over_people(np.zeros((crowd, icons, icons)), np.ones((crowd, icons)))
+    assert isinstance(kept, Spread)
+    assert kept.d_prime.shape == (MOST_PEOPLE, 3, 3)
+    assert spread_over_people(np.zeros((9, 400, 400)), np.ones((9, 400))).d_prime.shape == (2, 400, 400)
+    with pytest.raises(ValueError, match="read-only"):
+        kept.d_prime[0, 0, 0] = 1.0
+
+
+def test_the_ranking_as_a_picture(ranking: Ranking) -> None:
+    axes = plot_ranking(ranking)
+    rows = ranking.rows()
+    assert [label.get_text() for label in axes.get_yticklabels()] == [row["icon"] for row in rows]
+    told = [t.get_text() for t in axes.texts]
+    for row in rows:
+        assert f"{100 * row['percent_correct']:.0f} %" in told
+    assert {"correct", "detected", "onset", "felt as", "most confused with"} <= set(told)
+    assert "plays" not in told
+    broken = replace(ranking, icons=(replace(ranking.icons[0], safe=False, reason="hot"), *ranking.icons[1:]))
+    told = [t.get_text() for t in plot_ranking(broken).texts]
+    assert ("plays" in told, "not safe" in told) == (True, True)
+    ruled = [t.get_text() for t in plot_ranking(replace(ranking, by="rules")).texts]
+    assert "rules passed" in ruled
+    assert "onset" not in ruled

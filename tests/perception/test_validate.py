@@ -1,0 +1,150 @@
+"""The report has every target, says what its records say, and is the same for the same seed.
+
+Whether a target holds is not tested: misses are results.
+"""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.circuit.records import Table
+from thermicon.icons import load_library
+from thermicon.perception import rank
+from thermicon.perception.observer import load_thresholds
+from thermicon.perception.targets import load_targets, published_for
+from thermicon.perception.validate import ValidationReport, answers, assemble, validate, variant_name
+from thermicon.perception.validate_file import report_file
+from thermicon.perception.validate_maps import FIGURES, TRADE_OFF, _codes
+from thermicon.perception.variants import VARIANTS
+from thermicon.perception.waves import GROUPS, LIBRARY, SHAPES, wave_name
+
+
+@pytest.fixture(scope="module")
+def report() -> ValidationReport:
+    return validate(people=12, draws=8)
+
+
+def test_every_target_and_row_is_there_for_every_variant(report: ValidationReport) -> None:
+    assert [section.target for section in report.sections] == list(load_targets())
+    for section in report.sections:
+        assert [line.row for line in section.lines] == list(section.target.rows)
+        for line in section.lines:
+            assert [(one.predicted.variable, one.predicted.model) for one in line.judged] == list(VARIANTS)
+            for one in line.judged:
+                assert (one.verdict.holds is None) == (not line.row.judged)
+                assert one.predicted.unit == line.row.unit
+    assert report.counts(0)[1] == report.counts(1)[1] == sum(r.judged for t in load_targets() for r in t.rows)
+    assert repr(report).startswith("ValidationReport(8 targets; hold: temperature ")
+
+
+def test_six_icons_are_those_of_rank(report: ValidationReport) -> None:
+    ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=12, parameters=0)
+    found = {line.row.quantity: line.judged[0].predicted.value for line in report.sections[5].lines}
+    assert found["proportion correct"] == pytest.approx(ranking.percent_correct)
+    assert found["plug-in information"] == pytest.approx(ranking.information_bits_plugin)
+    assert found["information"] == pytest.approx(ranking.information_bits)
+
+
+def test_what_is_made_of_both_channels(report: ValidationReport) -> None:
+    lines = {line.row.label: line.judged[0].predicted for line in report.sections[1].lines}
+    cold, warm = (lines[f"back of the hand, women 20–30 y, {c}"] for c in ("cold", "warm"))
+    ratio = lines["hand, cold over warm"]
+    assert ratio.value == pytest.approx((cold.value or 0.0) / (warm.value or 1.0))
+    assert ratio.draws == pytest.approx(np.divide(cold.draws, warm.draws))
+    events = report.sections[7].lines[0].judged[0].predicted
+    raw = report.evidence.find(*VARIANTS[0], "step and return near threshold", "report of the return", "cold")
+    assert events.value == pytest.approx(1.0 + (raw.value or 0.0))
+    touch = report.sections[4].lines[-1].judged[0].predicted
+    assert (touch.value or 0.0) < 0.0
+    assert touch.low is not None
+    assert touch.high is not None
+    assert touch.low <= touch.high
+
+
+def test_published_numbers_come_from_the_records(report: ValidationReport) -> None:
+    known = load_thresholds()
+    moved = Table(
+        known.name,
+        tuple(replace(r, value=9.0, low=None, high=None) if r.quantity == "choice reaction time" else r for r in known),
+    )
+    targets = load_targets()
+    was = {(row.target, row.label): published_for(row, moved) for target in targets for row in target.rows}
+    other = assemble(targets, was, moved, report.evidence, 12, 8, 0, 48)
+    before, after = (r.sections[2].lines[0] for r in (report, other))
+    assert (before.published.text, after.published.text) == ("0.59 s", "9 s")
+    assert before.judged[0].predicted == after.judged[0].predicted
+    assert after.judged[0].verdict.text.startswith("−")
+
+
+def test_the_same_seed_gives_the_same_bytes(report: ValidationReport) -> None:
+    first, second = (json.dumps(report_file(r), allow_nan=False) for r in (report, validate(people=12, draws=8)))
+    assert first == second
+
+
+def test_which_does_better(report: ValidationReport) -> None:
+    said = {line.nearer for section in report.sections for line in section.lines}
+    assert said <= {
+        "", "both", "temperature", "heat flow", "neither", "neither, temperature nearer", "neither, heat flow nearer",
+    }  # fmt: skip
+    line = report.sections[3].lines[0]
+    near, far = line.judged[0], replace(line.judged[1], verdict=replace(line.judged[1].verdict, miss=9.0))
+    assert replace(line, judged=(near, far, near)).nearer == "neither, temperature nearer"
+    assert replace(line, judged=(near, near, near)).nearer == "neither"
+    holds = replace(near, verdict=replace(near.verdict, holds=True))
+    assert replace(line, judged=(holds, far, near)).nearer == "temperature"
+    assert replace(line, judged=(far, holds, near)).nearer == "heat flow"
+    assert replace(line, judged=(holds, holds, near)).nearer == "both"
+
+
+def test_shares_of_draws_and_trade_offs(report: ValidationReport) -> None:
+    own = answers(report.sections, 0)
+    assert len({one.label for one in own}) == len(own)
+    assert all(len(one.each) == 8 for one in own)
+    assert len(report.trade_offs[0]) == len(own) * (len(own) - 1) // 2
+
+
+def test_the_waves_of_a_group_differ_in_shape_alone() -> None:
+    waves = load_library(LIBRARY)
+    assert len(waves) == len(GROUPS) * len(SHAPES)
+    for group in GROUPS:
+        lowered = [waves[wave_name(shape, *group)].lower() for shape in SHAPES]
+        assert len({(c.duration_s, c.lowest, c.highest) for c in lowered}) == 1
+
+
+def test_every_figure_is_drawn(report: ValidationReport) -> None:
+    for name, caption, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
+        figure = draw(report)
+        figure.canvas.draw()
+        assert caption.endswith(".")
+        assert name == name.lower()
+        labels = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel())]
+        assert any(labels), name
+    assert sorted(FIGURES) == list(range(1, 9))
+    assert _codes(["1 a", "2 b"]) == ["1a", "2a"]
+
+
+def test_figures_without_draws() -> None:
+    bare = validate(people=2, draws=0)
+    assert bare.trade_offs == ((), (), ())
+    for _, _, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
+        draw(bare).canvas.draw()
+    (text,) = TRADE_OFF[2](bare).axes[0].texts
+    assert text.get_text() == "too few draws for correlations"
+
+
+def test_messages(report: ValidationReport) -> None:
+    with pytest.raises(ValueError, match=r"a spread between persons needs at least two of them, not 1"):
+        validate(people=1)
+    with pytest.raises(ValueError, match=r"an interval needs at least two draws, or 0 for none, not 1"):
+        validate(draws=1)
+    with pytest.raises(ValueError, match=r"no prediction of 'x' \(cold\) by 'rate curve'"):
+        report.evidence.find("temperature", "adapting", "rate curve", "x", "cold")
+    row = replace(load_targets()[0].rows[0], experiment="nothing")
+    target = replace(load_targets()[0], rows=(row,))
+    was = {(1, row.label): published_for(row, load_thresholds())}
+    with pytest.raises(ValueError, match=r"no experiment 'nothing' predicts 'largest change"):
+        assemble([target], was, load_thresholds(), report.evidence, 12, 8, 0, 48)
+    assert [variant_name(*variant) for variant in VARIANTS] == ["temperature", "heat flow", "Ring & de Dear"]

@@ -1,0 +1,102 @@
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import load_library
+from thermicon.perception import Observer, perceive
+from thermicon.perception.bench import Bench, ramp
+from thermicon.perception.observer import Receptor
+from thermicon.perception.procedures import forced_choice
+from thermicon.perception.variants import VARIANTS, Model, Variable, check_variant, receptor_column, receptor_input
+
+
+@pytest.mark.parametrize(("variable", "model"), VARIANTS)
+def test_every_variant_loads_and_finds_the_threshold_it_was_set_on(variable: Variable, model: Model) -> None:
+    person = Observer.load(variable=variable, model=model)
+    assert (person.variable, person.model) == (variable, model)
+    bench = Bench(Rig.load("thenar"))
+    cold = forced_choice(person, bench, "cold").value
+    warm = forced_choice(person, bench, "warm").value
+    assert (cold, warm) == (pytest.approx(0.11, rel=0.01), pytest.approx(0.20, rel=0.01))
+    wrist = Bench(Rig.load("forearm").with_(**{"skin.site": "wrist"}))
+    assert forced_choice(person, wrist, "cold").value == pytest.approx(0.15, rel=0.01)
+
+
+@pytest.mark.parametrize(("variable", "model"), VARIANTS)
+def test_every_variant_feels_a_cooling_cold_and_a_warming_warm(variable: Variable, model: Model) -> None:
+    person, rig = Observer.load(variable=variable, model=model), Rig.load("thenar")
+    icons = load_library("six-icons")
+    cold = perceive(simulate(icons["cooling-step"], rig, tail_s=2.0), person)
+    warm = perceive(simulate(icons["warming-step"], rig, tail_s=2.0), person)
+    assert (cold.channel, warm.channel) == ("cold", "warm")
+
+
+@pytest.mark.parametrize("variable", ["temperature", "heat flow"])
+def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
+    """From the base of the horny layer (0.17 mm on the thenar) receptors are deeper, felt later and less."""
+    person, icon = Observer.load(variable=variable), load_library("six-icons")["warming-step"]
+    surface = Rig.load("thenar")
+    base = surface.with_(**{"skin.depth_from": "stratum corneum"})
+    assert surface.receptor_depths().warm_mm == pytest.approx(0.30)
+    assert base.receptor_depths().warm_mm == pytest.approx(0.47)
+    traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, base)]
+    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.32, "skin.warm_receptor_mm": 0.47}), tail_s=3.0)
+    felt = [perceive(trace, person) for trace in (*traces, same)]
+    assert felt[1].psi_warm == pytest.approx(felt[2].psi_warm, abs=1e-6)
+    assert felt[0].onset_s is not None
+    assert felt[1].onset_s is not None
+    assert felt[1].onset_s > felt[0].onset_s + 0.05
+    assert felt[1].psi_warm.max() < felt[0].psi_warm.max()
+
+
+def test_heat_flow_is_read_from_its_own_columns() -> None:
+    trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    assert receptor_input(trace, "heat flow", "warm") is trace.heat_flow_warm_receptor_W_per_m2
+    assert receptor_column("temperature", "cold") == "cold_receptor_C"
+
+
+def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:
+    played = Bench(Rig.load("thenar")).play([ramp("cold", 1.0, 1.0, 5.0)], 6.0)
+    left = []
+    for variable in ("temperature", "heat flow"):
+        cold = played.felt(Observer.load(variable=variable))[0][0, 0]  # type: ignore[arg-type]
+        left.append(cold[-1] / cold.max())
+    assert left[1] < 0.7 * left[0]
+
+
+def test_messages(observer: Observer) -> None:
+    with pytest.raises(ValueError, match=r"no sensory variable 'flux': choose one of temperature, heat flow"):
+        check_variant("flux", "adapting")
+    with pytest.raises(ValueError, match=r"no receptor model 'ring': choose one of adapting, ring-de-dear"):
+        check_variant("temperature", "ring")
+    with pytest.raises(ValueError, match=r"ring-de-dear model has constants for temperature alone"):
+        Observer.load(variable="heat flow", model="ring-de-dear")
+    with pytest.raises(ValueError, match=r"observer of heat flow needs the neutral heat flow of both channels"):
+        replace(observer, variable="heat flow")
+    with pytest.raises(ValueError, match=r"impulses must be counted over more than 0 s"):
+        replace(observer, count_s=0.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"gain_strength": -0.1}, r"gain_strength = -0.1 must be 0 or more"),
+        ({"gain_s": 0.0}, r"gain_s = 0 must be above 0"),
+        ({"forearm_factor": 0.0}, r"forearm_factor = 0 must be above 0"),
+        ({"neutral_flux": (3.0, 3.0)}, r"neutral heat flow 3 to 3 W/m² is empty"),
+    ],
+)
+def test_a_receptor_proves_itself(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        replace(Receptor(20.0, 2.0, 0.5, 0.1, 2.0, 0.5), **change)
+
+
+def test_repr_says_the_variant() -> None:
+    assert repr(Observer.load()).startswith("Observer(a ")
+    said = repr(Observer.load(variable="heat flow"))
+    assert said.startswith("Observer(heat flow, adapting; a ")
+    assert " W/m², warm " in said
+    assert np.isfinite(Observer.load(variable="heat flow").neutral("cold")).all()
