@@ -191,9 +191,8 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
 def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
     from thermicon.notebooks.ranking import disagreement_lines
 
-    said = list(
-        disagreement_lines([{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}])
-    )
+    found = [{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}]
+    said = list(disagreement_lines(found))
     assert said == [
         "Rules and model disagree: rules ask for a change and a rate, the model for a cautious observer who notices",
         "  - a: rules say felt, the model 0.52 detected (felt from 0.9)",
