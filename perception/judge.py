@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from thermicon.perception.confusion import SAMPLES, Confusion, confuse
 from thermicon.perception.detection import detect
 from thermicon.perception.distance import differences, identification_dprime
@@ -28,7 +26,7 @@ class Played:
 
     def thinned(self, people: int, every: int) -> Played:
         """The first people of them at every k-th instant, on arrays of their own."""
-        cold, warm = (np.ascontiguousarray(held[:people, :, ::every]) for held in (self.cold_C, self.warm_C))
+        cold, warm = (held[:people, :, ::every].copy() for held in (self.cold_C, self.warm_C))
         return Played(cold, warm, self.time_s[::every], self.site, self.area_m2)
 
 

@@ -53,7 +53,6 @@ def worker(address: str, folder: Path) -> subprocess.Popen[bytes]:
 
 
 def test_a_dead_address_is_said_within_seconds() -> None:
-    pytest.importorskip("distributed")
     address = f"tcp://127.0.0.1:{free_port()}"
     start = time.monotonic()
     with pytest.raises(ClusterError, match=rf"no cluster answers at {re.escape(address)} within 5 s: start one with"):
@@ -63,7 +62,6 @@ def test_a_dead_address_is_said_within_seconds() -> None:
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://", "foo://bar:1", "tcp://here"])
 def test_an_address_that_is_none(address: str) -> None:
-    pytest.importorskip("distributed")
     with pytest.raises(ClusterError, match=rf"'{address}' is not the address of a scheduler: give one such as tcp"):
         rank(ICONS, RIG, people=2, parameters=0, cluster=address)
 
@@ -77,7 +75,6 @@ def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -
 
 @pytest.mark.slow
 def test_a_scheduler_without_workers(tmp_path: Path) -> None:
-    pytest.importorskip("distributed")
     with scheduler(tmp_path) as address, pytest.raises(ClusterError, match=r"has no workers: start some with `dask wo"):
         rank(ICONS, RIG, people=2, parameters=0, cluster=address)
 
@@ -86,7 +83,6 @@ def test_a_scheduler_without_workers(tmp_path: Path) -> None:
 def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip("distributed")
     people, kept = 1000, tmp_path / "kept"
     local = rank(ICONS, RIG, people=people, parameters=0).to_json()
     monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
