@@ -1,4 +1,4 @@
-"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``, and those of ``whatif``.
+"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs``, ``library``, ``whatif`` and ``hardware``.
 
 Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
 command, beside this one.
@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks import whatif
+from thermicon.notebooks import hardware, whatif
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import Changes, Files, IconName, RigName, check_tail
 
@@ -171,6 +171,8 @@ def rank_command(
 app.command("sweep")(whatif.sweep_command)
 app.command("compare")(whatif.compare_command)
 app.command("netlist")(whatif.netlist_command)
+app.command("export")(hardware.export_command)
+app.command("devices")(hardware.devices_command)
 
 
 @app.command("rigs")

@@ -31,6 +31,7 @@ from thermicon.perception.rules import RuleResult, icon_rules, load_rules, pair_
 from thermicon.perception.reasons import Reason, largest_difference, pair_reasons
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
 from thermicon.perception.rank import rank
+from thermicon.perception.realised import Change, FeltChange, judge_delivered
 
 # The order is that of the flow, which is not the alphabet's.
 __all__ = [
@@ -84,4 +85,7 @@ __all__ = [
     "Ranking",
     "IconScore",
     "PairScore",
+    "Change",
+    "FeltChange",
+    "judge_delivered",
 ]
