@@ -118,7 +118,7 @@ def _electrical(rig: Rig, drive: Drive, rest_A: float | None) -> Iterator[str]:
     gain, module = rig.driver.transconductance_A_per_V, rig.module
     yield from _section("driver: a voltage-controlled current source")
     yield "Vcommand command 0 PWL("
-    yield from (f"+ {time!r} {current / gain!r}" for time, current in _points(drive, rest_A))
+    yield from (f"+ {time!r} {current / gain!r}" for time, current in points(drive, rest_A))
     yield "+ )"
     yield f"Gdriver 0 plus command 0 {gain!r}"
     yield from _section("the module's electrical port")
@@ -202,8 +202,8 @@ def _probes(net: Network, names: list[str]) -> Iterator[str]:
         yield f"B{probe} {probe} 0 V={'+'.join(terms).replace('+-', '-')}"
 
 
-def _points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
-    """Corners of the current: (time s, A), a flank of 1 µs for each jump."""
+def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
+    """Corners of a drive's current: (time s, A), a flank of 1 µs for each jump."""
     times, currents = drive.time_s.tolist(), drive.current_A.tolist()
     start: list[tuple[float, float]] = [(0.0, currents[0])]
     if rest_A is not None and rest_A != currents[0]:

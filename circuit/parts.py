@@ -62,6 +62,15 @@ class Ambient:
     film_W_per_m2K: float
 
 
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """How far a rig may be from its file: contact resistance and gain as shares, ambient K, each to either side."""
+
+    contact_resistance_relative: float
+    ambient_K: float
+    gain_relative: float
+
+
 PLACES = ("display", "interface", "skin", "insulated skin")
 """Where a probe may sit; what each means is told in `thermicon.circuit.probes`."""
 

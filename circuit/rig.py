@@ -14,10 +14,12 @@ from thermicon.circuit.about import about
 from thermicon.circuit.door import nearest, read_text
 from thermicon.circuit.module import Peltier
 from thermicon.circuit.modules import ModuleOrigin, module_of
-from thermicon.circuit.parts import Ambient, Contact, Controller, Driver, HeatSink, Probe, SinkController
+from thermicon.circuit.parts import Ambient, Contact, Controller, Driver, HeatSink, Probe, SinkController, Uncertainty
 from thermicon.circuit.probefile import probes_of
 from thermicon.circuit.receptors import HORNY_LAYER, ReceptorDepths
+from thermicon.circuit.records import load_records
 from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table
+from thermicon.circuit.rules import Limits
 from thermicon.circuit.settings import put_all, read_settings
 from thermicon.circuit.skin import Column, Layer, Skin, column_of
 
@@ -54,6 +56,8 @@ class Rig:
     column: Column
     deep_C: float
     document: str
+    uncertainty: Uncertainty
+    limits: Limits
     probes: tuple[Probe, ...] = ()
     controller: Controller | None = None
     changes: tuple[str, ...] = ()
@@ -114,6 +118,8 @@ class Rig:
                 f"blood at {self.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
                 f"check skin.rest_C and the ambient"
             )
+        if loosened := self.limits.loosened:
+            found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
         return (*found, *self.module_origin.warnings)
 
     @property
@@ -182,6 +188,17 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
+@cache
+def _usual_uncertainty() -> dict[str, float]:
+    table = load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
+    return {record.quantity: record.central for record in table}
+
+
+def _uncertainty(table: RigTable) -> Uncertainty:
+    given = {key: value for key, value in table.uncertainty.model_dump().items() if value is not None}
+    return Uncertainty(**{**_usual_uncertainty(), **given})
+
+
 def _heat_sink(table: RigTable) -> HeatSink:
     sink = table.heat_sink
     own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
@@ -244,6 +261,8 @@ def _assemble(table: RigTable, document: str) -> Rig:
         column,
         float(deep),
         document,
+        _uncertainty(table),
+        Limits.of(table.safety.changes, table.safety.reason),
         probes_of(table.probe, body.thickness_m),
         None if table.controller is None else Controller(**table.controller.model_dump()),
     )

@@ -12,6 +12,7 @@ from pydantic_core import ErrorDetails
 
 from thermicon.circuit.door import InputError, nearest
 from thermicon.circuit.modules import module_faults
+from thermicon.circuit.rules import faults_of
 
 
 class RigError(InputError):
@@ -143,6 +144,47 @@ class ProbeTable(_Table):
     insulation_m2K_per_W: Positive | None = None
 
 
+class UncertaintyTable(_Table):
+    """What safety and robustness vary; what is left out is filled from records."""
+
+    contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
+    gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+
+
+class SafetyTable(_Table):
+    """Limits in the place of the shipped ones; looser ones only with a reason."""
+
+    skin_lowest_C: Celsius | None = None
+    skin_highest_C: Celsius | None = None
+    skin_lowest_soft_C: Celsius | None = None
+    skin_highest_soft_C: Celsius | None = None
+    skin_change_soft_K: Positive | None = None
+    receptor_lowest_C: Celsius | None = None
+    receptor_highest_C: Celsius | None = None
+    display_lowest_C: Celsius | None = None
+    display_highest_C: Celsius | None = None
+    display_lowest_soft_C: Celsius | None = None
+    display_highest_soft_C: Celsius | None = None
+    skin_rate_K_per_s: Positive | None = None
+    hot_plate_highest_C: Celsius | None = None
+    thermal_dose_min_CEM43: Positive | None = None
+    henriques_integral: Positive | None = None
+    reason: str = ""
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """The limits that are given, by key."""
+        given = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _reasoned(self) -> SafetyTable:
+        if faults := faults_of(self.changes, self.reason):
+            raise ValueError("\n".join(faults))
+        return self
+
+
 class RigTable(_Table):
     """A whole rig file."""
 
@@ -159,13 +201,10 @@ class RigTable(_Table):
     skin: SkinTable
     blood: BloodTable
     probe: list[ProbeTable] = Field(default_factory=list)
+    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
+    safety: SafetyTable = Field(default_factory=SafetyTable)
     source: dict[str, str] = Field(default_factory=dict)
 
-
-_LATER = {
-    "uncertainty": "uncertainty is not used yet",
-    "safety": "the shipped safety limits cannot be changed yet",
-}
 
 _UNITS = (
     "V_per_K",
@@ -182,6 +221,7 @@ _UNITS = (
     "kg_per_m3",
     "J_per_kgK",
     "J_per_K",
+    "K_per_s",
 )
 _UNITS_SHORT = {
     "C": "°C",
@@ -195,6 +235,7 @@ _UNITS_SHORT = {
     "W": "W",
     "Hz": "Hz",
     "s": "s",
+    "min_CEM43": "min CEM43",
 }
 
 
@@ -260,9 +301,6 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
 
 def unknown_key(key: str) -> str:
     """Return what to say of a key that no rig has."""
-    for later, words in _LATER.items():
-        if key == later or key.startswith(later + "."):
-            return f"{key}: {words}; remove the key"
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]

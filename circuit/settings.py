@@ -8,6 +8,9 @@ from typing import Any
 from thermicon.circuit.modules import PARAMETERS
 from thermicon.circuit.rigfile import RigError, parse_toml, rig_keys, unknown_key
 
+_OPTIONAL = ("controller", "uncertainty", "safety")
+"""Tables that a rig need not have; the first key that is set makes one."""
+
 
 def read_settings(settings: Iterable[str]) -> dict[str, object]:
     """Return dotted keys with values from texts such as `contact.area_cm2=4`; a value is TOML, or else plain text.
@@ -45,7 +48,7 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
             index = _item(place, part, key)
             place, part_of_key = place[index], "0"
         else:
-            if part == "controller" and position == 0 and any(key == known for known in rig_keys()):
+            if part in _OPTIONAL and position == 0 and any(key == known for known in rig_keys()):
                 place.setdefault(part, {})
             if part == "datasheet" and part not in place:
                 raise RigError(f"{key}: this rig's module has no data sheet; set module.datasheet, a list of them")

@@ -90,12 +90,13 @@ def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
     return target_at(icon, baseline_C(icon, rig), rows)
 
 
-def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0) -> Trace:
+def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C: Array | None = None) -> Trace:
     """Run the circuit with a given drive, from the steady state of its first current to its last row.
 
-    The driver's limits only warn. Raises RigError when the first current has no steady state.
+    `start_C` begins with another state, °C. The driver's limits only warn. Raises RigError when the first current has
+    no steady state.
     """
-    return _replay(drive, rig, rate_Hz, None)[0]
+    return _replay(drive, rig, rate_Hz, None, start_C)[0]
 
 
 def watch(
@@ -120,10 +121,12 @@ def _play(
                 plan.outcome, readings)  # fmt: skip
 
 
-def _replay(drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array] | None) -> tuple[Trace, Array]:
+def _replay(
+    drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array] | None, start_C: Array | None = None
+) -> tuple[Trace, Array]:
     first = float(drive.current_A[0])
     try:
-        state = steady_state(network_of(rig), first)
+        state = steady_state(network_of(rig), first) if start_C is None else start_C
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     check_sink(rig, state)
@@ -180,6 +183,7 @@ def _trace(
         voltage_V=voltage,
         target_C=target,
         probes=own,
+        limits=rig.limits,
         **values,
     )
 

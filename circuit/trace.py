@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.circuit.network import PROBES
+from thermicon.circuit.rules import Limits
 from thermicon.circuit.skin import Array
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class Trace:
 
     `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
     `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` is about the rig,
-    `beyond` about what the drive asks of the driver that it cannot give.
+    `beyond` about what the drive asks of the driver that it cannot give. `limits` are the rig's limits of safety.
     """
 
     icon: str | None
@@ -88,6 +89,7 @@ class Trace:
     heat_flow_cold_receptor_W_per_m2: Array
     heat_flow_warm_receptor_W_per_m2: Array
     probes: tuple[tuple[str, Array], ...] = ()
+    limits: Limits | None = None
 
     def __post_init__(self) -> None:
         for name, array in (*((name, getattr(self, name)) for name in COLUMNS[1:]), *self.probes):

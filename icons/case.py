@@ -4,6 +4,7 @@ from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from thermicon.icons.source import Edit, Finding, Piece
+from thermicon.icons.words import DASHES
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +74,19 @@ class Case:
 def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Finding:
     """Return a finding under the whole of a piece."""
     return Finding(code, piece.start, max(piece.end, piece.start + 1), what, help, cures)
+
+
+def signed(case: Case) -> Finding | None:
+    """A sign that is none, or that stands apart from its number: the cure keeps it."""
+    bad, number = case.bad, case.rest[0] if case.rest else None
+    if bad.text not in (*DASHES, "+") or number is None or number.kind != "number" or number.text[0] in "+-−":
+        return None
+    what = f'"{bad.text}" (U+{ord(bad.text):04X}) is no minus sign'
+    if bad.text in "+-−":
+        what = "a blank stands between the sign and its number"
+    cure = Edit(bad.start, number.end, ("+" if bad.text == "+" else "-") + number.text)
+    help = 'a minus sign is a plain hyphen, "-", right before the digits'
+    return Finding("E106", bad.start, number.end, what, help, (cure,))
 
 
 def swap(piece: Piece, text: str) -> Edit:

@@ -2,10 +2,10 @@
 
 from thermicon.icons.case import Case, at, short, swap
 from thermicon.icons.diagnose_family import family
-from thermicon.icons.diagnose_number import not_a_number, unit
-from thermicon.icons.diagnose_word import connective, extra, pace, unit_twice, word
+from thermicon.icons.diagnose_number import not_a_number, notation, unit
+from thermicon.icons.diagnose_word import connective, extra, joined, pace, unit_twice, word
 from thermicon.icons.source import Edit, Finding
-from thermicon.icons.words import NOT_YET, VOCABULARY, nearest
+from thermicon.icons.words import NOT_YET, QUOTES, VOCABULARY, nearest
 
 __all__ = ["VOCABULARY", "diagnose"]
 
@@ -36,11 +36,37 @@ def not_yet(case: Case) -> Finding | None:
     return None
 
 
+def quotes(case: Case) -> Finding | None:
+    """A text between quotation marks that are not straight, or between single ones."""
+    bad = case.bad
+    if bad.text not in QUOTES or not case.accepts & {"STRING", "TITLE"}:
+        return None
+    close = next((piece for piece in case.rest if piece.text in QUOTES[bad.text]), None)
+    end = close.end if close is not None else bad.end
+    what = "the quotation marks of a text are straight and double"
+    return Finding("E117", bad.start, end, what, f'"...", not {bad.text}...{QUOTES[bad.text][0]}', (swap(bad, '"'),))
+
+
+def comment(case: Case) -> Finding | None:
+    """A comment that begins as in another language."""
+    bad, rest = case.bad, case.rest
+    if case.index and "_NEWLINE" not in case.accepts:
+        return None
+    mark = bad.text + (rest[0].text if rest and rest[0].start == bad.end else "")
+    if mark not in ("//", "--", "/*", "/**"):
+        return None
+    cure = Edit(bad.start, rest[0].end, "#")
+    return Finding("E105", bad.start, rest[0].end, f'a comment begins with "#", not with "{mark}"', "", (cure,))
+
+
 def text(case: Case) -> Finding | None:
     """A text that is never closed, or that is missing."""
     bad = case.bad
     if bad.kind == "text" and (len(bad.text) < 2 or not bad.text.endswith('"') or bad.text.endswith('\\"')):
-        cures: tuple[Edit, ...] = (Edit(bad.end, bad.end, '"'),)
+        curly = tuple(
+            Edit(place, place + 1, '"') for mark in "”“»’‘'" if (place := bad.text.find(mark) + bad.start) >= bad.start
+        )
+        cures: tuple[Edit, ...] = (*curly, Edit(bad.end, bad.end, '"'))
         stripped = bad.text.rstrip()
         if stripped.endswith("{"):
             inner = stripped[:-1].rstrip()
@@ -137,6 +163,7 @@ def _keys() -> str:
 
 
 _RULES = (
-    *(not_yet, text, family, unit_twice, unit, not_a_number, character, opening, block, name),
+    *(not_yet, quotes, text, family, unit_twice, notation, unit, not_a_number, comment, joined, character),
+    *(opening, block, name),
     *(word, extra, pace, connective),
 )

@@ -1,6 +1,6 @@
 """Diagnosis of the parentheses of a family: names, lists, ranges and units of its parameters."""
 
-from thermicon.icons.case import Case, at, short, swap
+from thermicon.icons.case import Case, at, short, signed, swap
 from thermicon.icons.source import Edit, Finding, Piece
 from thermicon.icons.units import UNITS
 from thermicon.icons.words import VOCABULARY, nearest_unit
@@ -9,6 +9,7 @@ _ALL_UNITS = tuple(dict.fromkeys(unit for units in UNITS.values() for unit in un
 _HELP = 'values stand in a list, "amount in [-3, 3] °C", or in a range, "amount in 1..3 step 0.5 °C"'
 _NAME_HELP = "a parameter is called after what varies, such as: amount, rate, pause"
 _NO_COMMA = "a unit stands right behind its values, without a comma"
+THREE_DOTS = "a range has two dots between its ends, not three"
 _OPENERS, _CLOSERS = ("[", "{", "<"), ("]", "}", ">")
 
 
@@ -75,6 +76,8 @@ def _in(case: Case) -> Finding:
 def _values(case: Case) -> Finding:
     """Neither a list nor a range begins behind "in"."""
     bad = case.bad
+    if found := signed(case):
+        return found
     if bad.text in ("(", "{", "<"):
         numbers = _run(case, case.index + 1)
         cures = [Edit(bad.start, numbers[-1].end, f"[{_listed(numbers)}]")] if numbers else []
@@ -106,6 +109,8 @@ def _step(case: Case) -> Finding:
         padded = "step" if bad.kind == "word" else " step "
         return at(bad, "E118", f'"step" is needed, not "{bad.text}"', _HELP, swap(bad, padded))
     low, high = (case.pieces[place] for place in (case.index - 3, case.index - 1))
+    if high.text.startswith("."):
+        return at(Piece("mark", "", low.end, high.start + 1), "E118", THREE_DOTS, _HELP)
     whole = Piece("number", "", low.start, high.end)
     try:
         size = float(high.text.replace("−", "-")) - float(low.text.replace("−", "-"))
@@ -122,6 +127,9 @@ def _more(case: Case) -> Finding:
     first = max(place for place in range(case.index) if case.pieces[place].text == "[")
     if bad.text in _ALL_UNITS and any(piece.text == "]" for piece in case.rest):
         return _unit_inside(case, first)
+    if bad.text == "..":
+        dots = THREE_DOTS if case.next().startswith(".") else 'a range stands without brackets: "1..3 step 0.5 °C"'
+        return at(bad, "E118", dots, _HELP)
     numbers = _run(case, first + 1)
     whole = Edit(case.pieces[first].start, numbers[-1].end, f"[{_listed(numbers)}")
     if bad.kind == "number":
@@ -156,6 +164,8 @@ def _number(case: Case) -> Finding:
         if before.text == "[":
             return at(bad, "E118", "this list is empty", _HELP)
         return at(bad, "E118", "a value is missing behind the comma", _HELP, Edit(before.start, bad.start, ""))
+    if found := signed(case):
+        return found
     what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
     return at(bad, "E106", what, "numbers look like 6, 0.5 or 1e-3; the unit stands once, behind them")
 

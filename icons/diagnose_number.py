@@ -1,9 +1,22 @@
 """Diagnosis of numbers: units that are missing, unknown or of the wrong kind, and words where a number belongs."""
 
-from thermicon.icons.case import Case, at, short, swap
-from thermicon.icons.source import Edit, Finding
-from thermicon.icons.units import KIND_WORDS, UNITS, Kind
-from thermicon.icons.words import BOUNDS, EXAMPLES, NUMBER_WORDS, WAVES, nearest, nearest_unit, unit_kinds
+import re
+from fractions import Fraction
+
+from thermicon.icons.case import Case, at, short, signed, swap
+from thermicon.icons.source import Edit, Finding, Piece
+from thermicon.icons.units import KIND_WORDS, UNITS, Kind, decimal_text
+from thermicon.icons.words import (
+    BOUNDS,
+    DASHES,
+    EXAMPLES,
+    NUMBER_WORDS,
+    WAVES,
+    nearest,
+    nearest_unit,
+    scaled,
+    unit_kinds,
+)
 
 _UNIT_KINDS: dict[str, Kind] = {
     "ABSOLUTE": "absolute",
@@ -18,7 +31,47 @@ _WANTED = {
     **dict.fromkeys(("for", "over", "every", "total", "most", "least"), "time"),
     **{"at": "rate", "by": "difference", "to": "absolute"},
 }
+_OPERATORS = (":", "/", "*", "×", "·", "÷", "^", "+", *DASHES)
+_DEGREES = ("°", "º", "˚", "deg", "degree", "degrees")
 _PERIODS = ("period", "periods", "cycle", "cycles", "times", "oscillations")
+
+
+def notation(case: Case) -> Finding | None:
+    """Arithmetic, or the time of a clock, where one number belongs."""
+    bad, before, names = case.bad, case.before, case.names or ()
+    if case.listing or before is None or case.where not in ("icon", "repeat"):
+        return None
+    pieces, sign = [before, bad, *case.rest[:1]], bad.text
+    if bad.kind == "number" and bad.text[:1] in ("+", "-", "−"):
+        pieces, sign = [before, bad], bad.text[0]
+    elif bad.text in names and case.next() in _OPERATORS:
+        pieces, sign = [bad, *case.rest[:2]], case.next()
+    elif bad.text not in _OPERATORS or len(pieces) < 3 or not _operand(pieces[2], names):
+        return None
+    if not _operand(pieces[0], names):
+        return None
+    text = "".join(piece.text for piece in pieces)
+    what, help = "there is no arithmetic", "write the value itself, as one number"
+    if sign == ":":
+        what, help = "there is no clock notation", 'a time is one number with its unit, such as "90 s"'
+    cures: tuple[Edit, ...] = ()
+    if sign == "/" and (value := _fraction(pieces)):
+        cures = (Edit(pieces[0].start, pieces[2].end, value),)
+    return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is no number: {what}', help, cures)
+
+
+def _operand(piece: Piece, names: object) -> bool:
+    return piece.kind == "number" or (isinstance(names, set) and piece.text in names) or piece.text == "("
+
+
+def _fraction(pieces: list[Piece]) -> str | None:
+    """Return a fraction of two whole numbers as a decimal number, where that is exact."""
+    over, under = pieces[0].text, pieces[2].text
+    if not (over.isdecimal() and under.isdecimal() and len(over + under) < 10 and int(under)):
+        return None
+    value = Fraction(int(over), int(under))
+    text = decimal_text(float(value))
+    return text if Fraction(text) == value else None
 
 
 def unit(case: Case) -> Finding | None:
@@ -31,6 +84,10 @@ def unit(case: Case) -> Finding | None:
     if case.where in ("icon", "repeat") and case.first == "return":
         kind = "rate"
     touching = bad.start == number.end
+    if re.fullmatch(r"[0-9]{3}", bad.text) and re.fullmatch(r"[+\-−]?[0-9]{1,3}", number.text):
+        what = f'a blank stands within the number "{number.text} {bad.text}"'
+        cure = Edit(number.end, bad.start, "")
+        return Finding("E106", number.start, bad.end, what, "digits stand without blanks between", (cure,))
     if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
         cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
         return at(number, "E102", "this number has no unit", EXAMPLES[kind], cure)
@@ -47,10 +104,20 @@ def unit(case: Case) -> Finding | None:
         heads = tuple(Edit(word.start, word.start, text) for text in ("cool ", "warm "))
         help = 'temperatures take a direction: "cool to 26 °C at 3 °C/s"'
         return Finding("E209", word.start, word.end, '"to" alone moves a current', help, heads)
+    if bad.text in _DEGREES and re.fullmatch(r"[Cc](/.*)?", case.next()):
+        cure = Edit(bad.start, case.rest[0].end, ("" if touching else "") + "°C" + case.next()[1:])
+        whole = Piece("word", f"{bad.text} {case.next()}", bad.start, case.rest[0].end)
+        return at(whole, "E103", f'"{whole.text}" is not a unit', 'a unit has no blanks: "°C" or "degC"', cure)
+    if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()):
+        return at(bad, "E103", "degrees Fahrenheit are no unit of this language", EXAMPLES[kind])
     if others:
         return _wrong_kind(case, kind, others)
     if kind == "time" and (found := _periods(case)):
         return found
+    if size := scaled(number.text, bad.text, kind):
+        help = f"{KIND_WORDS[kind]} is in one of: {', '.join(UNITS[kind])}"
+        cure = Edit(number.start, bad.end, size)
+        return at(bad, "E103", f'"{short(bad.text)}" is not a unit', help, cure)
     close = nearest_unit(bad.text, kind)
     pad = "" if touching or bad.start > number.end else " "
     cures = [swap(bad, pad + close)] if close else []
@@ -66,6 +133,11 @@ def _wrong_kind(case: Case, kind: Kind, others: list[Kind]) -> Finding:
     meaning = "a temperature" if "absolute" in others else KIND_WORDS[others[0]]
     what = f'"{bad.text}" makes it {meaning}; {KIND_WORDS[kind]} is needed'
     # "°C" where a rate belongs was most likely meant per second, and the other way round.
+    if kind in ("rate", "current_rate") and case.next() in ("/", "per"):
+        per = nearest_unit(case.next(2), "time") if case.next(2) else None
+        whole = f"{bad.text}/{per}"
+        cures = (Edit(bad.start, case.rest[1].end, whole),) if per and whole in UNITS[kind] else ()
+        return at(bad, "E104", what, EXAMPLES[kind], *cures)
     similar = [text for text in (bad.text + "/s", bad.text.split("/")[0]) if text in UNITS[kind]]
     return at(bad, "E104", what, EXAMPLES[kind], *(swap(bad, text) for text in similar[:1]))
 
@@ -91,6 +163,8 @@ def not_a_number(case: Case) -> Finding | None:
     if "NUMBER" not in case.accepts:
         return None
     bad = case.bad
+    if found := signed(case):
+        return found
     meant = NUMBER_WORDS.get(bad.text.casefold())
     cures = [swap(bad, meant)] if meant else []
     if case.names and bad.kind == "word" and case.where in ("icon", "repeat") and bad.text not in case.names:
@@ -107,6 +181,9 @@ def not_a_number(case: Case) -> Finding | None:
         help = "the values of a parameter carry the sign, such as: amount in [-3, 3] °C"
         return at(bad, "E105", "a parameter has no sign before it", help)
     if bad.kind == "number":
+        if re.fullmatch(r"[+\-−]?[1-9][0-9]{0,2},[0-9]{3}", bad.text):
+            what = f'"{bad.text}" may be {bad.text.replace(",", "")} or {bad.text.replace(",", ".")}'
+            return at(bad, "E106", what, "the decimal mark is a point, and nothing stands between thousands")
         plain = bad.text.replace(",", ".").replace("_", "")
         cures = [swap(bad, plain)] if plain.count(".") <= 1 else []
         return at(bad, "E106", f'"{short(bad.text)}" is not a number', "numbers look like 6, 0.5 or 1e-3", *cures)

@@ -2,7 +2,8 @@
 
 from thermicon.icons.case import Case, at, either, short, swap
 from thermicon.icons.source import Edit, Finding
-from thermicon.icons.words import EXAMPLES, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
+from thermicon.icons.units import UNITS, decimal_text, exact_number
+from thermicon.icons.words import EXAMPLES, JOINERS, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
 
 _CONNECTIVES = {"AT": "at", "OVER": "over", "BY": "by", "TO": "to", "FOR": "for", "EVERY": "every"}
 _PACE_ALIASES = {"in": "over", "during": "over", "for": "over", "within": "over", "with": "at", "@": "at"}
@@ -29,6 +30,50 @@ def word(case: Case) -> Finding | None:
     return at(bad, "E116", f'{either(words)} is needed, not "{short(bad.text)}"', help, *cures)
 
 
+def joined(case: Case) -> Finding | None:
+    """``and``, ``then`` or a comma between two statements."""
+    bad, before = case.bad, case.before
+    if "_NEWLINE" not in case.accepts or before is None or bad.text not in JOINERS:
+        return None
+    behind = _statement_behind(case)
+    if behind is None or case.where not in ("icon", "repeat"):
+        return None
+    cure = Edit(before.end, behind, "; ")
+    return at(bad, "E108", f'"{bad.text}" joins no statements', 'put ";" or a new line between them', cure)
+
+
+def _statement_behind(case: Case) -> int | None:
+    """Return where a statement begins behind nothing but words that join, or None."""
+    for piece in case.pieces[case.index :]:
+        if piece.text in VOCABULARY[case.where]:
+            return piece.start
+        if piece.text not in JOINERS:
+            return None
+    return None
+
+
+def _worthless(case: Case) -> bool:
+    """Tell whether nothing is lost with what stands from here on: no number, text or statement."""
+    rest = case.pieces[case.index :]
+    return not any(piece.kind in ("number", "text") or piece.text in VOCABULARY[case.where] for piece in rest)
+
+
+def _two_times(case: Case) -> Finding | None:
+    """``1 min 30 s``: a time in two parts."""
+    place = case.index + (case.bad.text in JOINERS)
+    first, second = case.quantity(case.index - 2), case.quantity(place)
+    times = UNITS["time"]
+    if case.index < 3 or first is None or second is None or first[1] not in times or second[1] not in times:
+        return None
+    begin, end = case.pieces[case.index - 2], case.pieces[place + 1]
+    try:
+        value = sum(exact_number(case.pieces[n].text) * times[case.pieces[n + 1].text] for n in (case.index - 2, place))
+    except ValueError:
+        return None
+    cure = Edit(begin.start, end.end, f"{decimal_text(float(value / times[second[1]]))} {second[1]}")
+    return Finding("E108", begin.start, end.end, "a time is one number with one unit", EXAMPLES["time"], (cure,))
+
+
 def extra(case: Case) -> Finding | None:
     """Something behind a statement that is complete."""
     bad, before = case.bad, case.before
@@ -44,11 +89,17 @@ def extra(case: Case) -> Finding | None:
     if bad.text in VOCABULARY[case.where]:
         cure = Edit(before.end, before.end, ";")
         return at(bad, "E108", "a second statement begins here", 'put ";" or a new line between them', cure)
+    if found := _two_times(case):
+        return found
     help = "one statement a line"
-    if bad.text in ("at", "over") and (case.find("at") or case.find("over") or case.index) < case.index:
+    twice = bad.text in ("at", "over") and (case.find("at") or case.find("over") or case.index) < case.index
+    if twice:
         help = 'either "at" a rate or "over" a time: the one follows from the other'
-    cure = Edit(before.end, case.pieces[-1].end, "")
-    return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, cure)
+    # A suggestion leaves nothing out that was meant.
+    cures = (Edit(before.end, case.pieces[-1].end, ""),) if twice or _worthless(case) else ()
+    if bad.text == "for" and case.first in ("cool", "warm", "change", "to", "return"):
+        cures = (Edit(before.end, bad.start, "; hold "),)
+    return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
 
 
 def _behind_play(case: Case) -> Finding | None:
@@ -109,7 +160,12 @@ def pace(case: Case) -> Finding | None:
         cures = [Edit(bad.start, bad.start, "at "), Edit(bad.start, bad.start, "over ")]
     elif bad.kind == "word":
         close = _PACE_ALIASES.get(bad.text) or nearest(bad.text, ("at", "over"))
-        cures = [swap(bad, close)] if close else [Edit(bad.start, pieces[-1].end, rate)]
+        if close:
+            cures = [swap(bad, close)]
+        elif (behind := _statement_behind(case)) is not None:
+            cures = [Edit(bad.start, behind, f"{rate}; ")]
+        elif _worthless(case):
+            cures = [Edit(bad.start, pieces[-1].end, rate)]
     return at(bad, "E107", f'"at" or "over" is needed, not "{short(bad.text)}"', help, *cures)
 
 
@@ -159,7 +215,9 @@ def _joined(case: Case, words: list[str]) -> list[Edit]:
     if "DIRECTION" in case.accepts and (meant := STARTS.get(bad.text.casefold())):
         cures.append(swap(bad, meant))
     later = next((piece for piece in case.rest if piece.text in words), None)
-    if later is not None:
+    if later is not None and not any(
+        bad.start <= piece.start < later.start for piece in case.rest if piece.kind == "number"
+    ):
         cures.append(Edit(bad.start, later.start, ""))
     if bad.kind == "number":
         cures += [Edit(bad.start, bad.start, f"{text} ") for text in words]

@@ -1,10 +1,12 @@
 """The parameters of a family from the tree: numbers, ranges and units, with what is wrong told at its place."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import prod
 from typing import Any
 
 from thermicon.icons.build import Builder, Place, rule_of, short, span
+from thermicon.icons.diagnose_family import THREE_DOTS
 from thermicon.icons.family import MOST_MEMBERS
 from thermicon.icons.parameter import Parameter, span_fault
 from thermicon.icons.source import Edit
@@ -58,7 +60,7 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
         sound = False
     numbers = [_number(builder, number) for number in values.children]
     known = [number for number in numbers if number is not None]
-    if len(known) < len(numbers) or not sound:
+    if len(known) < len(numbers) or not sound or not _punctuated(builder, values):
         return None
     if rule_of(values) == "range":
         low, high, step = known
@@ -81,6 +83,25 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
             return None
         seen.add(number)
     return Parameter(name, unit, tuple(known))
+
+
+def _punctuated(builder: Builder, values: Any) -> bool:
+    """Tell whether dots and commas between the values can be meant as they stand."""
+    ends = [span(number) for number in values.children]
+    if rule_of(values) == "range":
+        if builder.source.text[ends[1][0]] != ".":
+            return True
+        builder.add("E118", (ends[0][1], ends[1][0] + 1), THREE_DOTS, "for example: 0.1..0.5 step 0.1")
+        return False
+    gaps = [builder.source.text[end:start] for (_, end), (start, _) in pairwise(ends)]
+    if not any(gap == "," for gap in gaps) or all(gap == "," for gap in gaps):
+        return True
+    place = next(place for place, gap in enumerate(gaps) if gap == ",")
+    low, high = (str(number) for number in values.children[place : place + 2])
+    what = f'is "{low},{high}" one value or two?'
+    help = f"the decimal mark is a point: {low}.{high}; two values have a blank after the comma: {low}, {high}"
+    builder.add("E118", (ends[place][0], ends[place + 1][1]), what, help)
+    return False
 
 
 def _number(builder: Builder, token: Any) -> float | None:

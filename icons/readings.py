@@ -139,13 +139,15 @@ def _column(place: str, header: list[str], column: str | None) -> str:
     known = [cell for cell in header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
-        raise whole_file("E013", place, what, f'say which: column="{known[0]}"')
+        raise whole_file("E013", place, what, f'say which: --column {known[0]} (column="{known[0]}" in Python)')
     if column is None and not known:
         others = [cell for cell in header if cell != TIME]
         meant = next((pair for pair in ((cell, _meant(cell)) for cell in others) if pair[1]), None)
         hint = f"rename {meant[0]!r} to {meant[1]} if it is in °C, or say" if meant else "say"
         what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
-        raise whole_file("E013", place, what, f'{hint} which is meant: column="{(others or ["name"])[0]}"')
+        first = (others or ["name"])[0]
+        said = f'--column "{first}"' if " " in first else f"--column {first}"
+        raise whole_file("E013", place, what, f'{hint} which is meant: {said} (column="{first}" in Python)')
     chosen = column or known[0]
     if chosen not in header or chosen == TIME:
         close = nearest(chosen, [cell for cell in header if cell != TIME])

@@ -63,7 +63,7 @@ def from_csv(
     try:
         corners = fit_corners(read.time_s, read.level_C, tolerance_K, baseline_C)
     except ValueError as problem:
-        help = "give a larger tolerance_K, or smooth or cut the recording"
+        help = "give a larger tolerance (--tolerance, in Python tolerance_K), or smooth or cut the recording"
         raise whole_file("E220", read.file, str(problem), help) from None
     frame = Frame(CONTROL_OF.get(read.column) or control, corners[1][0])
     return Icon(name or _name(Path(path)), tuple(_statements(*corners)), frame)

@@ -18,6 +18,16 @@ if TYPE_CHECKING:
 DEEPEST = 20
 _OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
 _BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
+_CELL = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?")
+_NAMED = re.compile(r"icon\s+([^\W\d][\w-]*)")
+_WIDE = 2000
+_FORMATS = {
+    "%pdf-": "this is a PDF document",
+    "{\\rtf": "this is a document of a word processor (RTF)",
+    "<!doctype": "this is a web page",
+    "<html": "this is a web page",
+    "<?xml": "this is XML",
+}
 _HEADER = re.compile(r"(icon|set)\b[^\n;{}]*\{")
 
 
@@ -41,7 +51,30 @@ def grammar() -> "Lark":
 
 def read(source: Source) -> Reading:
     """Parse a source; never raises, whatever the text."""
+    if found := _other_format(source):
+        from lark import Token, Tree
+
+        return Reading(Tree("start", [Token("BROKEN", "")]), (found,), 0)
     return _Reader(source).run()
+
+
+def _other_format(source: Source) -> Finding | None:
+    """What is plainly another format, told once instead of line by line."""
+    place, line = next(((n, line) for n, line in enumerate(source.lines) if line.strip()), (0, ""))
+    head = line.lstrip().casefold()
+    start = source.starts[place]
+    what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), "")
+    help = "a cue file is plain text; save it as such, in UTF-8"
+    row = next((line for line in source.lines[place:] if line.strip() and not line.startswith(("#", "sep="))), "")
+    cells = [cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])]
+    if len(cells) > 1 and ("time_s" in cells or all(_CELL.fullmatch(cell) for cell in cells)):
+        what, help = "this is a table, perhaps a recording", "thermicon convert makes an icon of a recording in CSV"
+        start = source.text.index(row)
+    return (
+        Finding("E101", start, start + max(1, len(source.lines[source.place(start)[0] - 1])), what, help)
+        if what
+        else None
+    )
 
 
 class _Reader:
@@ -141,11 +174,16 @@ class _Reader:
         self.parser.lexer_thread.state.line_ctr.char_pos = offset
         self.tokens = self.parser.lexer_thread.lex(self.parser.parser_state)
 
-    def feed(self, *kinds: str, at: int) -> None:
+    def called(self) -> str:
+        """Return the name in a header that could not be read, so that a ``play`` of it draws no further error."""
+        found = _NAMED.match(self.text, self.begin)
+        return found[1] if found else ""
+
+    def feed(self, *kinds: str, at: int, text: str = "") -> None:
         from lark import Token
 
         for kind in kinds:
-            self.parser.feed_token(Token(kind, "", at, 1, 1, 1, 1, at))
+            self.parser.feed_token(Token(kind, text, at, 1, 1, 1, 1, at))
             self.last = "}" if kind == "RBRACE" else ""
             self.follow(kind, at)
 
@@ -215,7 +253,7 @@ class _Reader:
         self.listing = False
         brace = stop < len(self.text) and self.text[stop] == "{"
         if header:
-            self.feed("BROKEN", at=self.begin)
+            self.feed("BROKEN", at=self.begin, text=self.called())
             if not brace and self.text[self.begin : stop].rstrip().endswith("{"):
                 self.feed("LBRACE", at=stop - 1)  # swallowed by a text that was never closed
             elif not brace:

@@ -1,8 +1,9 @@
 """The words of the language for messages: what stands where, what is not there yet, what people write instead."""
 
 from collections.abc import Iterable
+from fractions import Fraction
 
-from thermicon.icons.units import UNITS, Kind
+from thermicon.icons.units import UNITS, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
 WAVES = ("sine", "square", "triangle", "sawtooth")
@@ -92,6 +93,36 @@ NUMBER_WORDS: dict[str, str] = {
     **{"one": "1", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6", "seven": "7", "eight": "8"},
     **{"nine": "9", "ten": "10", "eleven": "11", "twelve": "12", "twenty": "20", "half": "0.5", "zero": "0"},
     **{"a": "1", "an": "1", "once": "1", "twice": "2", "thrice": "3"},
+    **{"½": "0.5", "¼": "0.25", "¾": "0.75"},
+}
+# What is written for a minus sign: the language takes the first two.
+DASHES = ("-", "−", "–", "—", "‐", "‑", "‒", "―", "﹣", "－")
+JOINERS = (",", "and", "then", "&", "afterwards")
+QUOTES: dict[str, str] = {
+    "“": "”“",
+    "„": "“”",
+    "”": "”",
+    "«": "»",
+    "»": "«",
+    "‘": "’‘",
+    "‚": "‘’",
+    "'": "'",
+    "`": "`'´",
+}
+"""Quotation marks that are not straight double ones, and what closes each."""
+
+# Units of other sizes: the unit that the language has, and how many of it they are.
+_SCALED: dict[str, tuple[str, Fraction]] = {
+    **dict.fromkeys(("µs", "μs", "us", "usec", "microseconds"), ("ms", Fraction(1, 1000))),
+    **dict.fromkeys(("ns", "nanoseconds"), ("ms", Fraction(1, 1_000_000))),
+    **dict.fromkeys(("h", "hr", "hour", "hours"), ("min", Fraction(60))),
+    **dict.fromkeys(("mK", "millikelvin"), ("K", Fraction(1, 1000))),
+    "mK/s": ("K/s", Fraction(1, 1000)),
+    "K/ms": ("K/s", Fraction(1000)),
+    "°C/ms": ("°C/s", Fraction(1000)),
+    **dict.fromkeys(("µA", "μA", "uA"), ("mA", Fraction(1, 1000))),
+    "A/ms": ("A/s", Fraction(1000)),
+    "mA/ms": ("A/s", Fraction(1)),
 }
 _UNIT_ALIASES: dict[str, str] = {
     "c": "°C",
@@ -161,11 +192,32 @@ def nearest_unit(word: str, kind: Kind) -> str | None:
     from difflib import get_close_matches
 
     plain = word[:40].replace("℃", "°C").replace("º", "°").replace("˚", "°")
-    for spelling in (plain, _UNIT_ALIASES.get(plain.casefold(), "")):
+    head, slash, per = plain.partition("/")
+    parts = (_UNIT_ALIASES.get(part.casefold(), part) for part in (head, per))
+    for spelling in (plain, _UNIT_ALIASES.get(plain.casefold(), ""), slash.join(parts)):
         if spelling in UNITS[kind]:
             return spelling
-    matches = get_close_matches(plain, list(UNITS[kind]), n=1, cutoff=0.6)
+    if word in _SCALED or head[-1:] in "Ff℉":
+        return None
+    # What begins otherwise, or is per something else, is a unit of another size: µs, mK, °C/ms.
+    same = [unit for unit in UNITS[kind] if unit[:1] == plain[:1] and unit.partition("/")[2] in (per, "")]
+    matches = get_close_matches(plain, same, n=1, cutoff=0.6)
     return matches[0] if matches else None
+
+
+def scaled(number: str, unit: str, kind: Kind) -> str | None:
+    """Return a number with a unit that the language lacks in one that it has, or None.
+
+    >>> scaled("500", "µs", "time"), scaled("3", "mK", "difference"), scaled("3", "mK", "time")
+    ('0.5 ms', '0.003 K', None)
+    """
+    known, factor = _SCALED.get(unit, ("", Fraction(1)))
+    if known not in UNITS[kind]:
+        return None
+    try:
+        return f"{decimal_text(float(exact_number(number) * factor))} {known}"
+    except ValueError:
+        return None
 
 
 def unit_kinds(unit: str) -> list[Kind]:

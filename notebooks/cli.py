@@ -1,4 +1,4 @@
-"""The command line: ``thermicon check``, ``simulate``, ``rank``, ``rigs`` …, and those of ``whatif`` and ``handing``.
+"""The command line: ``thermicon check``, ``simulate``, ``rank`` …; ``whatif``, ``handing``, ``hardware`` … hold others.
 
 Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
 command, beside this one.
@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks import handing, searching, validation, whatif
+from thermicon.notebooks import handing, hardware, searching, validation, whatif
 from thermicon.notebooks.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import (
@@ -255,6 +255,8 @@ app.command("cite")(handing.cite_command)
 app.command("explain")(handing.explain_command)
 app.command("sensitivity")(whatif.sensitivity_command)
 app.command("validate")(validation.validate_command)
+app.command("export")(hardware.export_command)
+app.command("devices")(hardware.devices_command)
 
 
 @app.command("rigs")

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 BAD_INPUT = 1
+REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Iterator, Sequence
+import re
+import signal
+import threading
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
@@ -77,3 +82,79 @@ def complete_or_absent(path: Path) -> Iterator[Path]:
         raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
         draft.unlink(missing_ok=True)
+
+
+def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = False) -> None:
+    """Write files into a folder, which is made if missing: all of them are there when this returns, or none is.
+
+    Every file is written under a hidden name, flushed to the disk, and renamed when all are. What exists already is an
+    error before anything is written, unless ``replace``. What a process that was killed left behind is removed.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_together({"a.json": b"{}", "a.csv": b"1"}, Path(folder))
+    ...     sorted(found.name for found in Path(folder).iterdir())
+    ['a.csv', 'a.json']
+    """
+    made, drafts = not folder.exists(), {}
+    placed: list[Path] = []
+    try:
+        with stopped_cleanly():
+            folder.mkdir(exist_ok=True)
+            there = [name for name in files if (folder / name).exists()]
+            if there and not replace:
+                more = f" and {len(there) - 1} more" if len(there) > 1 else ""
+                raise OutputError(f"{folder / there[0]}{more} exists already and is kept; --force replaces it")
+            _sweep(folder)
+            drafts = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
+            for name, draft in drafts.items():
+                with draft.open("wb") as file:
+                    file.write(files[name])
+                    file.flush()
+                    os.fsync(file.fileno())
+            for name, draft in drafts.items():
+                if name not in there:
+                    placed.append(folder / name)
+                draft.replace(folder / name)
+            placed.clear()
+    except OSError as error:
+        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
+    finally:
+        for left in (*drafts.values(), *placed):
+            left.unlink(missing_ok=True)
+        if made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # only where it is empty
+
+
+@contextmanager
+def stopped_cleanly() -> Iterator[None]:
+    """Let a polite request to end (SIGTERM) act like Ctrl-C, so that what was begun is tidied up."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _sweep(folder: Path) -> None:
+    """Remove drafts of processes that are gone."""
+    if os.name != "posix":
+        return
+    for draft in folder.glob(".*.part"):
+        found = re.fullmatch(r"\..+\.(\d+)\.part", draft.name)
+        if found is None:
+            continue
+        try:
+            os.kill(int(found[1]), 0)
+        except ProcessLookupError:
+            draft.unlink(missing_ok=True)
+        except (OSError, OverflowError):
+            continue

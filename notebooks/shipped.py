@@ -1,4 +1,4 @@
-"""``thermicon rigs`` and ``thermicon library``: what comes with the program."""
+"""``thermicon rigs``, ``library`` and ``devices``: what comes with the program."""
 
 from __future__ import annotations
 
@@ -40,6 +40,46 @@ def show_library() -> None:
             f"  prescribes {PRESCRIBES[icons.frame.control]}; source: {source or 'not stated'}",
             made,
         )
+
+
+def show_devices() -> None:
+    """Print the shipped devices with what drives them, range, steps and rate, then the formats and who takes them."""
+    from thermicon.circuit import Device, device_names
+    from thermicon.circuit.formats import format_names, load_format
+
+    made = table("device", "driven by", "range", "steps", "rate")
+    devices = [Device.load(name) for name in device_names()]
+    for device in devices:
+        low, high = device.interval("set-point range" if device.driven_by == "set-points" else "output range")
+        unit = {"volts": "V", "set-points": "°C"}.get(device.driven_by, "A")
+        bits, step = device.record("resolution"), device.record("set-point step")
+        steps = f"{bits.central:g} bits" if bits else f"{step.central:g} K" if step else "–"
+        fastest = next(
+            (_rate(device.most(name)) for name in ("update rate", "carrier frequency") if device.record(name)),
+            f"{device.most('tick') * 1e3:g} ms ticks",
+        )
+        made.add_row(device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest)
+    forms = table("format", "what it is", "without --device")
+    for name in format_names():
+        form = load_format(name)
+        forms.add_row(name, form.title, form.device)
+    played = [device.name for device in devices if device.played]
+    told = f"Played on hardware: {', '.join(played)}." if played else "None of them was ever played by thermicon."
+    show(
+        made,
+        "",
+        *(f"{device.name}: {device.title}" for device in devices),
+        "",
+        forms,
+        "",
+        told,
+        "A device of your own is a .toml file like the shipped ones, each number sourced.",
+    )
+
+
+def _rate(value_Hz: float) -> str:
+    size, unit = next((size, unit) for size, unit in ((1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz")) if value_Hz >= size)
+    return f"{number(value_Hz / size)} {unit}"
 
 
 PRESCRIBES = {"skin": "the skin's surface", "display": "the display's temperature", "current": "the current"}

@@ -56,6 +56,7 @@ from thermicon.perception.map import PerceptualMap, map_of, perceptual_map
 from thermicon.perception.designs import MissingError
 from thermicon.perception.sensitivity import Effect, Sensitivity, sensitivity
 from thermicon.perception.validate import ValidationReport, validate
+from thermicon.perception.realised import Change, FeltChange, judge_delivered
 
 # The order is that of the flow, which is not the alphabet's.
 __all__ = [
@@ -160,4 +161,7 @@ __all__ = [
     "MissingError",
     "validate",
     "ValidationReport",
+    "Change",
+    "FeltChange",
+    "judge_delivered",
 ]

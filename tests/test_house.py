@@ -40,6 +40,8 @@ def module_names() -> list[str]:
             parts = path.relative_to(ROOT).with_suffix("").parts
             if parts[-1] != "__init__":
                 found.append(".".join(("thermicon", *parts)))
+            elif len(parts) > 2:
+                found.append(".".join(("thermicon", *parts[:-1])))
     return found
 
 

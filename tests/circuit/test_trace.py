@@ -8,7 +8,7 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, Trace, judge_safety, simulate, simulate_current, write_trace
 from thermicon.circuit.draw import plot_current, plot_heat_flow
-from thermicon.circuit.limits import limit_table
+from thermicon.circuit.rules import limit_table
 from thermicon.circuit.trace import judge
 from thermicon.icons import load_library, parse
 
@@ -111,7 +111,9 @@ def test_reached_has_a_stated_tolerance() -> None:
 
 def test_every_limit_has_a_source() -> None:
     assert {record.quantity for record in limit_table()} == {
-        "skin surface", "display", "rate of skin temperature", "cold-receptor depth", "hot plate",
+        "skin surface", "display", "rate of skin temperature", "cold-receptor depth", "hot plate", "thermal dose",
+        "Henriques integral", "time of the display above 43 °C", "time of the display above 48 °C", "numbness",
+        "cold pain", "heat pain",
     }  # fmt: skip
     assert all(record.source for record in limit_table())
 

@@ -1,0 +1,145 @@
+"""``thermicon export``: icons to drive files and sidecars, or the reasons why not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from thermicon.notebooks.cues import pick, read_set, warn_of_site
+from thermicon.notebooks.door import REFUSED, note
+from thermicon.notebooks.outputs import check_folder, write_together
+from thermicon.notebooks.progress import progress_bar
+from thermicon.notebooks.wording import number
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Device, Rig
+    from thermicon.circuit.export import Prepared
+    from thermicon.circuit.formats import Format
+    from thermicon.icons import Icon
+    from thermicon.perception import FeltChange
+
+AFTER_S = 10.0
+"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
+
+MOST_COMPARED = 60
+"""In a larger set d′ is looked at only among the icons that are exported, and among more than these not at all."""
+
+CAUTION = (
+    "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
+    "without software"
+)
+
+
+def export_file(
+    file: str, to: str, device: str | None, icon: str | None, rig: Rig, tail_s: float, force: bool, folder: Path
+) -> None:
+    """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
+    from thermicon.circuit import Device
+    from thermicon.circuit.export import pack
+    from thermicon.circuit.formats import load_format
+
+    form = load_format(to)
+    played = Device.load(device or form.device)
+    check_folder(folder)
+    whole = read_set([file])
+    chosen = pick(whole, icon)
+    warn_of_site(file, whole, rig)
+    ready = prepare_all(chosen, rig, played, form, tail_s)
+    felt = compare_felt(ready, others(whole, chosen), rig, played, tail_s)
+    losses = {change.icon: change.losses() for change in felt}
+    tell(ready)
+    if refused(ready, losses, force):
+        note(CAUTION)
+        note("nothing was written")
+        raise typer.Exit(REFUSED)
+    files = pack(ready, form, felt={change.icon: change.to_dict() for change in felt}, losses=losses)
+    write_together(files, folder, replace=force)
+    drives = "1 drive with its sidecar" if len(ready) == 1 else f"{len(ready)} drives with their sidecars"
+    note(f"wrote {drives} into {folder}: {', '.join(_shown(list(files)))}")
+    note(f"to play: {form.how}")
+    note(CAUTION)
+
+
+def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
+    """The icons of a set that are not exported but compared with; none where the set is large."""
+    names = {icon.name for icon in chosen}
+    left = [icon for icon, _ in zip(whole, range(MOST_COMPARED + 1), strict=False) if icon.name not in names]
+    return left if len(left) + len(chosen) <= MOST_COMPARED else []
+
+
+def prepare_all(icons: Sequence[Icon], rig: Rig, device: Device, form: Format, tail_s: float) -> list[Prepared]:
+    """Realise and judge every icon."""
+    from thermicon.circuit.export import prepare
+
+    ready = []
+    with progress_bar("realising") as progress:
+        for done, icon in enumerate(icons, 1):
+            ready.append(prepare(icon, rig, device, form, tail_s=tail_s))
+            if progress is not None:
+                progress(done, len(icons))
+    return ready
+
+
+def compare_felt(
+    ready: Sequence[Prepared], rest: Sequence[Icon], rig: Rig, device: Device, tail_s: float
+) -> tuple[FeltChange, ...]:
+    """What the device changes of the exported icons for a nominal person, beside the others of the set."""
+    from thermicon.circuit.door import InputError
+    from thermicon.circuit.realise import realise, traces_until
+    from thermicon.perception import judge_delivered
+
+    everyone = [one.realised for one in ready]
+    for icon in rest:
+        try:
+            everyone.append(realise(icon, rig, device, tail_s=tail_s))
+        except InputError as problem:
+            note(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
+    end = max(realised.end_s for realised in everyone) + AFTER_S
+    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
+    if len(groups) > 1:
+        note(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
+    felt: list[FeltChange] = []
+    for group in groups:
+        traces = [traces_until(realised, end) for realised in group]
+        names = [realised.icon.name for realised in group]
+        felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
+    return tuple(felt[: len(ready)])
+
+
+def tell(ready: Sequence[Prepared]) -> None:
+    """Say of every icon how it is played and how far that is from the design, and what is to be known of it."""
+    for one in ready:
+        realised = one.realised
+        receptors = [each for each in one.apart.places if "receptor" in each.place]
+        largest = 1e3 * max(abs(each.largest_K) for each in receptors)
+        rms = 1e3 * max(each.rms_K for each in receptors)
+        note(
+            f"{realised.icon.name}: {number(realised.end_s, 2)} s at {number(realised.rate_Hz, 1)} Hz on "
+            f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
+            f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
+        )
+        for warning in (*realised.told, *one.verdict.cautions):
+            note(f"warning: {realised.icon.name}: {warning}")
+
+
+def refused(ready: Sequence[Prepared], losses: dict[str, tuple[str, ...]], force: bool) -> bool:
+    """Say why icons are refused, and whether any is."""
+    from thermicon.circuit.export import Refusal
+
+    final = forcible = False
+    for one in ready:
+        name = one.realised.icon.name
+        for refusal in (*one.refusals, *(Refusal("lossy", text) for text in losses.get(name, ()))):
+            stops = not (force and refusal.forcible)
+            final, forcible = final or not refusal.forcible, forcible or refusal.forcible
+            note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
+    if forcible and not force and not final:
+        note("--force exports it as it is, and the sidecar says so")
+    return final or (forcible and not force)
+
+
+def _shown(names: Sequence[str], most: int = 6) -> list[str]:
+    return [*names[:most], *([f"and {len(names) - most} more"] if len(names) > most else [])]

@@ -1,0 +1,109 @@
+"""Devices: the shipped profiles, what their numbers mean, and what the door says of a file that is wrong."""
+
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Device, DeviceError, device_names
+
+GOOD = """
+format = 1
+name = "mine"
+title = "my own source"
+driven_by = "amperes"
+
+[[record]]
+quantity = "output range"
+unit = "A"
+low = -2.0
+high = 2.0
+source = "label"
+
+[[record]]
+quantity = "resolution"
+unit = "bit"
+value = 12
+source = "data sheet"
+
+[[record]]
+quantity = "update rate"
+unit = "Hz"
+high = 500
+source = "data sheet"
+"""
+
+
+@pytest.mark.parametrize("name", device_names())
+def test_every_number_of_a_shipped_device_has_a_source_and_none_was_played(name: str) -> None:
+    device = Device.load(name)
+    assert device.name == name
+    assert device.records
+    assert all(record.source and record.confidence for record in device.records)
+    assert not device.played
+    assert device.note
+    assert repr(device) == f"Device({name!r}, {device.driven_by}, never played)"
+
+
+@pytest.mark.parametrize(
+    ("name", "milliamperes"),
+    [("dac-12", 0.488281), ("dac-14", 0.12207), ("dac-16", 0.0305176), ("pwm-h-bridge-8", 14.84)],
+)
+def test_steps_are_as_large_as_arithmetic_says(name: str, milliamperes: float) -> None:
+    device = Device.load(name)
+    per_unit = 0.1 if device.driven_by == "volts" else 1.9
+    assert device.scale(1.0).step * per_unit * 1e3 == pytest.approx(milliamperes, rel=1e-3)
+
+
+def test_levels_follow_the_waveform_where_the_instrument_sets_them() -> None:
+    keysight, rigol = Device.load("keysight-33500b").scale(7.1234), Device.load("rigol-dg1000z").scale(7.1234)
+    assert (keysight.lowest, keysight.highest, rigol.lowest, rigol.highest) == (-32767, 32767, 0, 16383)
+    assert keysight.step * 32767 == pytest.approx(7.124)
+    assert (rigol.offset, rigol.offset + 16383 * rigol.step) == pytest.approx((-7.124, 7.124))
+    assert Device.load("keysight-33500b").scale(70.0).step * 32767 == pytest.approx(10.0)
+
+
+def test_a_device_of_ones_own(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD)
+    device = Device.load(path)
+    assert repr(device) == "Device('mine', amperes, never played)"
+    assert device.interval("update rate") == (0.0, 500.0)
+    assert device.record("slew rate") is None
+    assert device.most("slew rate") == float("inf")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("driven_by", "drivn_by"), r"mine\.toml: drivn_by: unknown key; did you mean driven_by\?"),
+        (('title = "my own source"', ""), r"mine\.toml: title is missing; add it"),
+        (('"amperes"', '"watts"'), r"driven_by = 'watts': must be 'volts', 'amperes', 'duty' or 'set-points'"),
+        (('"data sheet"', '" "'), r"record\.1 \(resolution\): the record has no source: add source"),
+        (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a finite number without quotes or unit"),
+        (("value = 12", "bits = 12"), r"record\.1\.bits: unknown key; known: "),
+        (("value = 12", "value = 0"), r"record\.1 \(resolution\): must be above 0"),
+        (('unit = "Hz"', 'unit = "kHz"'), r"record\.2 \(update rate\): unit = 'kHz': must be Hz"),
+        (('"update rate"', '"updat rate"'), r"record\.2 \(updat rate\): no such quantity; did you mean update rate"),
+        (('"update rate"', '"slew rate"'), r"a device driven by amperes needs a record of its update rate, in Hz"),
+        (('"update rate"\nunit = "Hz"', '"resolution"\nunit = "bit"'), r"record\.2 \(resolution\): is there twice"),
+        (("low = -2.0", "low = 2.5"), r"record\.0 \(output range\): needs low and high, low below high"),
+        (("format = 1", "format = 1\nplayed = 1"), r"played = 1: must be true or false"),
+        (("format = 1", "format = 2"), r"format = 2: must be 1"),
+        (("format = 1", "format = "), r"mine\.toml: not a valid TOML file"),
+    ],
+)
+def test_a_wrong_device_file_says_what_and_where(tmp_path: Path, change: tuple[str, str], words: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(GOOD.replace(*change))
+    with pytest.raises(DeviceError, match=words):
+        Device.load(path)
+
+
+def test_an_unknown_device_is_named_with_the_nearest() -> None:
+    with pytest.raises(DeviceError, match=r"dac-61: no such device; did you mean dac-16"):
+        Device.load("dac-61")
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(DeviceError, match="no such device file"):
+        Device.load(tmp_path / "absent.toml")

@@ -1,0 +1,256 @@
+"""Export without a disk: what is refused and why, what goes into files, and what a sidecar tells."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from dataclasses import dataclass, replace
+from importlib.metadata import version
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Device, Prepared, Realised, Rig, Verdict, gate, judge_safety, prepare, realise, worst_case
+from thermicon.circuit.export import Refusal, pack
+from thermicon.circuit.formats import FormatError, load_format
+from thermicon.circuit.sidecar import NO_CLEARANCE
+from thermicon.icons import load_library, parse
+
+RIG = Rig.load("thenar")
+SIX = load_library("six-icons")
+CSV = load_format("csv")
+COLD = parse(
+    "cue 1\nset s { control skin\n baseline 32 °C }\n"
+    "icon frost { cool by 20 °C at 2 °C/s\n hold for 8 s\n return at 2 °C/s }\n"
+)
+
+
+def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
+    return prepare(SIX[name], rig, Device.load(device), load_format(form))
+
+
+def sidecar_of(one: Prepared, form: str = "csv", **more: Any) -> dict[str, Any]:
+    files = pack([one], load_format(form), **more)
+    found: dict[str, Any] = json.loads(next(text for name, text in files.items() if name.endswith(".json")))
+    return found
+
+
+def test_what_is_safe_reached_and_faithful_is_not_refused() -> None:
+    one = ready()
+    assert (one.verdict.colour, one.refusals) == ("green", ())
+    assert list(pack([one], CSV)) == ["cooling-step.json", "cooling-step.csv"]
+
+
+def test_what_is_unsafe_is_refused_and_cannot_be_packed() -> None:
+    rig = RIG.with_(
+        **{"driver.current_limit_A": 4.0, "driver.voltage_limit_V": 40.0, "driver.transconductance_A_per_V": 1}
+    )
+    one = prepare(COLD["frost"], rig, Device.load("dac-16"), CSV)
+    refusal = one.refusals[0]
+    assert (refusal.kind, refusal.forcible) == ("unsafe", False)
+    assert str(refusal).startswith("NOT SAFE: skin surface reaches 1")
+    with pytest.raises(FormatError, match=r"frost: NOT SAFE: skin surface reaches .* below the hard limit of 15 °C"):
+        pack([one], CSV)
+
+
+def test_what_is_not_reached_is_refused_with_the_reason() -> None:
+    rig = RIG.with_(**{"driver.current_limit_A": 0.5})
+    refusal = next(each for each in ready(rig=rig).refusals if each.kind == "unreachable")
+    assert str(refusal).startswith("NOT reached: misses its target by ")
+    assert refusal.forcible
+
+
+def test_what_loses_too_much_is_refused_with_the_limit() -> None:
+    refusals = ready(device="pwm-h-bridge-8").refusals
+    assert {refusal.kind for refusal in refusals} == {"lossy"}
+    assert "over the stated 0.05 K" in str(refusals[0])
+
+
+def test_the_gate_is_given_and_its_word_is_final() -> None:
+    @dataclass(frozen=True)
+    class Red:
+        colour: str = "red"
+        reason: str | None = None
+        cautions: tuple[str, ...] = ()
+        scenarios: int = 99
+
+        def to_dict(self) -> dict[str, object]:
+            return {"colour": "red", "scenarios": 99}
+
+    seen: list[str] = []
+
+    def stern(realised: Realised) -> Verdict:
+        seen.append(realised.icon.name)
+        return Red()
+
+    one = prepare(SIX["double-dip"], RIG, Device.load("dac-16"), CSV, gate=stern)
+    assert seen == ["double-dip"]
+    assert one.refusals == (Refusal("unsafe", "the gate says red"),)
+
+
+class TestWorstCase:
+    """What every kind of device meets."""
+
+    def test_it_is_the_default_and_in_it_more_is_red_than_on_the_rig_as_given(self) -> None:
+        icon = parse(
+            "cue 1\nset s { control skin\n baseline 32 °C }\n"
+            "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
+        )
+        one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
+        assert judge_safety(one.realised.trace).colour == "amber"
+        assert one.verdict == worst_case(one.realised)
+        assert one.verdict.colour == "red"
+        (refusal,) = (refusal for refusal in one.refusals if refusal.kind == "unsafe")
+        assert "with contact resistance −30 %, ambient −3 K, gain +10 %, then " in str(refusal)
+        with pytest.raises(FormatError, match="hot: NOT SAFE: skin surface reaches "):
+            pack([one], CSV)
+
+    def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
+        found = ready().realised
+        assert worst_case(found) == gate(found.delivered, RIG)
+
+    def test_a_bridge_rests_and_ends_with_means(self) -> None:
+        found = ready(device="pwm-h-bridge-8").realised
+        (rest, *_) = found.played.command  # type: ignore[union-attr]
+        assert worst_case(found) == gate(found.delivered, RIG, rest_A=1.9 * float(rest), bridge_A=1.9)
+
+    def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
+        found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").realised)
+        assert (found.uncertainty.gain_relative, found.scenarios) == (0.0, 15)
+        lowest = min(check.value for check in found.checks if check.quantity == "display" and not check.upper)
+        assert lowest == pytest.approx(26.0, abs=0.06), "the set-point, in the corners too"
+        coldest = next(check for check in found.checks if check.quantity == "skin surface" and not check.upper)
+        given = realise(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
+        assert coldest.value < given - 0.1
+        assert coldest.scenario.startswith("contact resistance −30 %")
+
+    def test_a_thermode_is_stronger_than_the_rig(self) -> None:
+        text = (
+            "cue 1\nset s { control display\n baseline 32 °C }\n"
+            "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
+        )
+        found = realise(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
+        assert judge_safety(found.trace).colour == "green"
+        assert worst_case(found).reason is not None
+        assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
+
+    def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
+        text = (
+            "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 29 °C at 2 °C/s\n return at 2 °C/s }\n"
+        )
+        rig = RIG.with_(**{"module.seebeck_V_per_K": 0.026})
+        found = worst_case(realise(parse(text)["a"], rig, Device.load("qst-tcs2")))
+        check = next(check for check in found.findings if check.quantity == "display")
+        assert (check.value, check.scenario) == (pytest.approx(3.0), "every set-point reached")
+
+
+@pytest.mark.parametrize(
+    ("form_name", "names", "file"),
+    [
+        ("c-array", ("ab", "Ab"), "Ab.h"),
+        ("c-array", ("é", "è"), "icon__.h"),
+        ("psychopy", ("a", "conditions"), "conditions.csv"),
+    ],
+)
+def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], file: str) -> None:
+    text = "cue 1\n" + "".join(f"icon {name} {{ hold for 1 s }}\n" for name in names)
+    form = load_format(form_name)
+    made = [prepare(icon, RIG, Device.load("dac-16"), form) for icon in parse(text)]
+    words = f"{names[1]}: another file is already called {re.escape(file)}; rename the icon, or export it alone"
+    with pytest.raises(FormatError, match=words):
+        pack(made, form)
+
+
+def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() -> None:
+    realised = ready("warming-step", "pwm-h-bridge-8").realised
+    assert realised.trace.beyond
+    assert realised.told == realised.warnings == ()
+
+
+def test_a_format_that_cannot_hold_an_icon_names_it() -> None:
+    with pytest.raises(FormatError, match=r"^double-dip: tcs2-protocol-ini holds one ramp"):
+        pack([ready("double-dip", "qst-tcs2", "tcs2-protocol-ini")], load_format("tcs2-protocol-ini"))
+
+
+class TestSidecar:
+    """What stands beside every drive."""
+
+    def test_it_names_everything_that_made_the_drive(self) -> None:
+        one = ready(rig=RIG.with_set(["contact.area_cm2=8"]))
+        told = sidecar_of(one)
+        assert told["thermicon"] == version("thermicon")
+        assert told["icon"]["content_hash"] == SIX["cooling-step"].content_hash
+        assert parse(told["icon"]["text"])["cooling-step"] == replace(
+            SIX["cooling-step"], frame=parse(told["icon"]["text"])["cooling-step"].frame
+        )
+        rig = one.realised.rig
+        assert told["rig"]["content_hash"] == hashlib.sha256(rig.document.encode()).hexdigest()
+        assert told["rig"]["changes"] == ["contact.area_cm2=8"]
+        assert told["rig"]["document"] == json.loads(rig.document)
+        assert told["device"]["name"] == "dac-16"
+        assert all(record["source"] for record in told["device"]["records"])
+        assert told["update_rate_Hz"] == {"requested": 100.0, "realised": 100.0}
+        assert told["seed"] is None
+        assert told["what_it_is_not"] == NO_CLEARANCE
+
+    def test_every_column_has_a_unit_and_a_meaning(self) -> None:
+        columns = {column["name"]: column["unit"] for column in sidecar_of(ready())["columns"]}
+        assert columns == {"time_s": "s", "current_A": "A", "command_V": "V", "code": "", "event": ""}
+
+    def test_events_are_on_the_clock_of_the_file(self) -> None:
+        events = {event["name"]: (event["time_s"], event["level_C"]) for event in sidecar_of(ready())["events"]}
+        assert events["ramp start"] == (0.01, 32.0)
+        assert events["target reached"] == (2.01, 26.0)
+        assert events["return start"] == (6.01, 26.0)
+        assert events["end"] == (8.01, 32.0)
+        thermode = sidecar_of(ready(device="qst-tcs2", form="tcs2-serial"), "tcs2-serial")
+        assert thermode["events"][0]["time_s"] == 0.0
+        assert thermode["played"]["segments"] == 3
+
+    def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
+        told = sidecar_of(ready("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
+        one = ready("warming-step", "rigol-dg1000z", "rigol-raf").realised
+        assert told["played"]["high_level_V"] == pytest.approx(-told["played"]["low_level_V"])
+        assert told["played"]["samples"] == len(one.trace.time_s)
+        assert told["played"]["icon_begins_at_s"] == 0.01
+
+    def test_prediction_differences_limits_and_verdict_are_there(self) -> None:
+        told = sidecar_of(ready(), felt={"cooling-step": {"observer": "nominal"}})
+        assert told["predicted"]["skin_min_C"] == pytest.approx(26.92, abs=0.01)
+        assert set(told["delivered_minus_designed"]) == {"skin", "cold receptor", "warm receptor"}
+        assert (told["safety"]["colour"], told["safety"]["findings"]) == ("green", [])
+        assert (told["safety"]["scenarios"], len(told["safety"]["checks"])) == (27, 22)
+        assert [record["quantity"] for record in told["stated_losses"]] == [
+            "receptor difference", "detection drop", "relative d′ drop", "least d′ drop",
+        ]  # fmt: skip
+        assert told["perception"] == {"observer": "nominal"}
+        assert (told["reached"], told["forced"], told["forced_over"]) == (True, False, [])
+        assert "dac-16: no such device was ever driven by thermicon" in told["warnings"]
+
+    def test_what_was_forced_says_so_and_why(self) -> None:
+        told = sidecar_of(ready(device="pwm-h-bridge-8"), losses={"cooling-step": ["d′ to x falls"]})
+        assert told["forced"] is True
+        assert told["forced_over"][-1] == "loses too much: d′ to x falls"
+        assert len(told["forced_over"]) == 3
+
+    def test_the_whole_gate_is_in_it_with_the_reason_for_looser_limits(self) -> None:
+        why = "approved by our own board for this one study"
+        rig = RIG.with_(**{"safety.skin_highest_C": 42.5, "safety.reason": why})
+        one = ready("warming-step", rig=rig)
+        told = sidecar_of(one)["safety"]
+        assert told == json.loads(json.dumps(one.verdict.to_dict()))
+        assert told["limits"]["reason"] == why
+        assert told["limits"]["loosened"] == ["skin_highest_C 42.5 °C instead of 42 °C"]
+        assert "no medical or ethical clearance" in told["what_it_is_not"]
+
+    def test_soft_limits_are_in_it_word_for_word(self) -> None:
+        icon = parse(
+            "cue 1\nset s { control display\n baseline 32 °C }\n"
+            "icon hot { warm by 9 °C at 3 °C/s\n hold for 3 s\n return at 3 °C/s }\n"
+        )
+        one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
+        assert one.verdict.colour == "amber"
+        finding = sidecar_of(one)["safety"]["findings"][0]
+        assert finding["text"] == one.verdict.cautions[0]
+        assert {"quantity", "severity", "value", "limit", "unit", "time_s", "source"} <= set(finding)

@@ -1,0 +1,246 @@
+"""Files of samples, each read back by a reader that is not our writer."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import subprocess
+import wave
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thermicon.circuit import Device, Realised, Rig, Samples, read_drive, realise, simulate_current
+from thermicon.circuit.formats import FormatError, format_names, load_format
+from thermicon.circuit.formats.c_array import identifier
+from thermicon.icons import load_library, parse
+
+RIG = Rig.load("thenar")
+ICON = load_library("six-icons")["cooling-step"]
+
+
+def played(format_name: str, device: str | None = None) -> tuple[Realised, Samples]:
+    found = realise(ICON, RIG, Device.load(device or load_format(format_name).device))
+    assert isinstance(found.played, Samples)
+    return found, found.played
+
+
+def test_every_format_says_where_its_layout_is_told() -> None:
+    for name in format_names():
+        form = load_format(name)
+        assert form.name == name
+        assert form.source
+        assert form.how
+        assert repr(form).startswith(f"Format({name!r}, *.")
+
+
+def test_an_unknown_format_is_named_with_the_nearest() -> None:
+    with pytest.raises(FormatError, match=r"keysight: no such format; did you mean keysight-arb\?"):
+        load_format("keysight")
+
+
+@pytest.mark.parametrize(
+    ("name", "device"), [("tcs2-serial", "dac-16"), ("csv", "qst-tcs2"), ("wav", "pwm-h-bridge-8")]
+)
+def test_a_format_for_another_kind_of_device_is_refused(name: str, device: str) -> None:
+    form, other = load_format(name), Device.load(device)
+    words = rf"{name} is for devices driven by .*; {device} is driven by {other.driven_by}"
+    with pytest.raises(FormatError, match=words):
+        form.check(other)
+
+
+class TestCsv:
+    """The table, by pandas and by the replay of `simulate --current --hold`."""
+
+    def test_pandas_reads_the_samples(self) -> None:
+        found, samples = played("csv")
+        table = pd.read_csv(io.BytesIO(load_format("csv").write(found)))
+        assert list(table.columns) == [column.name for column in load_format("csv").columns(found)]
+        assert np.array_equal(table["time_s"], samples.time_s)
+        assert np.array_equal(table["code"], samples.codes)
+        assert np.array_equal(table["command_V"], samples.command)
+        assert table["event"].dropna().to_dict() == {
+            0: "rest", 1: "ramp start", 201: "target reached", 601: "return start", 801: "baseline reached; end",
+        }  # fmt: skip
+
+    @pytest.mark.parametrize("device", ["dac-12", "dac-16", "ni-analogue-output", "rigol-dg1000z", "dc-coupled-audio"])
+    @pytest.mark.parametrize("update", [100, 30])
+    def test_a_replay_is_the_realised_trace(self, device: str, update: int, tmp_path: Path) -> None:
+        rig = RIG.with_(**{"driver.update_Hz": update})
+        found = realise(ICON, rig, Device.load(device))
+        path = tmp_path / "drive.csv"
+        path.write_bytes(load_format("csv").write(found))
+        again = simulate_current(read_drive(path, hold=True), rig)
+        assert np.abs(again.time_s - found.trace.time_s).max() < 1e-12
+        for column in ("current_A", "hot_plate_C", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
+            assert np.abs(getattr(again, column) - getattr(found.trace, column)).max() < 1e-9, column
+
+    def test_a_bridge_has_duties_and_no_current_to_replay(self, tmp_path: Path) -> None:
+        found, samples = played("csv", "pwm-h-bridge-8")
+        rows = list(csv.DictReader(io.StringIO(load_format("csv").write(found).decode())))
+        assert [float(row["duty"]) for row in rows] == samples.command.tolist()
+        assert "current_A" not in rows[0]
+
+
+def test_ngspice_plays_the_pwl_file(tool: Callable[[str], str], tmp_path: Path) -> None:
+    found, samples = played("spice-pwl")
+    (tmp_path / "drive.pwl").write_bytes(load_format("spice-pwl").write(found))
+    (tmp_path / "t.cir").write_text(
+        '* t\na1 %vd([command 0]) source\n.model source filesource (file="drive.pwl" amploffset=[0] amplscale=[1])\n'
+        f"R1 command 0 1k\n.tran 5m {found.end_s} 0 5m\n.control\nset wr_singlescale\nset numdgt=15\nrun\n"
+        "wrdata out.txt v(command)\nquit 0\n.endc\n.end\n"
+    )
+    run = subprocess.run([tool("ngspice"), "-b", "t.cir"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+    table = np.loadtxt(tmp_path / "out.txt")
+    behind = samples.time_s[:-1] + 0.4 / samples.rate_Hz
+    assert np.abs(np.interp(behind, table[:, 0], table[:, 1]) - samples.command[:-1]).max() < 1e-9
+
+
+def test_pwl_times_increase_and_values_are_those_of_the_drive() -> None:
+    found, samples = played("spice-pwl")
+    times, volts = np.loadtxt(io.BytesIO(load_format("spice-pwl").write(found))).T
+    assert (np.diff(times) > 0).all()
+    assert np.interp(samples.time_s[:-1] + 5e-3, times, volts) == pytest.approx(samples.command[:-1], abs=1e-12)
+
+
+def test_a_pwl_source_goes_on_with_the_rest() -> None:
+    found, samples = played("spice-pwl")
+    times, volts = np.loadtxt(io.BytesIO(load_format("spice-pwl").write(found))).T
+    assert times[-1] == pytest.approx(found.end_s, abs=2e-6)
+    assert volts[-1] == pytest.approx(samples.command[0], abs=1e-12)
+    assert abs(volts[-2] - volts[-1]) > 0.1, "the ramp ends with another current"
+
+
+def test_a_keysight_file_has_its_header_and_codes() -> None:
+    found, samples = played("keysight-arb")
+    text = load_format("keysight-arb").write(found).decode("ascii")
+    head, _, data = text.partition("Data:\r\n")
+    header = dict(line.split(":", 1) for line in head.splitlines())
+    codes = np.array([int(line) for line in data.splitlines()])
+    high, low = float(header["High Level"]), float(header["Low Level"])
+    assert list(header) == [
+        "File Format", "Checksum", "Channel Count", "Sample Rate", "High Level", "Low Level", "Marker Point",
+        "Data Type", "Filter", "Data Points",
+    ]  # fmt: skip
+    assert (header["Data Type"], header["Filter"], int(header["Data Points"])) == ('"short"', '"OFF"', len(codes))
+    assert float(header["Sample Rate"]) == samples.rate_Hz
+    assert low + (codes + 32767) / 65534 * (high - low) == pytest.approx(samples.command, abs=1e-6)
+
+
+def test_a_rigol_file_is_14_bits_from_low_to_high_level() -> None:
+    found, samples = played("rigol-raf")
+    form = load_format("rigol-raf")
+    codes = np.frombuffer(form.write(found), dtype="<u2")
+    low, high = samples.scale.offset, samples.scale.offset + samples.scale.step * 0x3FFF
+    assert codes.max() <= 0x3FFF
+    assert low + codes / 0x3FFF * (high - low) == pytest.approx(samples.command, abs=1e-12)
+    assert form.file_name(found) == "cooling_step.RAF"
+
+
+@pytest.mark.parametrize(("name", "device"), [("keysight-arb", "dac-12"), ("rigol-raf", "dac-16")])
+def test_generators_take_only_their_own_codes(name: str, device: str) -> None:
+    with pytest.raises(FormatError, match=rf"{name} needs codes of .*; {device} has -"):
+        load_format(name).write(played(name, device)[0])
+
+
+def test_nptdms_reads_the_waveform() -> None:
+    nptdms = pytest.importorskip("nptdms")
+    found, samples = played("tdms")
+    file = nptdms.TdmsFile.read(io.BytesIO(load_format("tdms").write(found)))
+    channel = file["thermicon"]["command_V"]
+    assert np.array_equal(channel[:], samples.command)
+    assert np.array_equal(file["thermicon"]["code"][:], samples.codes)
+    assert channel.properties["unit_string"] == "V"
+    assert channel.time_track() == pytest.approx(samples.time_s)
+    assert file.properties["name"] == "cooling-step"
+
+
+def test_without_nptdms_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "nptdms", None)
+    with pytest.raises(
+        FormatError, match=r'tdms needs npTDMS, which is not installed: pip install "thermicon\[hardware'
+    ):
+        load_format("tdms").write(played("tdms")[0])
+
+
+class TestWav:
+    """Sound files."""
+
+    def test_the_wave_module_reads_the_samples(self) -> None:
+        found, samples = played("wav")
+        with wave.open(io.BytesIO(load_format("wav").write(found))) as sound:
+            assert (sound.getnchannels(), sound.getsampwidth(), sound.getframerate()) == (1, 2, 48000)
+            pcm = np.frombuffer(sound.readframes(sound.getnframes()), dtype="<i2")
+        assert pcm / 32768 * 10.0 == pytest.approx(samples.command, abs=1e-12)
+
+    def test_an_output_that_is_not_dc_coupled_is_refused(self) -> None:
+        found, _ = played("wav")
+        with pytest.raises(
+            FormatError, match=r"wav: dc-coupled-audio is not said to be DC-coupled .* every held level"
+        ):
+            load_format("wav").write(replace(found, device=replace(found.device, dc_coupled=False)))
+
+    def test_levels_that_follow_the_waveform_have_no_place(self) -> None:
+        with pytest.raises(FormatError, match="wav has no levels of its own; keysight-33500b sets its levels by the"):
+            load_format("wav").write(played("wav", "keysight-33500b")[0])
+
+    def test_a_broken_rate_is_refused(self) -> None:
+        found = realise(ICON, RIG.with_(**{"driver.update_Hz": 62.5}), Device.load("dac-16"))
+        with pytest.raises(FormatError, match=r"wav: 62\.5 Hz is no whole number of samples a second"):
+            load_format("wav").write(found)
+
+
+class TestCArray:
+    """Header files."""
+
+    @pytest.mark.parametrize("device", ["dac-12", "pwm-h-bridge-8"])
+    def test_a_compiler_reads_the_codes(self, device: str, tool: Callable[[str], str], tmp_path: Path) -> None:
+        found, samples = played("c-array", device)
+        form = load_format("c-array")
+        (tmp_path / form.file_name(found)).write_bytes(form.write(found))
+        (tmp_path / "main.c").write_text(
+            '#include <stdio.h>\n#include "cooling_step.h"\nint main(void) {\n'
+            '  printf("%lu\\n", (unsigned long)cooling_step_period_ns);\n'
+            '  for (uint32_t k = 0; k < cooling_step_count; k++) printf("%d\\n", cooling_step_wave[k]);\n'
+            "  return 0;\n}\n"
+        )
+        command = [tool("gcc"), "-std=c99", "-Wall", "-Werror", "-o", "play", "main.c"]
+        subprocess.run(command, cwd=tmp_path, check=True, capture_output=True)
+        said = subprocess.run([tmp_path / "play"], capture_output=True, text=True, check=True).stdout.split()
+        assert int(said[0]) == round(1e9 / samples.rate_Hz)
+        assert [int(word) for word in said[1:]] == samples.codes.tolist()
+
+    def test_the_scale_stands_in_the_comment(self) -> None:
+        found, samples = played("c-array")
+        text = load_format("c-array").write(found).decode("ascii")
+        said = re.search(r"V = (\S+) \+ (\S+) \* code", text)
+        assert said is not None
+        assert (float(said[1]), float(said[2])) == (samples.scale.offset, samples.scale.step)
+
+    def test_codes_that_16_bits_cannot_hold_are_refused(self) -> None:
+        found, samples = played("c-array")
+        wide = replace(found, played=replace(samples, scale=replace(samples.scale, lowest=-40000)))
+        with pytest.raises(FormatError, match=r"c-array holds int16_t; dac-12 has codes of -40000 … 2047"):
+            load_format("c-array").write(wide)
+
+    def test_names_are_those_of_c(self) -> None:
+        assert identifier("ramp_amount=-6_rate=0.25") == "ramp_amount__6_rate_0_25"
+        assert identifier("été") == "icon__t_"
+
+
+def test_an_icon_in_amperes_has_levels_in_amperes() -> None:
+    icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
+    found = realise(icon, RIG, Device.load("dac-16"))
+    table = pd.read_csv(io.BytesIO(load_format("csv").write(found)))
+    assert table["event"].dropna().tolist() == [
+        "rest",
+        "ramp start",
+        "target reached; return start",
+        "baseline reached; end",
+    ]

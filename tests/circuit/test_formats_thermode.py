@@ -1,0 +1,217 @@
+"""Files for a thermode, and PsychoPy's: read back by parsers written from what the public sources say."""
+
+from __future__ import annotations
+
+import ast
+import configparser
+import csv
+import io
+import re
+import sys
+import types
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thermicon.circuit import Device, Realised, Rig, Setpoints, prepare, realise
+from thermicon.circuit.export import pack
+from thermicon.circuit.formats import FormatError, load_format
+from thermicon.circuit.formats.tcs2_protocol import stimulus_of
+from thermicon.icons import Corners, Icon, load_library, parse
+
+RIG = Rig.load("thenar")
+THERMODE = Device.load("qst-tcs2")
+
+
+def icon_of(way: str, rates: tuple[float, float] = (3.0, 3.0), control: str = "display") -> Icon:
+    return parse(
+        f"cue 1\nset s {{ control {control}\n baseline 30 °C }}\n"
+        f"icon a {{ {way} by 6 °C at {rates[0]} °C/s\n hold for 2 s\n return at {rates[1]} °C/s }}\n"
+    )["a"]
+
+
+def read_profile(text: str) -> tuple[float, list[tuple[float, float]]]:
+    """Baseline in °C and the (duration s, level °C) of a `Uw` command, by the list of commands in pytcsii's header."""
+    commands = text.split("\n")
+    assert commands.pop() == ""
+    neutral, most, profile, enabled, start = commands
+    assert re.fullmatch(r"N\d{3}", neutral)
+    assert re.fullmatch(r"Om\d{3}", most)
+    assert (enabled, start) == ("Ue11111", "L")
+    head = re.match(r"Uw11111(\d{3})", profile)
+    assert head is not None
+    body = profile[len(head[0]) :]
+    assert len(body) == 6 * int(head[1])
+    pairs = [(int(body[k : k + 3]) / 100, int(body[k + 3 : k + 6]) / 10) for k in range(0, len(body), 6)]
+    assert all(0.01 <= duration <= 9.99 for duration, _ in pairs)
+    assert int(most[2:]) / 10 >= max(level for _, level in pairs)
+    return int(neutral[1:]) / 10, pairs
+
+
+class TestSerial:
+    """Commands of the serial line."""
+
+    @pytest.mark.parametrize("name", ["cooling-step", "cold-to-warm", "double-dip"])
+    def test_a_profile_read_back_is_the_icon(self, name: str) -> None:
+        icon = load_library("six-icons")[name]
+        found = realise(icon, RIG, THERMODE)
+        baseline, pairs = read_profile(load_format("tcs2-serial").write(found).decode("ascii"))
+        times = np.cumsum([0.0, *(duration for duration, _ in pairs)])
+        levels = [baseline, *(level for _, level in pairs)]
+        corners = icon.lower()
+        grid = np.linspace(0, corners.duration_s, 200)
+        assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
+        assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)
+
+    def test_cooling_is_timed_as_warming_is(self) -> None:
+        write = load_format("tcs2-serial").write
+        cool, warm = (read_profile(write(realise(icon_of(way), RIG, THERMODE)).decode()) for way in ("cool", "warm"))
+        assert [duration for duration, _ in cool[1]] == [duration for duration, _ in warm[1]] == [2.0, 2.0, 2.0]
+
+    def test_a_quarter_of_a_degree_a_second_is_no_fifth(self) -> None:
+        found = realise(icon_of("warm", (0.25, 0.25)), RIG, THERMODE)
+        _, pairs = read_profile(load_format("tcs2-serial").write(found).decode())
+        ramp = sum(duration for duration, _ in pairs[:3])
+        assert ramp == pytest.approx(6 / 0.25)
+
+
+class TestProtocol:
+    """The protocol file."""
+
+    def read(self, found: Realised) -> configparser.ConfigParser:
+        parser = configparser.ConfigParser()
+        parser.optionxform = str  # type: ignore[assignment,method-assign]
+        parser.read_string(load_format("tcs2-protocol-ini").write(found).decode("ascii"))
+        return parser
+
+    def test_a_cooling_step_lasts_as_long_as_a_warming_one(self) -> None:
+        zones = [self.read(realise(icon_of(way), RIG, THERMODE))["step3_zone1"] for way in ("cool", "warm")]
+        assert [zone["temperature"] for zone in zones] == ["24.000", "36.000"]
+        for zone in zones:
+            # a signed rise time would have made 0.000 of the cooling one
+            assert (zone["duration"], zone["speed"], zone["return"]) == ("4.000", "3.000", "3.000")
+
+    def test_no_rate_is_truncated(self) -> None:
+        zone = self.read(realise(icon_of("cool", (0.25, 0.35)), RIG, THERMODE))["step3_zone5"]
+        assert (zone["speed"], zone["return"], zone["duration"]) == ("0.250", "0.350", "26.000")
+
+    def test_its_steps_are_baseline_trigger_and_stimulation(self) -> None:
+        parser = self.read(realise(icon_of("warm"), RIG, THERMODE))
+        assert int(parser["protocol"]["stepsNumber"]) == 3
+        assert [parser[f"step{k}"]["stepTypeText"] for k in (1, 2, 3)] == ["BASELINE", "WAIT", "STIMULATE"]
+        assert [parser[f"step{k}"]["stepType"] for k in (1, 2, 3)] == ["6", "2", "0"]
+        assert parser["step1"]["baseline"] == parser["step3_stimulation"]["baseline"] == "30.000"
+        assert all(parser[f"step3_zone{zone}"]["enabled"] == "1" for zone in range(1, 6))
+
+    def test_a_rest_at_the_end_and_no_plateau_are_fine(self) -> None:
+        peak = stimulus_of(Corners((0, 2, 3), (30, 32, 30), "temperature_C"), 300.0)
+        assert (peak.rise_K_per_s, peak.return_K_per_s, peak.duration_s) == (1.0, 2.0, 2.0)
+        assert stimulus_of(Corners((0, 2, 3, 9), (30, 32, 30, 30), "temperature_C"), 300.0) == peak
+
+    def test_a_step_is_as_fast_as_the_thermode(self) -> None:
+        step = stimulus_of(Corners((0, 1e-7, 2, 3), (30, 32, 32, 30), "temperature_C", (0,)), 300.0)
+        assert step.rise_K_per_s == 300.0
+
+    def test_another_shape_is_refused(self) -> None:
+        found = realise(load_library("six-icons")["double-dip"], RIG, THERMODE)
+        with pytest.raises(
+            FormatError, match=r"one ramp, one plateau and one return .* another shape: use tcs2-serial"
+        ):
+            load_format("tcs2-protocol-ini").write(found)
+
+    def test_a_skin_cue_is_refused(self) -> None:
+        found = realise(icon_of("cool", control="skin"), RIG, THERMODE)
+        with pytest.raises(FormatError, match="needs an icon that prescribes the display; a prescribes the skin"):
+            load_format("tcs2-protocol-ini").write(found)
+
+
+class TestPsychopy:
+    """Conditions, drives and player."""
+
+    def packed(self, device: str) -> dict[str, bytes]:
+        form = load_format("psychopy")
+        icons = [load_library("six-icons")[name] for name in ("warming-step", "double-dip")]
+        return pack([prepare(icon, RIG, Device.load(device), form) for icon in icons], form)
+
+    @pytest.mark.parametrize(
+        ("device", "suffix", "lead"), [("ni-analogue-output", ".csv", 0.01), ("qst-tcs2", ".tcs2.txt", 0.0)]
+    )
+    def test_conditions_are_what_psychopy_reads(self, device: str, suffix: str, lead: float) -> None:
+        files = self.packed(device)
+        table = pd.read_csv(io.BytesIO(files["conditions.csv"]))
+        assert all(name.isidentifier() for name in table.columns)
+        assert table["icon"].tolist() == ["warming-step", "double-dip"]
+        assert set(files) == {*table["drive_file"], *table["sidecar_file"], "conditions.csv", "play_icons.py"}
+        assert table["drive_file"].tolist() == [f"warming-step{suffix}", f"double-dip{suffix}"]
+        assert table["ramp_start_s"].tolist() == [lead, lead]
+        assert table["target_reached_s"].tolist() == pytest.approx([1 + lead, 1 + lead])
+        assert table["return_start_s"].tolist() == pytest.approx([6 + lead, 2 + lead])
+
+    def test_the_player_puts_out_every_command(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        files = self.packed("ni-analogue-output")
+        said: dict[str, object] = {}
+        monkeypatch.setitem(sys.modules, "nidaqmx", _Daq(said))
+        monkeypatch.setitem(sys.modules, "nidaqmx.constants", _Daq(said))
+        (tmp_path / "drive.csv").write_bytes(files["double-dip.csv"])
+        player: dict[str, object] = {}
+        exec(compile(files["play_icons.py"], "play_icons.py", "exec"), player)
+        player["play"](str(tmp_path / "drive.csv"))  # type: ignore[operator]
+        rows = list(csv.DictReader(io.StringIO(files["double-dip.csv"].decode())))
+        assert said["write"] == [float(row["command_V"]) for row in rows]
+        assert said["rate"] == pytest.approx(100.0)
+        assert said["samps_per_chan"] == len(rows)
+
+    def test_the_player_sends_the_start_last(self, tmp_path: Path) -> None:
+        files = self.packed("qst-tcs2")
+        (tmp_path / "drive.txt").write_bytes(files["double-dip.tcs2.txt"])
+        player: dict[str, object] = {}
+        exec(compile(files["play_icons.py"], "play_icons.py", "exec"), player)
+        sent: list[bytes] = []
+        port = types.SimpleNamespace(write=sent.append)
+        player["prepare"](port, str(tmp_path / "drive.txt"))  # type: ignore[operator]
+        assert b"L" not in sent
+        player["play"](port)  # type: ignore[operator]
+        assert sent == files["double-dip.tcs2.txt"].split()
+
+    def test_players_need_nothing_to_be_imported(self) -> None:
+        for device in ("ni-analogue-output", "qst-tcs2"):
+            tree = ast.parse(self.packed(device)["play_icons.py"])
+            imported = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
+            assert all(name.name in sys.stdlib_module_names for node in imported for name in node.names)
+
+
+def test_set_points_of_a_thermode_are_segments() -> None:
+    found = realise(icon_of("cool"), RIG, THERMODE)
+    assert isinstance(found.played, Setpoints)
+    assert found.played.level_C.tolist() == pytest.approx([30.0, 24.0, 24.0, 30.0])
+
+
+class _Daq(types.ModuleType):
+    """A stand-in for nidaqmx that remembers what a task is told."""
+
+    def __init__(self, said: dict[str, object]) -> None:
+        super().__init__("nidaqmx")
+        self.said = said
+        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
+        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
+        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self.clock)
+
+    def Task(self) -> _Daq:
+        return self
+
+    def __enter__(self) -> _Daq:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+    def clock(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
+        self.said.update(rate=rate, samps_per_chan=samps_per_chan)
+
+    def write(self, volts: list[float], auto_start: bool) -> None:
+        self.said["write"] = volts
+
+    def wait_until_done(self, timeout: float) -> None:
+        assert timeout > 5

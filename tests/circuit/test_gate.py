@@ -1,0 +1,192 @@
+"""The gate: each rule made to trip by a cue of its own, its message read, and what the worst case is for."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Limits, Rig, design, gate, hold, judge_safety, simulate, simulate_current
+from thermicon.circuit.gate import WHAT_IT_IS_NOT
+from thermicon.circuit.limits import WATCHED, checks_of
+from thermicon.icons import load_library
+
+THENAR = Rig.load("thenar")
+SURE = {f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}
+STRONG = {"driver.current_limit_A": 8.0, "driver.voltage_limit_V": 60.0, "heat_sink.resistance_K_per_W": 0.02,
+          "module.resistance_ohm": 1.5}  # fmt: skip
+HOT_SIDE = THENAR.with_(**SURE, **STRONG)
+COLD_SIDE = HOT_SIDE.with_(**{"heat_sink.temperature_C": 15.0})
+LIGHT_TOUCH = HOT_SIDE.with_(**{"contact.resistance_m2K_per_W": 1e-2})
+LIGHT_COLD = LIGHT_TOUCH.with_(**{"heat_sink.temperature_C": 15.0})
+PULSE = Drive([0, 1, 1.25, 2], [0.08, 2.0, 0.08, 0.08], held=True)
+PULSED = THENAR.with_(**STRONG, **{"module.cold_plate_J_per_K": 1.5})
+STEP = load_library("six-icons")["cooling-step"]
+
+
+def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Drive:
+    """A drive that holds a level from before its start until 60 s after its end."""
+    current, _ = hold(rig, control, level_C)
+    return Drive([0, time_s], [current, current])
+
+
+@pytest.mark.parametrize(
+    ("rig", "control", "level", "time", "words"),
+    [
+        (HOT_SIDE, "skin", 42.5, 1, "skin surface reaches 42.5 °C at 0.00 s, with the rig as given, then last value "
+         "held, above the hard limit of 42 °C from 0.00 s on (thermicon, a choice of this project inside ISO 13732"),
+        (COLD_SIDE, "skin", 14.0, 1, "skin surface reaches 14 °C at 0.00 s, with the rig as given, then last value "
+         "held, below the hard limit of 15 °C from 0.00 s on"),
+        (HOT_SIDE, "skin", 41.0, 1, "skin surface reaches 41 °C at 0.00 s, with the rig as given, then last value "
+         "held, above the soft limit of 40 °C"),
+        (HOT_SIDE, "skin", 42.5, 1, "cold-receptor depth reaches 42.32 °C at 0.00 s, with the rig as given, then last "
+         "value held, above the hard limit of 42 °C"),
+        (COLD_SIDE, "skin", 13.0, 1, "cold-receptor depth reaches 13.48 °C at 0.00 s, with the rig as given, then last "
+         "value held, below the hard limit of 15 °C"),
+        (LIGHT_TOUCH, "display", 46.0, 1, "display reaches 46 °C at 0.00 s, with the rig as given, then last value "
+         "held, above the hard limit of 45 °C"),
+        (LIGHT_COLD, "display", 4.0, 1, "display reaches 4 °C at 0.00 s, with the rig as given, then last value held, "
+         "below the hard limit of 5 °C"),
+        (LIGHT_TOUCH, "display", 44.0, 1, "display reaches 44 °C at 0.00 s, with the rig as given, then last value "
+         "held, above the soft limit of 43 °C"),
+        (LIGHT_COLD, "display", 8.0, 1, "display reaches 8 °C at 0.00 s, with the rig as given, then last value held, "
+         "below the soft limit of 10 °C"),
+        (HOT_SIDE, "skin", 41.9, 600, "thermal dose reaches 2.394 min CEM43 at 660.00 s, with the rig as given, then "
+         "last value held, above the hard limit of 1 min CEM43 from 27"),
+        (HOT_SIDE, "skin", 46.0, 600, "Henriques integral reaches 0.03"),
+        (LIGHT_TOUCH, "display", 44.0, 600, "time of the display above 43 °C reaches 660 s at 660.00 s, with the rig "
+         "as given, then last value held, above the hard limit of 600 s from 600.01 s on (IEC 60601-1 Table 24"),
+        (LIGHT_TOUCH, "display", 49.0, 5, "time of the display above 48 °C reaches 65 s at 65.00 s, with the rig as "
+         "given, then last value held, above the hard limit of 60 s from 60.01 s on (IEC 60601-1 Table 24"),
+        (COLD_SIDE, "skin", 6.5, 1, "numbness reaches 6.5 °C at 0.00 s, with the rig as given, then last value held, "
+         "below the hard limit of 7 °C from 0.00 s on (ISO 13732-3, Geng 2006: skin numb below 7 °C in contact)"),
+        (COLD_SIDE, "skin", 14.0, 1, "cold pain reaches 14 °C at 0.00 s, with the rig as given, then last value held, "
+         "below the soft limit of 15 °C from 0.00 s on (ISO 13732-3, Geng 2006: cold pain below 15 °C in contact)"),
+        (HOT_SIDE, "skin", 43.0, 1, "heat pain reaches 43 °C at 0.00 s, with the rig as given, then last value held, "
+         "above the soft limit of 42.7 °C from 0.00 s on (QST norms"),
+    ],
+)  # fmt: skip
+def test_a_level_trips_its_rule(rig: Rig, control: str, level: float, time: float, words: str) -> None:
+    found = gate(holding(rig, control, level, time), rig)
+    told = [str(finding) for finding in found.findings]
+    assert any(text.startswith(words) for text in told), told
+    colour = "red" if any(finding.severity == "hard" for finding in found.findings) else "amber"
+    assert found.colour == colour
+
+
+def test_what_is_far_from_where_it_began_is_amber() -> None:
+    drive = Drive([0, 1, 1.5, 6, 7], [0.08, 0.08, 1.1, 1.1, 0.08])
+    rig = THENAR.with_(**SURE)
+    start = simulate_current(drive, rig).skin_C[0]
+    checks = [one for one in gate(drive, rig).checks if "8 K from where it began" in one.note and not one.upper]
+    assert checks[0].limit == pytest.approx(start - 8.0)
+    assert gate(drive, rig).colour == "amber"
+    (caution,) = gate(drive, rig).cautions
+    assert "below the soft limit of 24.27 °C, 8 K from where it began, from" in caution
+
+
+def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
+    weak_sink = THENAR.with_(**SURE, **{"heat_sink.resistance_K_per_W": 1.5})
+    told = gate(Drive([0, 1, 20, 21], [0.08, 1.4, 1.4, 0.08], held=True), weak_sink).text
+    assert "RED    hot plate" in told
+    assert "≤ 60 °C hard" in told
+    reason = gate(PULSE, PULSED).reason
+    assert reason is not None
+    assert reason.startswith("rate of skin temperature reaches -11.")
+    assert "K/s at 1." in reason
+    assert "below the hard limit of -10 K/s" in reason
+
+
+def test_the_worst_case_matters() -> None:
+    """Green on the rig as given, red within its uncertainty: open loop, nothing corrects a better contact or gain."""
+    assert gate(PULSE, PULSED.with_(**SURE)).colour == "green"
+    found = gate(PULSE, PULSED)
+    assert found.colour == "red"
+    assert found.findings[0].scenario.startswith("contact resistance −30 %, ambient ")
+    assert "gain +10 %" in found.findings[0].scenario
+    assert judge_safety(simulate_current(PULSE, PULSED)).colour == "green"
+
+
+def test_what_follows_matters() -> None:
+    """A design that stops at its last corner leaves the current of its return ramp on, and burns."""
+    plan = design(STEP, THENAR, 8.0)
+    trace = simulate(STEP, THENAR)
+    assert judge_safety(trace).colour == "green"
+    stopped = gate(plan.drive, THENAR.with_(**SURE), rest_A=plan.rest_A)
+    ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
+    assert gate(ended, THENAR, rest_A=plan.rest_A).colour == "green"
+    assert stopped.colour == "red"
+    assert all(finding.scenario == "the rig as given, then last value held" for finding in stopped.findings)
+    assert stopped.reason is not None
+    assert "above the hard limit of 42 °C from 14." in stopped.reason, "6 s after the last sample"
+    assert plan.drive.current_A[-1] < plan.rest_A
+
+
+def test_zero_current_drifts_to_39_degrees_and_the_text_says_so() -> None:
+    found = gate(Drive([0, 1], [0.08, 0.08]), THENAR)
+    assert found.drift_C == pytest.approx(39.0, abs=0.1)
+    held, none, off = found.after_C
+    assert held == pytest.approx(32.3, abs=0.1)
+    assert 36.0 < none < found.drift_C
+    assert off == none
+    assert "zero current is not the baseline: in the end it takes the skin to 39.1 °C" in found.text
+
+
+def test_a_corner_that_heats_without_end_is_red_and_not_an_error() -> None:
+    rig = THENAR.with_(**{"uncertainty.gain_relative": 0.9})
+    found = gate(Drive([0, 1], [-2.5, -2.5]), rig)
+    assert found.colour == "red"
+    assert found.reason is not None
+    assert "skin surface reaches 1000 °C at" in found.reason
+    assert all(math.isfinite(check.value) for check in found.checks)
+
+
+def test_limits_may_be_given_for_once() -> None:
+    drive = Drive([0, 1], [0.08, 0.08])
+    tight = gate(drive, THENAR, limits=Limits.of({"skin_highest_C": 33.0}))
+    assert tight.colour == "red"
+    assert gate(drive, THENAR).colour == "green"
+    assert "limits changed by the rig: skin_highest_C 33 °C instead of 42 °C" in tight.text
+
+
+def test_text_and_dictionary_tell_all() -> None:
+    found = gate(Drive([0, 1], [0.08, 0.08]), THENAR)
+    assert repr(found) == "Gate(green: 22 rules in 27 scenarios on thenar)"
+    assert (found.reason, found.cautions, found.safe) == (None, (), True)
+    lines = found.text.splitlines()
+    assert lines[0].startswith("safety GREEN: 1 s on thenar and 60 s after, in 27 scenarios (contact resistance ±30 %")
+    assert lines[1].split() == ["rule", "worst", "limit", "at", "in", "source"]
+    assert sum(line.startswith("ok ") for line in lines) == len(found.checks) == len(Limits.shipped().rules)
+    assert lines[-1] == WHAT_IT_IS_NOT
+    assert "no medical or ethical clearance" in lines[-1]
+    assert "needs a temperature cut-off of its own" in lines[-1]
+    packed = json.loads(json.dumps(found.to_dict(), allow_nan=False))
+    assert packed["colour"] == "green"
+    assert packed["findings"] == []
+    assert set(packed["checks"][0]) == {
+        "quantity", "severity", "value", "limit", "unit", "time_s", "since_s", "source", "note", "upper", "scenario",
+        "passed", "text",
+    }  # fmt: skip
+
+
+def test_it_is_deterministic(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = gate(PULSE, PULSED)
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    assert gate(PULSE, PULSED) == first
+
+
+def test_gate_and_verdict_share_one_set_of_rules() -> None:
+    trace = simulate_current(holding(HOT_SIDE, "skin", 42.5), HOT_SIDE)
+    columns = {name: getattr(trace, name)[np.newaxis] for name in WATCHED}
+    ours = [
+        (check.quantity, check.severity, check.upper) for check in checks_of(HOT_SIDE.limits, trace.time_s, columns)
+    ]
+    theirs = [(check.quantity, check.severity, check.upper) for check in gate(PULSE, HOT_SIDE).checks]
+    assert ours == theirs == [(rule.quantity, rule.severity, rule.upper) for rule in HOT_SIDE.limits.rules]
+
+
+def test_what_is_not_finite_fails_every_rule_above() -> None:
+    time = np.array([0.0, 1.0, 2.0])
+    lost = {name: np.array([[32.0, math.nan, math.inf]]) for name in WATCHED}
+    broken = {check.quantity for check in checks_of(Limits.shipped(), time, lost) if not check.passed}
+    assert {"skin surface", "display", "cold-receptor depth", "hot plate", "thermal dose"} <= broken

@@ -1,0 +1,133 @@
+"""Limits at the door of a rig file: tightened freely, loosened only with a reason, never beyond what is published."""
+
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Drive, Limits, Rig, RigError, gate, judge_safety, simulate_current
+from thermicon.circuit.rigfile import SafetyTable
+from thermicon.circuit.rules import limit_table, safety_keys
+
+THENAR = Rig.load("thenar")
+REASON = "heat-pain study 12/2025, approved by the ethics board"
+PLAIN = (Path(__file__).parents[2] / "circuit/rigs/thenar.toml").read_text("utf-8")
+
+
+def with_table(tmp_path: Path, table: str) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(PLAIN.replace("[source]", f"{table}\n\n[source]"), "utf-8")
+    return path
+
+
+def test_the_table_of_a_rig_file_has_the_keys_of_the_limits() -> None:
+    assert set(SafetyTable.model_fields) == {*safety_keys(), "reason"}
+
+
+def test_every_bound_has_a_source_and_lies_outside_the_limit() -> None:
+    for rule in Limits.shipped().rules:
+        assert rule.source
+        if rule.bound is not None:
+            assert rule.bound_source
+            assert rule.bound >= rule.limit if rule.upper else rule.bound <= rule.limit
+    assert all(record.get("severity") in ("hard", "soft") for record in limit_table())
+
+
+def test_limits_are_tightened_freely(tmp_path: Path) -> None:
+    rig = Rig.load(with_table(tmp_path, "[safety]\nskin_highest_C = 38\nskin_rate_K_per_s = 4"))
+    assert rig.limits.changed == (
+        "skin_highest_C 38 °C instead of 42 °C",
+        "skin_rate_K_per_s 4 K/s instead of 10 K/s",
+    )
+    assert rig.limits.loosened == ()
+    assert rig.warnings == ()
+    rates = [rule.limit for rule in rig.limits.rules if rule.key == "skin_rate_K_per_s"]
+    assert rates == [4.0, -4.0]
+    assert repr(rig.limits).startswith("Limits(22 rules, skin_highest_C 38 °C instead of 42 °C")
+
+
+def test_a_tightened_limit_holds_for_simulate_too() -> None:
+    drive = Drive([0, 20], [0.02, 0.02])
+    assert judge_safety(simulate_current(drive, THENAR)).colour == "green"
+    tight = THENAR.with_(**{"safety.skin_highest_C": 35})
+    verdict = judge_safety(simulate_current(drive, tight))
+    assert verdict.colour == "red"
+    assert verdict.reason is not None
+    assert "above the hard limit of 35 °C" in verdict.reason
+    assert "(the rig's [safety]; shipped 42, thermicon, a choice of this project" in verdict.reason
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (
+            "skin_highest_C = 42.5",
+            r"mine\.toml: safety\.skin_highest_C = 42\.5 °C: is looser than the shipped limit of 42 °C; give "
+            r"safety\.reason, at least 20 characters on why this is justified, or use 42 °C",
+        ),
+        ('skin_highest_C = 42.5\nreason = "because"', r"give safety\.reason, at least 20 characters"),
+        (
+            f'skin_highest_C = 44\nreason = "{REASON}"',
+            r"safety\.skin_highest_C = 44 °C: cannot be loosened beyond 43 °C \(IEC 60601-1 Table 24, 43 °C for "
+            r"contact of 10 min or longer\); use at most 43 °C",
+        ),
+        (
+            f'skin_lowest_C = 5\nreason = "{REASON}"',
+            r"safety\.skin_lowest_C = 5 °C: cannot be loosened beyond 7 °C \(numbness below 7 °C, ISO 13732-3\); "
+            r"use at least 7 °C",
+        ),
+        (f'henriques_integral = 0.6\nreason = "{REASON}"', r"= 0\.6: cannot be loosened beyond 0\.53 \(first-degree"),
+        ("skin_rate_K_per_s = 12", r"skin_rate_K_per_s = 12 K/s: is looser than the shipped limit of 10 K/s"),
+        ("thermal_dose_min_CEM43 = -1", r"= -1 min CEM43: must be greater than 0 min CEM43"),
+        (
+            "display_lowest_C = 30\ndisplay_highest_C = 29",
+            r"safety\.display_lowest_C = 30 °C: is not below safety\.display_highest_C = 29 °C; leave some room",
+        ),
+        ("skin_hihest_C = 40", r"safety\.skin_hihest_C: unknown key; did you mean safety\.skin_highest_C"),
+        ('skin_highest_C = "warm"', r"safety\.skin_highest_C = 'warm': must be a number in °C"),
+    ],
+)
+def test_what_a_rig_file_may_not_say(tmp_path: Path, table: str, words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        Rig.load(with_table(tmp_path, f"[safety]\n{table}"))
+
+
+def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
+    path = with_table(tmp_path, "[safety]\nskin_lowest_C = 3\nhenriques_integral = 0.02")
+    with pytest.raises(RigError) as caught:
+        Rig.load(path)
+    assert len(str(caught.value).splitlines()) == 2
+
+
+def test_a_loosened_limit_carries_its_reason_everywhere(tmp_path: Path) -> None:
+    rig = Rig.load(with_table(tmp_path, f'[safety]\nskin_highest_C = 42.8\nreason = "{REASON}"'))
+    assert rig.warnings == (
+        f"limits of safety are loosened: skin_highest_C 42.8 °C instead of 42 °C. Reason given: {REASON}",
+    )
+    found = gate(Drive([0, 1], [0.08, 0.08]), rig)
+    said = found.to_dict()["limits"]
+    assert isinstance(said, dict)
+    assert said["loosened"] == ["skin_highest_C 42.8 °C instead of 42 °C"]
+    assert said["reason"] == REASON
+    assert f"limits LOOSENED: skin_highest_C 42.8 °C instead of 42 °C. Reason given: {REASON}" in found.text
+
+
+def test_limits_from_python() -> None:
+    assert Limits.of({"hot_plate_highest_C": 50.0}).changed == ("hot_plate_highest_C 50 °C instead of 60 °C",)
+    with pytest.raises(ValueError, match=r"safety\.hot_plate: no such limit; there is skin_highest_C, skin_lowest_C"):
+        Limits.of({"hot_plate": 50.0})
+    with pytest.raises(ValueError, match="is looser than the shipped limit of 60 °C"):
+        Limits.of({"hot_plate_highest_C": 70.0})
+
+
+def test_uncertainty_is_filled_from_records_and_checked() -> None:
+    assert THENAR.uncertainty.contact_resistance_relative == 0.3
+    assert THENAR.uncertainty.ambient_K == 3.0
+    assert THENAR.uncertainty.gain_relative == 0.1
+    other = THENAR.with_(**{"uncertainty.gain_relative": 0.02})
+    assert (other.uncertainty.gain_relative, other.uncertainty.ambient_K) == (0.02, 3.0)
+    with pytest.raises(RigError, match=r"uncertainty\.ambient_K = -1 K: must be at least 0 K"):
+        THENAR.with_(**{"uncertainty.ambient_K": -1})
+    with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 2: must be at most 0\.9"):
+        THENAR.with_(**{"uncertainty.gain_relative": 2})
+    with pytest.raises(RigError, match=r"uncertainty\.gain_rel: unknown key; did you mean uncertainty\.gain_relative"):
+        THENAR.with_(**{"uncertainty.gain_rel": 0.2})

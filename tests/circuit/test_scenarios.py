@@ -1,0 +1,155 @@
+"""What follows a cue: endings and corners against the single-lane kernel, an independent solver and closed forms."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from thermicon.circuit import (
+    Drive,
+    DriveError,
+    Rig,
+    RigError,
+    corners_of,
+    design,
+    play_out,
+    simulate_current,
+    steady_state,
+)
+from thermicon.circuit.limits import WATCHED
+from thermicon.circuit.network import network_of
+from thermicon.circuit.poweroff import sink_at_end_C
+from thermicon.circuit.pwm import steady_of, switched
+from thermicon.circuit.scenarios import ENDINGS
+from thermicon.icons import load_library
+
+THENAR = Rig.load("thenar")
+SURE = {f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}
+OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
+CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
+WITHIN_K = 1e-3
+"""A block of lanes may take shorter steps than one lane alone."""
+
+
+def test_corners_are_those_of_the_box() -> None:
+    corners = corners_of(THENAR)
+    assert len(corners) == 9
+    assert str(corners[-1]) == "contact resistance +30 %, ambient +3 K, gain +10 %"
+    assert corners[-1].rig.contact.resistance_m2K_per_W == pytest.approx(1.3 * 5.4e-4)
+    assert corners[-1].rig.ambient.temperature_C == 27.0
+    assert corners[-1].rig.skin.rest_C == 32.0
+    assert corners[-1].rig.blood_C == pytest.approx(THENAR.blood_C - 0.97, abs=0.01)
+    assert [str(corner) for corner in corners_of(THENAR.with_(**SURE))] == ["the rig as given"]
+    assert len(corners_of(THENAR.with_(**{"uncertainty.ambient_K": 0}))) == 5
+
+
+@pytest.mark.parametrize("held", [True, False])
+def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
+    drive = Drive(CUE.time_s, CUE.current_A, held)
+    found = play_out(drive, THENAR, rest_A=0.05)
+    assert found.values.shape == (4, 3, 9, len(found.time_s))
+    for c, corner in enumerate(found.corners):
+        gain = 1.0 + corner.gain_relative
+        start = steady_state(network_of(corner.rig), 0.05 * gain)
+        for e, last in enumerate((drive.current_A[-1], 0.0)):
+            times = np.concatenate([drive.time_s, [drive.time_s[-1] + 1e-6, drive.time_s[-1] + 60]])
+            whole = Drive(times, gain * np.concatenate([drive.current_A, [last, last]]), held)
+            alone = simulate_current(whole, corner.rig, start_C=start)
+            for w, name in enumerate(WATCHED):
+                theirs = np.interp(found.time_s, alone.time_s, getattr(alone, name))
+                assert np.abs(found.values[w, e, c] - theirs).max() < 3e-3, (name, str(corner), ENDINGS[e])
+
+
+def test_zero_current_is_not_the_baseline() -> None:
+    plan = design(load_library("six-icons")["cooling-step"], THENAR, 8.0)
+    found = play_out(plan.drive, THENAR, rest_A=plan.rest_A, ending_s=1200.0)
+    skin = found.columns["skin_C"][len(found.corners)]
+    assert skin[0] == pytest.approx(32.0, abs=0.1)
+    assert skin[-1] == pytest.approx(39.0, abs=0.1)
+    a_minute_later = skin[np.searchsorted(found.time_s, 68.0)]
+    assert 36.0 < a_minute_later < 37.5, "the drift has not ended when the gate stops looking"
+
+
+def test_power_off_is_zero_current_on_an_ideal_sink_and_not_on_its_own() -> None:
+    ideal = play_out(CUE, THENAR)
+    assert (ideal.values[:, 2] == ideal.values[:, 1]).all()
+    own = play_out(CUE, THENAR.with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **SURE))
+    apart = own.values[WATCHED.index("hot_plate_C"), 2] - own.values[WATCHED.index("hot_plate_C"), 1]
+    assert np.abs(apart[:, -1]).min() > 0.3
+    assert (apart[:, own.time_s <= own.end_s] == 0).all()
+
+
+def test_power_off_by_an_independent_solver() -> None:
+    rig = Rig.load("shani2021").with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **SURE)
+    found = play_out(CUE, rig)
+    at = int(np.searchsorted(found.time_s, found.end_s - 1e-9))
+    net, module = network_of(rig), rig.module
+    trace = simulate_current(CUE, rig)
+    sink = sink_at_end_C(rig, trace.time_s, trace.hot_plate_C)
+    # the hot plate's own balance gives the sink's temperature a second time
+    tail = slice(-4, -1)
+    slope = np.polynomial.Polynomial.fit(trace.time_s[tail], trace.hot_plate_C[tail], 2).deriv()(trace.time_s[-2])
+    hot, cold, amps = trace.hot_plate_C[-2], trace.display_C[-2], trace.current_A[-2]
+    into = module.seebeck_V_per_K * (hot + 273.15) * amps + module.resistance_ohm / 2 * amps**2
+    into -= (hot - cold) / module.thermal_resistance_K_per_W + module.hot_plate_J_per_K * slope
+    assert sink == pytest.approx(hot - rig.heat_sink.resistance_K_per_W * into, abs=0.03)
+
+    capacity = np.array([OWN["capacity_J_per_K"], module.hot_plate_J_per_K, module.cold_plate_J_per_K])
+    capacity = np.concatenate([capacity, net.capacity_J_per_K])
+    link = np.concatenate([[1 / rig.heat_sink.resistance_K_per_W, 1 / module.thermal_resistance_K_per_W],
+                           net.conductance_W_per_K])  # fmt: skip
+
+    def slopes(_: float, state: np.ndarray) -> np.ndarray:
+        flow = link * (np.append(state, net.deep_C)[:-1] - np.append(state, net.deep_C)[1:])
+        heat = np.concatenate([[0.0], flow[:-1]]) - flow
+        heat[3:] -= net.perfusion_W_per_K * (state[3:] - net.deep_C)
+        return np.asarray(heat / capacity)
+
+    start = steady_state(net, CUE.current_A[0])
+    begin = run_to_the_end(rig, start)
+    solved = solve_ivp(slopes, (0, 60), np.concatenate([[sink], begin[:-1]]), method="BDF", rtol=1e-9, atol=1e-9)
+    ours = found.values[:, 2, 0, -1]
+    hot_plate, display = solved.y[1, -1], solved.y[2, -1]
+    assert ours[WATCHED.index("hot_plate_C")] == pytest.approx(hot_plate, abs=2e-3)
+    assert ours[WATCHED.index("display_C")] == pytest.approx(display, abs=2e-3)
+    assert found.values[WATCHED.index("display_C"), 2, 0, at] == pytest.approx(begin[1], abs=1e-3)
+
+
+def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:
+    """State at the end of CUE, read through all states one by one."""
+    from thermicon.circuit.scenarios import _everything
+    from thermicon.circuit.simulate import watch
+
+    return watch(CUE, rig, _everything(len(start)))[1][:, -1]
+
+
+def test_a_bridge_goes_on_switching_where_its_last_value_is_held() -> None:
+    peak, duty, rate = 1.5, 0.3, 100.0
+    short, long_ = (switched(np.full(round(s * rate) + 1, duty), rate, 500.0, peak) for s in (1, 61))
+    found = play_out(short, THENAR, rest_A=duty * peak, bridge_A=peak)
+    alone = simulate_current(long_, THENAR, start_C=steady_of(THENAR, duty, peak))
+    ours = found.values[:, 0, 0]
+    for place, name in enumerate(WATCHED):
+        theirs = np.interp(found.time_s, alone.time_s, getattr(alone, name))
+        assert np.abs(ours[place] - theirs).max() < 0.06, name
+        assert ours[place, -1] == pytest.approx(theirs[-1], abs=0.02), name
+    smooth = play_out(short, THENAR, rest_A=duty * peak).values[:, 0, 0, -1]
+    assert np.abs(smooth - ours[:, -1]).max() > 1.0, "without its heat a bridge would be misjudged by kelvins"
+
+
+def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
+    first = play_out(CUE, THENAR).values.tobytes()
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    assert play_out(CUE, THENAR).values.tobytes() == first
+
+
+def test_a_rest_that_cannot_be_is_refused() -> None:
+    with pytest.raises(DriveError, match="a rest of nan A is not possible; it must be a finite current"):
+        play_out(CUE, THENAR, rest_A=float("nan"))
+    with pytest.raises(DriveError, match=r"a rest of 2 A is not possible; .* of at most 1\.5 A"):
+        play_out(CUE, THENAR, rest_A=2.0, bridge_A=1.5)
+    with pytest.raises(DriveError, match="the mean current of rest is needed where a bridge switches; give rest_A"):
+        play_out(CUE, THENAR, bridge_A=1.5)
+    with pytest.raises(DriveError, match=r"a bridge of 0 A is not possible"):
+        play_out(CUE, THENAR, rest_A=0.0, bridge_A=0.0)
+    with pytest.raises(RigError, match=r"rig thenar: -9 A held for ever has no steady state on this rig"):
+        play_out(CUE, THENAR, rest_A=-9.0)

@@ -1,0 +1,230 @@
+"""``thermicon export`` and ``thermicon devices``: files, words, exit codes."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from thermicon.circuit import Device, Rig, realise
+from thermicon.icons import read_cue
+
+Cli = Callable[..., Any]
+COLD = """cue 1
+
+set deep { control skin
+  baseline 32 °C }
+
+icon frost { cool by 20 °C at 2 °C/s; hold for 8 s; return at 2 °C/s }
+"""
+STRONG = (
+    "--set", "driver.current_limit_A=4", "--set", "driver.voltage_limit_V=40",
+    "--set", "driver.transconductance_A_per_V=1",
+)  # fmt: skip
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+
+
+def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    said = cli("export", two, "--to", "csv", "--device", "keysight-33500b", "-o", out)
+    assert (said.exit_code, said.stdout) == (0, "")
+    assert names(out) == ["cool-step.csv", "cool-step.json", "warm-step.csv", "warm-step.json"]
+    lines = said.stderr.splitlines()
+    assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on keysight-33500b, receptors within ")
+    assert lines[0].endswith("mK), safety green in 27 scenarios")
+    assert lines[1].startswith("warning: cool-step: keysight-33500b: asks for -1 … 1 A at most")
+    assert (
+        f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json" in said.stderr
+    )
+    assert "to play: put out each row's command at its time" in said.stderr
+    assert lines[-1].startswith(
+        "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temp"
+    )
+    told = json.loads((out / "cool-step.json").read_text())
+    assert set(told["perception"]["d_prime"]) == {"warm-step"}
+
+
+def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_path: Path) -> None:
+    assert cli("export", two, "--icon", "warm-step", "--to", "csv", "-o", tmp_path / "out").exit_code == 0
+    trace = tmp_path / "trace.csv"
+    assert cli("simulate", "--current", tmp_path / "out" / "warm-step.csv", "--hold", "-o", trace).exit_code == 0
+    ours = realise(read_cue(str(two))["warm-step"], Rig.load("thenar"), Device.load("dac-16")).trace.to_frame()
+    theirs = pd.read_csv(trace)
+    for column in ("time_s", "current_A", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
+        # nine digits are written
+        assert np.abs(theirs[column] - ours[column]).max() < 1e-6, column
+
+
+def test_one_icon_is_still_compared_with_the_others(cli: Cli, tmp_path: Path) -> None:
+    said = cli("export", "six-icons", "--icon", "double-dip", "--to", "tdms", "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert names(tmp_path / "out") == ["double-dip.json", "double-dip.tdms"]
+    assert "wrote 1 drive with its sidecar into " in said.stderr
+    assert len(json.loads((tmp_path / "out" / "double-dip.json").read_text())["perception"]["d_prime"]) == 5
+
+
+@pytest.mark.parametrize(
+    "name", ["spice-pwl", "keysight-arb", "rigol-raf", "wav", "c-array", "tcs2-serial", "psychopy"]
+)
+def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
+    said = cli("export", two, "--to", name, "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert len(names(tmp_path / "out")) == (6 if name == "psychopy" else 4)
+
+
+class TestRefused:
+    """Exit code 3, and nothing written."""
+
+    def test_unsafe_even_when_forced(self, cli: Cli, tmp_path: Path) -> None:
+        path = tmp_path / "deep.cue"
+        path.write_text(COLD, encoding="utf-8")
+        for force in ((), ("--force",)):
+            said = cli("export", path, "--to", "csv", "-o", tmp_path / "out", *STRONG, *force)
+            assert said.exit_code == 3
+            assert "refused: frost is NOT SAFE: skin surface reaches " in said.stderr
+            told = next(line for line in said.stderr.splitlines() if line.startswith("refused"))
+            for word in ("above the hard limit", "below the hard limit"):
+                told = told.replace(word, "beyond the hard limit")
+            assert re.search(r"reaches \S+ °C at \S+ s, with .*, then .*, beyond the hard limit of .* \(.*\)", told)
+            assert "safety red in 27 scenarios" in said.stderr
+            assert "no medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
+            assert said.stderr.endswith("nothing was written\n")
+            assert "--force exports it" not in said.stderr
+            assert not (tmp_path / "out").exists()
+
+    def test_red_only_in_the_worst_case_is_refused_too(self, cli: Cli, tmp_path: Path) -> None:
+        path = tmp_path / "hot.cue"
+        path.write_text(
+            "cue 1\nset s { control skin\n baseline 32 °C }\n"
+            "icon hot { warm by 9.2 °C at 2 °C/s; hold for 3 s; return at 2 °C/s }\n",
+            encoding="utf-8",
+        )
+        said = cli("export", path, "--to", "csv", "-o", tmp_path / "out", "--force")
+        assert said.exit_code == 3
+        assert "refused: hot is NOT SAFE: skin surface reaches 4" in said.stderr
+        assert "gain +10 %" in said.stderr
+        assert not (tmp_path / "out").exists()
+
+    def test_amber_is_written_with_its_worst_case_as_a_warning(self, cli: Cli, tmp_path: Path) -> None:
+        path = tmp_path / "warm.cue"
+        path.write_text(
+            "cue 1\nset s { control display\n baseline 32 °C }\n"
+            "icon warm { warm by 9 °C at 3 °C/s; hold for 3 s; return at 3 °C/s }\n",
+            encoding="utf-8",
+        )
+        said = cli("export", path, "--to", "csv", "-o", tmp_path / "out")
+        assert said.exit_code == 0, said.stderr
+        assert "safety amber in 27 scenarios" in said.stderr
+        assert re.search(
+            r"warning: warm: skin surface reaches \S+ °C at \S+ s, with contact .* soft limit", said.stderr
+        )
+
+    def test_unreachable_unless_forced(self, cli: Cli, two: Path, tmp_path: Path) -> None:
+        arguments = ("export", two, "--to", "csv", "-o", tmp_path / "out", "--set", "driver.current_limit_A=0.7")
+        said = cli(*arguments)
+        assert said.exit_code == 3
+        assert "refused: cool-step is NOT reached: misses its target by " in said.stderr
+        assert "--force exports it as it is, and the sidecar says so" in said.stderr
+        assert not (tmp_path / "out").exists()
+        said = cli(*arguments, "--force")
+        assert said.exit_code == 0
+        assert "forced: cool-step is NOT reached: " in said.stderr
+        told = json.loads((tmp_path / "out" / "cool-step.json").read_text())
+        assert (told["reached"], told["forced"]) == (False, True)
+        assert told["forced_over"][0].startswith("NOT reached: ")
+
+    def test_lossy_unless_forced(self, cli: Cli, two: Path, tmp_path: Path) -> None:
+        arguments = ("export", two, "--to", "c-array", "--device", "pwm-h-bridge-8", "-o", tmp_path / "out")
+        said = cli(*arguments)
+        assert said.exit_code == 3
+        assert "refused: cool-step loses too much: the cold receptor differs by " in said.stderr
+        assert not (tmp_path / "out").exists()
+        assert cli(*arguments, "--force").exit_code == 0
+        assert json.loads((tmp_path / "out" / "cool_step.json").read_text())["forced"] is True
+
+
+class TestFiles:
+    """Where files go."""
+
+    def test_files_that_are_there_are_kept_unless_forced(self, cli: Cli, two: Path, tmp_path: Path) -> None:
+        out = tmp_path / "out"
+        assert cli("export", two, "--to", "csv", "-o", out).exit_code == 0
+        (out / "cool-step.csv").write_text("mine")
+        said = cli("export", two, "--to", "csv", "-o", out)
+        assert said.exit_code == 1
+        assert f"{out / 'cool-step.json'} and 3 more exists already and is kept; --force replaces it" in said.stderr
+        assert (out / "cool-step.csv").read_text() == "mine"
+        assert cli("export", two, "--to", "csv", "-o", out, "--force").exit_code == 0
+        assert (out / "cool-step.csv").read_text() != "mine"
+        assert json.loads((out / "cool-step.json").read_text())["forced"] is False
+
+    def test_a_folder_in_no_folder_is_told_at_once(self, cli: Cli, two: Path, tmp_path: Path) -> None:
+        said = cli("export", two, "--to", "csv", "-o", tmp_path / "a" / "b")
+        assert said.exit_code == 1
+        assert "does not exist; make it first" in said.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words", "code"),
+    [
+        (("--to", "cvs", "-o", "out"), "cvs: no such format; did you mean csv?", 1),
+        (("--to", "csv", "--device", "dac16", "-o", "out"), "dac16: no such device; did you mean dac-16", 1),
+        (
+            ("--to", "csv", "--device", "qst-tcs2", "-o", "out"),
+            "csv is for devices driven by volts or amperes or duty",
+            1,
+        ),
+        (("--to", "csv", "--icon", "col-step", "-o", "out"), "did you mean cool-step?", 1),
+        (("--to", "csv", "--tail", "nan", "-o", "out"), "'--tail': nan is not a time", 2),
+        (("--to", "csv"), "Missing option '-o'", 2),
+        (("-o", "out"), "Missing option '--to'", 2),
+    ],
+)
+def test_what_cannot_be(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], words: str, code: int
+) -> None:
+    monkeypatch.chdir(two.parent)
+    said = cli("export", two, *arguments)
+    assert (said.exit_code, said.stdout) == (code, "")
+    assert words in " ".join(said.stderr.split())
+    assert not Path("out").exists()
+
+
+def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "mixed.cue"
+    path.write_text(
+        "cue 1\nset s { control display\n baseline 32 °C }\nicon good { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n"
+        "icon busy { repeat 400 { warm by 0.2 °C at 4 °C/s; return at 4 °C/s; rest for 0.1 s } }\n",
+        encoding="utf-8",
+    )
+    said = cli("export", path, "--icon", "good", "--to", "tcs2-serial", "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert "warning: busy cannot be played, so nothing is compared with it: qst-tcs2: 1200 segments" in said.stderr
+
+
+def test_very_many_icons_are_not_compared_with_each_other(
+    cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("thermicon.notebooks.export.MOST_COMPARED", 1)
+    said = cli("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert "warning: 2 icons are too many to compare with each other; d′ is left out" in said.stderr
+    assert json.loads((tmp_path / "out" / "cool-step.json").read_text())["perception"]["d_prime"] == {}
+
+
+def test_devices_and_formats_are_listed(cli: Cli) -> None:
+    said = cli("devices")
+    assert said.exit_code == 0
+    for word in ("dac-12", "pwm-h-bridge-8", "set-points", "−10 to 10 V", "490 Hz", "tcs2-protocol-ini", "250 MHz"):
+        assert word in said.stdout
+    assert "None of them was ever played by thermicon." in said.stdout
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80

@@ -1,0 +1,209 @@
+"""Files that are written together: all of them, or none, whatever happens in between."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from thermicon.notebooks.outputs import OutputError, stopped_cleanly, write_together
+
+FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
+KILLS, MANY_KILLS = 20, 200
+posix = pytest.mark.skipif(os.name != "posix", reason="signals work differently there")
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_all_are_there_with_their_bytes(tmp_path: Path) -> None:
+    write_together(FILES, tmp_path / "out")
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == FILES
+
+
+def test_what_is_there_is_kept(tmp_path: Path) -> None:
+    (tmp_path / "b.csv").write_text("mine")
+    with pytest.raises(OutputError, match=r"b\.csv exists already and is kept; --force replaces it"):
+        write_together(FILES, tmp_path)
+    assert names(tmp_path) == ["b.csv"]
+    write_together(FILES, tmp_path, replace=True)
+    assert (tmp_path / "b.csv").read_bytes() == b"3,4\n"
+
+
+@pytest.mark.parametrize("call", ["os.fsync", "pathlib.Path.replace"])
+def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str) -> None:
+    real = os.fsync if call.startswith("os") else Path.replace
+    calls = 0
+
+    def fails_at_the_third(*arguments: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise OSError(28, "No space left on device")
+        return real(*arguments)
+
+    monkeypatch.setattr(call, fails_at_the_third)
+    with pytest.raises(OutputError, match=r"cannot write into .*out: No space left on device"):
+        write_together(FILES, tmp_path / "out")
+    assert names(tmp_path) == []
+
+
+def test_an_interrupt_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, calls = Path.replace, 0
+
+    def interrupted(*arguments: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        if calls == 2:
+            raise KeyboardInterrupt
+        return real(*arguments)
+
+    monkeypatch.setattr("pathlib.Path.replace", interrupted)
+    (tmp_path / "other").write_text("")
+    with pytest.raises(KeyboardInterrupt):
+        write_together(FILES, tmp_path)
+    assert names(tmp_path) == ["other"]
+
+
+@posix
+def test_a_request_to_end_is_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(KeyboardInterrupt), stopped_cleanly():
+        os.kill(os.getpid(), signal.SIGTERM)
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+@posix
+def test_drafts_of_the_dead_are_swept_and_those_of_the_living_are_not(tmp_path: Path) -> None:
+    gone = subprocess.Popen([sys.executable, "-c", ""])
+    gone.wait()
+    for draft in (f".a.csv.{gone.pid}.part", f".a.csv.{os.getppid()}.part", ".a.csv.x.part"):
+        (tmp_path / draft).write_text("")
+    write_together(FILES, tmp_path)
+    assert [name for name in names(tmp_path) if name.startswith(".")] == [
+        f".a.csv.{os.getppid()}.part",
+        ".a.csv.x.part",
+    ]
+
+
+@posix
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder where nobody may write")
+def test_a_folder_that_takes_no_files_is_one_clear_error(process: Callable[..., Any]) -> None:
+    said = process("export", "six-icons", "--icon", "double-dip", "--to", "csv", "-o", "/proc/self")
+    assert said.exit_code == 1
+    assert said.stderr.splitlines()[-1].startswith("cannot write ")
+    assert "Traceback" not in said.stderr
+
+
+@posix
+def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    run = subprocess.run(
+        [*EXPORT, "-o", "out"], cwd=tmp_path, capture_output=True, text=True, check=False,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)),
+    )  # fmt: skip
+    assert run.returncode == 1
+    assert run.stderr.splitlines()[-1] == "cannot write into out: File too large"
+    assert names(tmp_path) == []
+
+
+EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "--to", "csv"]
+
+# A real export that has done all its work but the writing: for every folder it is told, a child of it writes there
+# again and again, so that signals meet it while it writes.
+SERVER = """
+import os, sys
+from pathlib import Path
+from thermicon.notebooks import outputs
+real = outputs.write_together
+def serve(files, folder, replace=False):
+    for line in sys.stdin:
+        child = os.fork()
+        if child == 0:
+            print(os.getpid(), flush=True)
+            for _ in range(100_000):
+                real(files, Path(line.strip()), replace=True)
+        os.waitpid(child, 0)
+        print("ended", flush=True)
+    os._exit(0)
+import thermicon.notebooks.export as export
+export.write_together = serve
+from thermicon.notebooks.cli import main
+sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", sys.argv[1]]
+main()
+"""
+
+
+def check_no_partial_file(folder: Path) -> int:
+    """Every visible file is whole, and no drive is without its sidecar; returns how many there are."""
+    found = [path for path in folder.iterdir() if not path.name.startswith(".")] if folder.is_dir() else []
+    for path in found:
+        if path.suffix == ".json":
+            assert json.loads(path.read_text(encoding="utf-8"))["file"] == f"{path.stem}.csv"
+        else:
+            assert pd.read_csv(path)["event"].iloc[-1].endswith("end")
+            assert path.with_suffix(".json").exists()
+    return len(found)
+
+
+def kill_many(folder: Path, times: int, number: int, seed: int) -> list[int]:
+    """Send a signal to real exports at random moments of their writing; how many files were found after each."""
+    chance, found = random.Random(seed), []
+    command = [sys.executable, "-c", SERVER, folder / "out"]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as run:
+        assert run.stdin is not None
+        assert run.stdout is not None
+        for turn in range(times):
+            run.stdin.write(f"{folder / f'out{turn}'}\n")
+            run.stdin.flush()
+            child = int(run.stdout.readline())
+            time.sleep(chance.uniform(0.0, 0.06))
+            os.kill(child, number)
+            while run.stdout.readline() != "ended\n":
+                pass
+            found.append(check_no_partial_file(folder / f"out{turn}"))
+        run.stdin.close()
+    return found
+
+
+@posix
+def test_exports_killed_while_writing_leave_no_partial_file(tmp_path: Path) -> None:
+    assert len(kill_many(tmp_path, KILLS, signal.SIGKILL, seed=1)) == KILLS
+
+
+@posix
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_exports_that_are_asked_to_end_leave_no_draft(tmp_path: Path, number: int) -> None:
+    kill_many(tmp_path, KILLS // 4, number, seed=2)
+    left = [draft.name for out in tmp_path.iterdir() for draft in out.iterdir() if draft.name.startswith(".")]
+    assert left == []
+
+
+@posix
+def test_exports_killed_at_any_moment_leave_no_partial_file(tmp_path: Path) -> None:
+    chance = random.Random(3)
+    for turn in range(4):
+        out = tmp_path / f"out{turn}"
+        with subprocess.Popen([*EXPORT, "-o", out], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+            time.sleep(chance.uniform(0.0, 2.0))
+            run.kill()
+        check_no_partial_file(out)
+
+
+@posix
+@pytest.mark.slow
+def test_two_hundred_exports_killed_while_writing_leave_no_partial_file(tmp_path: Path) -> None:
+    found = kill_many(tmp_path, MANY_KILLS, signal.SIGKILL, seed=4)
+    assert any(count < 12 for count in found)

@@ -1,0 +1,63 @@
+"""Designed against delivered, as people feel it."""
+
+from __future__ import annotations
+
+import pytest
+
+from thermicon.circuit import Drive, Rig, Trace, simulate_current
+from thermicon.perception import Change, FeltChange, judge_delivered
+
+RIG = Rig.load("thenar")
+REST_A = 0.0824
+
+
+def pulse(size_A: float) -> Trace:
+    return simulate_current(Drive([0, 1, 3, 12], [REST_A, REST_A + size_A, REST_A, REST_A], held=True), RIG)
+
+
+def test_what_is_delivered_as_designed_changes_nothing() -> None:
+    traces = [pulse(0.3), pulse(-0.2), pulse(0.0)]
+    found = judge_delivered(["cool", "warm", "none"], traces, traces)
+    assert [change.icon for change in found] == ["cool", "warm", "none"]
+    for change in found:
+        assert change.detection.drop == 0.0
+        assert [other for other, _ in change.d_prime] == [
+            name for name in ("cool", "warm", "none") if name != change.icon
+        ]
+        assert all(pair.drop == 0.0 for _, pair in change.d_prime)
+        assert change.losses() == ()
+
+
+def test_an_icon_that_fades_is_told_with_detection_and_pair() -> None:
+    designed, delivered = [pulse(0.02), pulse(0.0)], [pulse(0.004), pulse(0.0)]
+    faint, _ = judge_delivered(["faint", "none"], designed, delivered)
+    assert faint.detection.designed > faint.detection.delivered + 0.05
+    detection, pair = faint.losses()
+    assert detection.startswith("detection falls from ")
+    assert detection.endswith("by more than the stated 0.05")
+    assert pair.startswith("d′ to none falls from ")
+    assert pair.endswith("by more than the stated 10%")
+
+
+@pytest.mark.parametrize(
+    ("designed", "delivered", "lost"), [(2.0, 1.85, False), (2.0, 1.75, True), (0.05, 0.01, False), (1.0, 1.5, False)]
+)
+def test_a_drop_counts_from_a_tenth_on_unless_it_is_tiny(designed: float, delivered: float, lost: bool) -> None:
+    change = FeltChange("a", Change(1.0, 1.0), (("b", Change(designed, delivered)),))
+    assert bool(change.losses()) is lost
+
+
+def test_it_prints_the_worst_pair_and_becomes_a_dictionary() -> None:
+    change = FeltChange("a", Change(1.0, 0.9), (("b", Change(2.0, 1.9)), ("c", Change(3.0, 2.0))))
+    assert repr(change) == "FeltChange(a: detected 1.000 → 0.900, d′ to c 3 → 2)"
+    told = change.to_dict()
+    assert told["detected_probability"] == {"designed": 1.0, "delivered": 0.9}
+    assert told["d_prime"] == {"b": {"designed": 2.0, "delivered": 1.9}, "c": {"designed": 3.0, "delivered": 2.0}}
+    assert told["losses"] == list(change.losses())
+    assert repr(FeltChange("a", Change(1.0, 1.0), ())) == "FeltChange(a: detected 1.000 → 1.000)"
+
+
+def test_an_unknown_norm_is_refused() -> None:
+    trace = pulse(0.1)
+    with pytest.raises(ValueError, match="there is no norm 'mean'"):
+        judge_delivered(["a"], [trace], [trace], norm="mean")
