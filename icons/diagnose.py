@@ -1,5 +1,7 @@
 """Say in plain words what is wrong with one statement, from its own pieces and from what the grammar could take."""
 
+import re
+
 from thermicon.icons.case import Case, at, short, swap
 from thermicon.icons.diagnose_family import family
 from thermicon.icons.diagnose_number import not_a_number, notation, unit
@@ -9,6 +11,7 @@ from thermicon.icons.words import NOT_YET, QUOTES, VOCABULARY, nearest
 
 __all__ = ["VOCABULARY", "diagnose"]
 
+_CURLY = re.compile(r"[”“»«’‘'](?!\w)")
 _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, such as cooling-step"
 
 
@@ -63,14 +66,14 @@ def text(case: Case) -> Finding | None:
     """A text that is never closed, or that is missing."""
     bad = case.bad
     if bad.kind == "text" and (len(bad.text) < 2 or not bad.text.endswith('"') or bad.text.endswith('\\"')):
-        curly = tuple(
-            Edit(place, place + 1, '"') for mark in "”“»’‘'" if (place := bad.text.find(mark) + bad.start) >= bad.start
-        )
-        cures: tuple[Edit, ...] = (*curly, Edit(bad.end, bad.end, '"'))
+        # A curly mark closes where no letter follows: an apostrophe has one.
+        curly = [Edit(bad.start + found.start(), bad.start + found.end(), '"') for found in _CURLY.finditer(bad.text)]
+        cures: tuple[Edit, ...] = (Edit(bad.end, bad.end, '"'),)
         stripped = bad.text.rstrip()
         if stripped.endswith("{"):
             inner = stripped[:-1].rstrip()
             cures = (Edit(bad.start + len(inner), bad.end, '" {'), *cures)
+        cures = (*curly[:2], *cures)
         return at(
             bad, "E111", "this text has no closing quotation mark", 'a text stands on one line, between "..."', *cures
         )

@@ -1,6 +1,7 @@
 """Diagnosis of numbers: units that are missing, unknown or of the wrong kind, and words where a number belongs."""
 
 import re
+from collections.abc import Container
 from fractions import Fraction
 
 from thermicon.icons.case import Case, at, short, signed, swap
@@ -60,8 +61,8 @@ def notation(case: Case) -> Finding | None:
     return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is no number: {what}', help, cures)
 
 
-def _operand(piece: Piece, names: object) -> bool:
-    return piece.kind == "number" or (isinstance(names, set) and piece.text in names) or piece.text == "("
+def _operand(piece: Piece, names: Container[str]) -> bool:
+    return piece.kind == "number" or piece.text in names or piece.text == "("
 
 
 def _fraction(pieces: list[Piece]) -> str | None:
@@ -90,7 +91,8 @@ def unit(case: Case) -> Finding | None:
         return Finding("E106", number.start, bad.end, what, "digits stand without blanks between", (cure,))
     if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
         cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
-        return at(number, "E102", "this number has no unit", EXAMPLES[kind], cure)
+        cures = () if bad.kind == "number" and case.next() in UNITS[kind] else (cure,)
+        return at(number, "E102", "this number has no unit", EXAMPLES[kind], *cures)
     if bad.text in (case.names or ()):
         help = "a parameter stands in the place of number and unit; there is no arithmetic"
         return at(
@@ -105,7 +107,7 @@ def unit(case: Case) -> Finding | None:
         help = 'temperatures take a direction: "cool to 26 °C at 3 °C/s"'
         return Finding("E209", word.start, word.end, '"to" alone moves a current', help, heads)
     if bad.text in _DEGREES and re.fullmatch(r"[Cc](/.*)?", case.next()):
-        cure = Edit(bad.start, case.rest[0].end, ("" if touching else "") + "°C" + case.next()[1:])
+        cure = Edit(bad.start, case.rest[0].end, "°C" + case.next()[1:])
         whole = Piece("word", f"{bad.text} {case.next()}", bad.start, case.rest[0].end)
         return at(whole, "E103", f'"{whole.text}" is not a unit', 'a unit has no blanks: "°C" or "degC"', cure)
     if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()):

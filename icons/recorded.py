@@ -45,9 +45,8 @@ def from_csv(
     if control not in ("display", "skin"):
         raise ValueError(f'control must be "display" or "skin" for a recorded temperature, not {control!r}')
     if isinstance(tolerance_K, bool) or not isinstance(tolerance_K, int | float) or not 0 < tolerance_K < math.inf:
-        raise ValueError(
-            f"tolerance_K must be a positive temperature difference in K, such as 0.05, not {tolerance_K!r}"
-        )
+        what = "tolerance_K (--tolerance) must be a positive temperature difference in K"
+        raise ValueError(f"{what}, such as 0.05, not {tolerance_K!r}")
     if name is not None and (wrong := name_fault(name)):
         raise ValueError(f"name: {wrong}")
     if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):

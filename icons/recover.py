@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.case import Case
@@ -60,21 +61,23 @@ def read(source: Source) -> Reading:
 
 def _other_format(source: Source) -> Finding | None:
     """What is plainly another format, told once instead of line by line."""
-    place, line = next(((n, line) for n, line in enumerate(source.lines) if line.strip()), (0, ""))
-    head = line.lstrip().casefold()
-    start = source.starts[place]
-    what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), "")
+    said = ((n, line) for n, line in enumerate(source.lines) if line.strip() and not line.startswith(("#", "sep=")))
+    rows = list(islice(said, 2))
+    if not rows:
+        return None
+    place, line = rows[0]
+    head = line[:_WIDE].lstrip().casefold()
+    what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), None)
     help = "a cue file is plain text; save it as such, in UTF-8"
-    row = next((line for line in source.lines[place:] if line.strip() and not line.startswith(("#", "sep="))), "")
-    cells = [cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])]
-    if len(cells) > 1 and ("time_s" in cells or all(_CELL.fullmatch(cell) for cell in cells)):
-        what, help = "this is a table, perhaps a recording", "thermicon convert makes an icon of a recording in CSV"
-        start = source.text.index(row)
-    return (
-        Finding("E101", start, start + max(1, len(source.lines[source.place(start)[0] - 1])), what, help)
-        if what
-        else None
-    )
+    tables = [[cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])] for _, row in rows]
+    if any(len(cells) > 1 and all(map(_CELL.fullmatch, cells)) for cells in tables) or (
+        "time_s" in tables[0] and not head.startswith("cue")
+    ):
+        what = "this is a table, perhaps a recording"
+        help = "thermicon convert makes an icon of a recording in CSV"
+    if what is None:
+        return None
+    return Finding("E101", source.starts[place], source.starts[place] + len(line), what, help)
 
 
 class _Reader:

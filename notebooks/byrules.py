@@ -22,6 +22,7 @@ def rules_table(icons: Sequence[dict[str, Any]], pairs: Sequence[dict[str, Any]]
         "least margin",
         "fails",
         numbers=("score", "rules passed", "pairs apart", "least margin"),
+        names=("icon", "score", "rules passed", "pairs apart", "least margin"),
     )
     for icon in icons:
         own = [rule for rule in icon["rules"] if not rule["from_model"]]

@@ -152,6 +152,7 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
         "correct",
         "most confused with",
         numbers=("detected", "onset", "correct"),
+        names=("icon", "detected", "onset", "channel", "correct", "most confused with"),
     )
     labels = result["confusion"]["labels"]
     for icon in icons:

@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import typer
 
 if TYPE_CHECKING:
+    from rich.console import JustifyMethod
     from rich.table import Table
-
-
-WIDEST = 160
 
 
 def show(*parts: object) -> None:
     """Print tables and lines on stdout; colours only on a terminal, never markup taken from people's text."""
     from rich.console import Console
 
-    console = Console(markup=False, highlight=False, emoji=False)
-    # A pipe has no width: long names stay on one line there, as a script expects.
-    wide = console if console.is_terminal else Console(markup=False, highlight=False, emoji=False, width=WIDEST)
+    plain = Console(markup=False, highlight=False, emoji=False)
     for part in parts:
-        one = console if isinstance(part, str) else wide
-        with one.capture() as captured:
-            one.print(hanging(part, console.width) if isinstance(part, str) else part)
+        console = plain
+        if not isinstance(part, str) and not plain.is_terminal:
+            # A pipe has no width: names stay whole there, as a script expects.
+            least = Console(width=1000).measure(cast("Table", part)).minimum
+            console = Console(markup=False, highlight=False, emoji=False, width=max(plain.width, least))
+        with console.capture() as captured:
+            console.print(hanging(part, plain.width) if isinstance(part, str) else part)
         for line in captured.get().splitlines():
             typer.echo(line.rstrip())
 
@@ -42,12 +42,13 @@ def hanging(text: str, width: int) -> str:
     return textwrap.fill(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
 
 
-def table(*columns: str, numbers: Sequence[str] = ()) -> Table:
-    """Make an empty table with these columns; those in ``numbers`` are set flush right."""
+def table(*columns: str, numbers: Sequence[str] = (), names: Sequence[str] = ()) -> Table:
+    """Make an empty table with these columns; those in ``numbers`` are set flush right, ``names`` are never broken."""
     from rich import box
     from rich.table import Table
 
     made = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False)
     for column in columns:
-        made.add_column(column, justify="right" if column in numbers else "left", overflow="fold")
+        justify: JustifyMethod = "right" if column in numbers else "left"
+        made.add_column(column, justify=justify, overflow="fold", no_wrap=column in names)
     return made

@@ -9,7 +9,7 @@ class Mistake(NamedTuple):
     line: int
     column: int
     words: str
-    suggestion: str | None = None
+    suggestion: str | None = None  # "" where there must be none
 
 
 def body(statement: str, *before: str) -> str:
@@ -77,6 +77,65 @@ SYNTAX = [
     Mistake(f'cue 1\nicon x means "" {{ {DOWN} }}', "E117", 2, 14, "the text is empty"),
 ]
 
+NOTATION = [
+    *(
+        Mistake(body(f"change by {sign}6 °C at 3 °C/s"), "E106", 3, 13, words, "change by -6 °C at 3 °C/s")
+        for sign, words in {
+            "–": '^^ "–" (U+2013) is no minus sign',
+            "— ": '^^^ "—" (U+2014) is no minus sign',
+            "‐": "(U+2010)",
+            "‑": "(U+2011)",
+            "‒": "(U+2012)",
+            "- ": "^^^ a blank stands between the sign and its number",
+            "− ": "^^^ a blank stands between",
+        }.items()
+    ),
+    Mistake(body("hold for 500 µs"), "E103", 3, 14 + 2, '"µs" is not a unit', "hold for 0.5 ms"),
+    Mistake(body("hold for 500 us"), "E103", 3, 16, '"us" is not a unit', "hold for 0.5 ms"),
+    Mistake(body("hold for 1 h"), "E103", 3, 14, '"h" is not a unit', "hold for 60 min"),
+    Mistake(body("change by 3 mK at 1 K/s"), "E103", 3, 15, '"mK"', "change by 0.003 K at 1 K/s"),
+    Mistake(body("cool by 3 °C at 3 °C/ms"), "E103", 3, 21, '"°C/ms"', "cool by 3 °C at 3000 °C/s"),
+    Mistake(body("cool by 3 °C at 3 °C/h"), "E103", 3, 21, '"°C/h" is not a unit', ""),
+    Mistake(body("cool by 3 degF at 3 °C/s"), "E103", 3, 13, '"degF" is not a unit', ""),
+    Mistake(body("cool by 3 deg C at 1 deg C/s"), "E103", 3, 13, "^^^^^ ", "cool by 3 °C at 1 °C/s"),
+    Mistake(body("cool by 3 °C at 1 °C per minute"), "E104", 3, 21, "a rate", "cool by 3 °C at 1 °C/min"),
+    Mistake(body("hold for 1,000 ms"), "E106", 3, 12, '"1,000" may be 1000 or 1.000', ""),
+    Mistake(body("hold for 1,500 ms"), "E106", 3, 12, "nothing stands between thousands", ""),
+    Mistake(body("hold for 0,125 s"), "E106", 3, 12, "is not a number", "hold for 0.125 s"),
+    Mistake(body("hold for 2 500 ms"), "E106", 3, 12, "a blank stands within", "hold for 2500 ms"),
+    Mistake(body("hold for 2 77 ms"), "E102", 3, 12, "no unit", ""),
+    Mistake(body(DOWN + " and hold for 4 s"), "E108", 3, 26, '"and" joins no', DOWN + "; hold for 4 s"),
+    Mistake(body(DOWN + ", then hold for 4 s"), "E108", 3, 25, '"," joins no', DOWN + "; hold for 4 s"),
+    Mistake(body(DOWN + " then hold for 4 s"), "E108", 3, 26, '"then" joins no', DOWN + "; hold for 4 s"),
+    Mistake(body("cool by 6 °C and hold for 4 s"), "E107", 3, 16, "needed", DOWN + "; hold for 4 s"),
+    Mistake(body(DOWN + " for 4 s"), "E108", 3, 26, "complete before", DOWN + "; hold for 4 s"),
+    Mistake(body("hold for 4 s or 5 s"), "E108", 3, 16, "complete before", ""),
+    Mistake(body("hold for 1 min 30 s"), "E108", 3, 12, "one number with one unit", "hold for 90 s"),
+    Mistake(body("hold for 1 min and 30 s"), "E108", 3, 12, "one number with one unit", "hold for 90 s"),
+    Mistake(body("hold for 4 s // slow"), "E105", 3, 16, 'begins with "#"', "hold for 4 s # slow"),
+    Mistake(body("hold for 4 s -- slow"), "E105", 3, 16, 'begins with "#"', "hold for 4 s # slow"),
+    Mistake(body("hold for 0:30"), "E106", 3, 12, "there is no clock notation", ""),
+    Mistake(body("hold for 1/2 s"), "E106", 3, 12, "there is no arithmetic", "hold for 0.5 s"),
+    Mistake(body("hold for 1/3 s"), "E106", 3, 12, "there is no arithmetic", ""),
+    Mistake(body("hold for 2+3 s"), "E106", 3, 12, "^^^ ", ""),
+    Mistake(body("hold for 1–2 s"), "E106", 3, 12, "^^^ ", ""),
+    *(
+        Mistake(f"cue 1\nicon x means {said} {{ hold for 1 s }}", "E117", 2, 14, "straight and double", cured)
+        for said, cured in {
+            "“hello there”": 'icon x means "hello there" { hold for 1 s }',
+            "‘hello’": 'icon x means "hello" { hold for 1 s }',
+            "'hello'": 'icon x means "hello" { hold for 1 s }',
+            "“a baby’s”": 'icon x means "a baby’s" { hold for 1 s }',
+            "'a b' tags “c, d”": 'icon x means "a b" tags "c, d" { hold for 1 s }',
+        }.items()
+    ),
+    Mistake("cue 1\nset “a b” { }\n" + STEP, "E117", 2, 5, "straight and double", 'set "a b" { }'),
+    Mistake("time_s,skin_C\n0,32\n1,31\n", "E101", 1, 1, "thermicon convert makes an icon"),
+    Mistake("Time;Temp\n0;32.5\n1;31\n", "E101", 1, 1, "this is a table, perhaps a recording"),
+    Mistake("%PDF-1.7\n1 0 obj\n", "E101", 1, 1, "this is a PDF document"),
+    Mistake("<!DOCTYPE html>\n<p>cue 1\n", "E101", 1, 1, "this is a web page"),
+]
+
 SINE = "sine by 3 °C every 4 s for 12 s"
 
 SHAPES = [
@@ -128,7 +187,7 @@ def family(parameters: str, statement: str = "change by a at 1 K/s") -> str:
 
 def header(parameters: str, *rest: object) -> Mistake:
     code, column, words, *cured = rest
-    suggestion = f"icon x({cured[0]} {{" if cured else None
+    suggestion = (f"icon x({cured[0]} {{" if cured[0] else "") if cured else None
     return Mistake(family(parameters), str(code), 2, int(str(column)), str(words), suggestion)
 
 
@@ -148,6 +207,15 @@ FAMILIES = [
     header("a in [1, 2) °C)", "E118", 18, 'a list ends with "]"', "a in [1, 2] °C)"),
     header("a in (1, 2) °C)", "E118", 13, 'stands in "[ ... ]", not in "("', "a in [1, 2] °C)"),
     header("a in {1, 2} °C)", "E118", 13, 'stands in "[ ... ]", not in "{"', "a in [1, 2] °C)"),
+    header("a in [1,5, 2,7] °C)", "E118", 14, 'is "1,5" one value or two?'),
+    header("a in [1, 2,5] °C)", "E118", 17, "the decimal mark is a point: 2.5"),
+    header("a in 0.1...5 step 0.1 K)", "E118", 16, "two dots between its ends, not three"),
+    header("a in 1...3 K)", "E118", 14, "two dots between its ends, not three"),
+    header("a in [1...3] K)", "E118", 15, "two dots between its ends, not three"),
+    header("a in [1..3] K)", "E118", 15, "a range stands without brackets"),
+    header("a in [–3, 3] °C)", "E106", 14, "(U+2013) is no minus sign", "a in [-3, 3] °C)"),
+    header("a in –3..3 step 1 K)", "E106", 13, "(U+2013) is no minus sign", "a in -3..3 step 1 K)"),
+    header("a in [3] mK)", "E103", 17, '"mK" is not a unit', ""),
     header("a in [1, x] K)", "E106", 17, 'a number is needed, not "x"'),
     header("a in 1..3 °C)", "E118", 13, 'this range has no "step"', "a in 1..3 step 1 °C)"),
     header("a in 1 to 3 step 1 °C)", "E118", 15, 'a range has ".." between', "a in 1..3 step 1 °C)"),
@@ -178,6 +246,10 @@ FAMILIES = [
     Mistake(family("rate in [1] K/s)", "cool by 6 K at rat"), "E226", 3, 18, '"rat"', "cool by 6 K at rate"),
     Mistake(family("a in [1] K)", "warm by a K at 1 K/s"), "E104", 3, 13, "has its unit already"),
     Mistake(family("a in [1] K)", "warm by 2 a at 1 K/s"), "E103", 3, 13, "no arithmetic", "warm by a at 1 K/s"),
+    Mistake(family("a in [1] K)", "warm by 2*a at 1 K/s"), "E106", 3, 11, "^^^ ", ""),
+    Mistake(family("a in [1] K)", "warm by a*2 at 1 K/s"), "E106", 3, 11, "there is no arithmetic", ""),
+    Mistake(family("a in [1] K)", "warm by a/2 at 1 K/s"), "E106", 3, 11, "there is no arithmetic", ""),
+    Mistake(family("a in 1...3 K)") + "\nicon y { play x_a=1 }", "E118", 2, 14, "not three"),
     Mistake(family("a in [1] K)", "warm by -a at 1 K/s"), "E105", 3, 11, "no sign before it"),
     Mistake(family("a in [1] K)", "warm by {a} at 1 K/s"), "E105", 3, 11, "these braces", "warm by a at 1 K/s"),
     Mistake(family("a in [1] K)", "hold for a"), "E104", 3, 12, "a is in K; a time is needed here"),
@@ -274,4 +346,4 @@ MEANING = [
     Mistake(body("play y") + "\nicon y { play x }", "E232", 5, 15, "x plays y plays x"),
 ]
 
-ALL = [*SYNTAX, *SHAPES, *FAMILIES, *MEANING]
+ALL = [*SYNTAX, *NOTATION, *SHAPES, *FAMILIES, *MEANING]

@@ -19,7 +19,7 @@ def test_a_mistake_is_told(mistake: Mistake) -> None:
     assert (error.code, error.line, error.column) == (mistake.code, mistake.line, mistake.column)
     assert mistake.words in error.render()
     if mistake.suggestion is not None:
-        assert error.suggestion == mistake.suggestion
+        assert (error.suggestion or "") == mistake.suggestion
 
 
 @pytest.mark.parametrize("mistake", ALL, ids=lambda mistake: f"{mistake.code}-{mistake.words[:20]}")

@@ -144,14 +144,14 @@ ROWS = "0,32\n1,31\n"
             f"time_s,temp_C\n{ROWS}",
             "rec.csv:1",
             "no column is called temperature_C, target_C, setpoint_C, display_C or skin_C; the columns are time_s, "
-            "temp_C\n  rename 'temp_C' to temperature_C if it is in °C, or say which is meant: column=\"temp_C\"",
+            "temp_C\n  rename 'temp_C' to temperature_C if it is in °C, or say which is meant: --column temp_C",
         ),
-        ("time_s,x1,x2,x3,x4,x5,x6,x7,x8\n", "rec.csv:1", 'x7, …\n  say which is meant: column="x1"'),
-        ("time_s\n0\n", "rec.csv:1", 'the columns are time_s\n  say which is meant: column="name"'),
+        ("time_s,x1,x2,x3,x4,x5,x6,x7,x8\n", "rec.csv:1", "x7, …\n  say which is meant: --column x1"),
+        ("time_s\n0\n", "rec.csv:1", "the columns are time_s\n  say which is meant: --column name"),
         (
             "time_s,target_C,display_C,skin_C\n",
             "rec.csv:1",
-            'target_C, display_C and skin_C are all temperatures\n  say which: column="target_C"',
+            "target_C, display_C and skin_C are all temperatures\n  say which: --column target_C",
         ),
         ("time_s,skin_C,time_s\n", "rec.csv:1", "the column time_s is there twice\n  rename or remove one of them"),
         ("time_s,skin_C\n0,00,32,5\n", "rec.csv:2", "4 cells, where the first line names 2\n  write decimal points"),
@@ -249,7 +249,8 @@ def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
     path = written(tmp_path, table(time, 32 + np.random.default_rng(0).normal(0, 0.05, len(time))))
     message = (
         r"E220 too many corners\n  500 corners are not enough to stay within 0.05 of every reading; the readings "
-        r"scatter by about 0.05 \(standard deviation\), so try a tolerance of 0.3\n  give a larger tolerance_K"
+        r"scatter by about 0.05 \(standard deviation\), so try a tolerance of 0.3\n  give a larger tolerance \(--tolerance, "
+        r"in Python tolerance_K\)"
     )
     with pytest.raises(ValueError, match=message):
         from_csv(path)
@@ -259,7 +260,10 @@ def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"tolerance_K": 0}, "tolerance_K must be a positive temperature difference in K, such as 0.05, not 0"),
+        (
+            {"tolerance_K": 0},
+            r"tolerance_K \(--tolerance\) must be a positive temperature difference in K, such as 0.05, not 0",
+        ),
         ({"tolerance_K": -0.1}, "not -0.1"),
         ({"tolerance_K": math.nan}, "not nan"),
         ({"tolerance_K": True}, "not True"),

@@ -113,8 +113,7 @@ def test_rigs_are_listed_with_what_they_rest_at(cli: Cli) -> None:
     assert said.exit_code == 0
     for word in ("thenar", "shani2021", "34.5", "−80"):
         assert word in said.stdout
-    thenar = next(line for line in said.stdout.splitlines() if line.startswith("thenar"))
-    assert "five skin layers" in thenar  # in a pipe, a row is one line
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
 
 
 def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
