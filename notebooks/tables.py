@@ -22,7 +22,8 @@ def show(*parts: object) -> None:
         console = plain
         if not isinstance(part, str) and not plain.is_terminal:
             # A pipe has no width: names stay whole there, as a script expects.
-            least = Console(width=1000).measure(cast("Table", part)).minimum
+            wanted = cast("Table", part)
+            least = Console(width=1000).measure(wanted).minimum + 2 * len(wanted.columns)  # rich forgets the gaps
             console = Console(markup=False, highlight=False, emoji=False, width=max(plain.width, least))
         with console.capture() as captured:
             console.print(hanging(part, plain.width) if isinstance(part, str) else part)
