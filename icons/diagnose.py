@@ -2,7 +2,7 @@
 
 import re
 
-from thermicon.icons.case import Case, at, short, swap
+from thermicon.icons.case import Case, at, short, signed, swap
 from thermicon.icons.diagnose_family import family
 from thermicon.icons.diagnose_number import not_a_number, notation, unit
 from thermicon.icons.diagnose_word import connective, extra, joined, pace, unit_twice, word
@@ -89,6 +89,8 @@ def character(case: Case) -> Finding | None:
     bad = case.bad
     if bad.kind != "other" or (bad.text in "([" and "LPAR" in case.accepts):
         return None
+    if case.accepts & {"BY", "TO"} and (found := signed(case)):
+        return found
     code = f"U+{ord(bad.text):04X}"
     shown = f'"{bad.text}" ({code})' if bad.text.isprintable() else code
     return at(bad, "E105", f"the character {shown} has no meaning here", "take it away", swap(bad, ""))

@@ -91,8 +91,8 @@ def unit(case: Case) -> Finding | None:
         return Finding("E106", number.start, bad.end, what, "digits stand without blanks between", (cure,))
     if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
         cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
-        cures = () if bad.kind == "number" and case.next() in UNITS[kind] else (cure,)
-        return at(number, "E102", "this number has no unit", EXAMPLES[kind], *cures)
+        shared = bad.kind == "number" and case.next() in UNITS[kind]  # two numbers, one unit: which was meant?
+        return at(number, "E102", "this number has no unit", EXAMPLES[kind], *(() if shared else (cure,)))
     if bad.text in (case.names or ()):
         help = "a parameter stands in the place of number and unit; there is no arithmetic"
         return at(
@@ -192,7 +192,7 @@ def not_a_number(case: Case) -> Finding | None:
     what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
     if case.first == "cue":
         cures = [swap(bad, "1")]
-    elif case.rest and case.rest[0].kind == "number" and not cures:
+    elif case.rest and case.rest[0].kind == "number" and not cures and bad.text != "±":
         cures = [Edit(bad.start, case.rest[0].start, "")]
     wanted = "current" if case.first == "to" and case.index == 1 else _WANTED.get(case.pieces[case.index - 1].text, "")
     help = EXAMPLES.get(wanted, "numbers look like 6, 0.5 or 1e-3, each with its unit")

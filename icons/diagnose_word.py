@@ -63,7 +63,9 @@ def _two_times(case: Case) -> Finding | None:
     place = case.index + (case.bad.text in JOINERS)
     first, second = case.quantity(case.index - 2), case.quantity(place)
     times = UNITS["time"]
-    if case.index < 3 or first is None or second is None or first[1] not in times or second[1] not in times:
+    if case.index < 3 or first is None or second is None:
+        return None
+    if times.get(first[1], 0) <= times.get(second[1], 10**6):
         return None
     begin, end = case.pieces[case.index - 2], case.pieces[place + 1]
     try:
@@ -215,9 +217,9 @@ def _joined(case: Case, words: list[str]) -> list[Edit]:
     if "DIRECTION" in case.accepts and (meant := STARTS.get(bad.text.casefold())):
         cures.append(swap(bad, meant))
     later = next((piece for piece in case.rest if piece.text in words), None)
-    if later is not None and not any(
-        bad.start <= piece.start < later.start for piece in case.rest if piece.kind == "number"
-    ):
+    between = [piece for piece in case.rest if later is not None and piece.start < later.start]
+    # Where a change begins need not be said; any other number must not get lost.
+    if later is not None and (bad.text == "from" or not any(piece.kind == "number" for piece in between)):
         cures.append(Edit(bad.start, later.start, ""))
     if bad.kind == "number":
         cures += [Edit(bad.start, bad.start, f"{text} ") for text in words]

@@ -139,7 +139,7 @@ class _Reader:
             return False
         after = self.text[token.end_pos or 0]
         if token.type == "NUMBER":
-            if self.heading:  # the values of a parameter: 1..3, or [1,2]
+            if self.listing:  # the values of a parameter: 1..3, or [1,2]
                 return after == "_" or after.isdigit()
             return after in ".,_" or after.isdigit()
         last = token[-1]

@@ -197,7 +197,7 @@ def nearest_unit(word: str, kind: Kind) -> str | None:
     for spelling in (plain, _UNIT_ALIASES.get(plain.casefold(), ""), slash.join(parts)):
         if spelling in UNITS[kind]:
             return spelling
-    if word in _SCALED or head[-1:] in "Ff℉":
+    if word in _SCALED or head[-1:] in "Ff℉" or any(char.isdigit() for char in word):
         return None
     # What begins otherwise, or is per something else, is a unit of another size: µs, mK, °C/ms.
     same = [unit for unit in UNITS[kind] if unit[:1] == plain[:1] and unit.partition("/")[2] in (per, "")]

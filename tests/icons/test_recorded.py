@@ -249,8 +249,8 @@ def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
     path = written(tmp_path, table(time, 32 + np.random.default_rng(0).normal(0, 0.05, len(time))))
     message = (
         r"E220 too many corners\n  500 corners are not enough to stay within 0.05 of every reading; the readings "
-        r"scatter by about 0.05 \(standard deviation\), so try a tolerance of 0.3\n  give a larger tolerance \(--tolerance, "
-        r"in Python tolerance_K\)"
+        r"scatter by about 0.05 \(standard deviation\), so try a tolerance of 0.3\n  "
+        r"give a larger tolerance \(--tolerance, in Python tolerance_K\)"
     )
     with pytest.raises(ValueError, match=message):
         from_csv(path)
