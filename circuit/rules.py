@@ -106,6 +106,8 @@ def safety_keys() -> tuple[str, ...]:
 
 def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
     """Return what is wrong with changes of limits, a sentence each; keys are those of [safety]."""
+    if not changes:
+        return []
     unknown = [key for key in changes if key not in safety_keys()]
     faults = [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
     told = {key for key in changes if key in unknown}

@@ -241,7 +241,9 @@ class _Scope:
             digits = str(head).removeprefix("+")
             count = int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 10 else 0
             if not 1 <= count <= 1_000_000_000:
-                what = f'"{short(head)}" is not a positive whole number'
+                large = digits.isascii() and digits.isdigit() and digits.strip("0") != ""
+                wrong = "too large: at most 1,000,000,000" if large else "not a positive whole number"
+                what = f'"{short(head)}" is {wrong}'
                 self.builder.add("E207", span(head), what, "a repeat has a count from 1, such as: repeat 3 { ... }")
                 count = 1
         for part, inside in zip(parts, body, strict=True):

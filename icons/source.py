@@ -30,6 +30,14 @@ def _cut(number: str, mark: str, other: str) -> re.Pattern[str]:
 _PIECE = _cut(r"\d[\d.,_]*|\.\d[\d.,_]*", r"[{};\n]", ".")
 _FINE = _cut(r"\d[\d_]*(?:\.(?!\.)[\d_]*)?|\.\d[\d_]*", r"[{}]", r"\.\.|\n|.")
 
+# How files begin that people hand in for text.
+_OTHERS = {
+    b"PK\3\4": "a Word document, a workbook or a zip archive",
+    b"%PDF-": "a PDF document",
+    b"\x89PNG": "a picture (PNG)",
+    b"\xff\xd8\xff": "a picture (JPEG)",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Piece:
@@ -169,6 +177,9 @@ def decode(data: str | bytes, file: str) -> str:
 
 
 def _utf8(data: bytes, file: str) -> str:
+    for mark, kind in _OTHERS.items():
+        if data.startswith(mark):
+            raise whole_file("E006", file, f"this is {kind}", "a cue file is plain UTF-8 text")
     if b"\0" in data:
         what = f"a zero byte at byte offset {data.index(0)}"
         raise whole_file("E006", file, what, "a cue file is plain UTF-8 text, not UTF-16 and not a document")

@@ -41,10 +41,10 @@ def convert_file(file: str, output: Path, icon: str | None, recording: Recording
     if icon is not None:
         icons = only_icon(icons, icon)
     suffix = output.suffix.lower()
-    text = written(icons, suffix)
+    text = written(icons, suffix, icon)
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
-    count = len(icons)
+    count = 1 if suffix == ".hjif" and icon is not None else len(icons)
     note(f"wrote {output}: {count:,} icon{'' if count == 1 else 's'}")
     if suffix == ".hjif":
         from thermicon.icons.hjif import EXPERIMENTAL
@@ -79,8 +79,8 @@ def only_icon(icons: IconSet, name: str) -> IconSet:
     return replace(icons, entries=parse(str(found)).entries)
 
 
-def written(icons: IconSet, suffix: str) -> str:
-    """Return a set as the text of a file with this ending."""
+def written(icons: IconSet, suffix: str, icon: str | None = None) -> str:
+    """Return a set as the text of a file with this ending; in HJIF, an icon that is named stands alone."""
     if suffix == ".json":
         from thermicon.icons.exchange import to_json
 
@@ -88,7 +88,7 @@ def written(icons: IconSet, suffix: str) -> str:
     if suffix == ".hjif":
         from thermicon.icons.hjif import to_hjif
 
-        return to_hjif(icons)
+        return to_hjif(icons if icon is None else pick(icons, icon))
     return str(icons)
 
 

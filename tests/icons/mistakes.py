@@ -302,6 +302,7 @@ MEANING = [
     Mistake(body("return over 2 s"), "E206", 3, 3, "at baseline already", "rest for 2 s"),
     Mistake(body("return at 2 °C/s"), "E206", 3, 3, 'write "rest for 2 s"'),
     Mistake(body("repeat 0 { hold for 1 s }"), "E207", 3, 10, "not a positive whole number"),
+    Mistake(body("repeat 99999999999 { hold for 1 s }"), "E207", 3, 10, "too large"),
     Mistake(body("repeat 2.5 { hold for 1 s }"), "E207", 3, 10, "not a positive whole number"),
     Mistake(body("repeat -1 { hold for 1 s }"), "E207", 3, 10, "not a positive whole number"),
     Mistake(body("repeat { hold for 1 s }"), "E207", 3, 9, "how often is missing"),

@@ -242,3 +242,12 @@ def test_what_hjif_cannot_take() -> None:
         to_hjif(parse("cue 1; icon a { hold for 1 s }"))
     with pytest.raises(HjifError, match="there is no icon to write"):
         to_hjif([])
+
+
+def test_only_the_icons_that_were_asked_for_are_written() -> None:
+    dip = "icon a { cool by 6 °C at 3 °C/s; return at 3 °C/s }"
+    icons = parse(f"cue 1; set {{ baseline 32 °C }}\n{dip}\nicon both {{ play a; rest for 1 s; play a }}")
+    (one,) = json.loads(to_hjif([icons["both"]]))["perceptions"]
+    assert one["description"] == "both"
+    keyframes = one["channels"][0]["bands"][0]["effects"][0]["keyframes"]
+    assert sum(frame["amplitude_modulation"] == -1 for frame in keyframes) == 2

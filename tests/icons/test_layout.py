@@ -77,7 +77,7 @@ class Scribbler:
         names = self.pick([], ["a"], ["a", "bb"])
         over = ""
         if names:
-            values = ["[1,2 , 3]", " 1..3 step 1", "  1 .. 3 step+1"]
+            values = ["[1 ,2 , 3]", " 1..3 step 1", "  1 .. 3 step+1"]
             parts = [f"{each} in{self.pick(*values)} K" for each in names]
             over = f"({self.lines()}" + f",{self.lines()}".join(parts) + f"{self.lines()})"
             over = self.pick("", " ") + over

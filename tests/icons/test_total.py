@@ -129,3 +129,12 @@ def test_any_newline_and_a_byte_order_mark(newline: str) -> None:
     assert parse("\ufeff" + text) == load_library("six-icons")
     with pytest.raises(CueErrors, match=r"a\.cue:2:19  E102"):
         parse(newline.join(["cue 1", "icon x { hold for 4 }"]), "a.cue")
+
+
+@pytest.mark.parametrize(
+    ("data", "kind"),
+    [(b"PK\3\4...", "a Word document"), (b"%PDF-1.7", "a PDF"), (b"\x89PNG\r\n", "PNG"), (b"\xff\xd8\xff\xe0", "JPEG")],
+)
+def test_other_kinds_of_file_are_named(data: bytes, kind: str) -> None:
+    with pytest.raises(CueErrors, match=f"E006 binary file\n  this is .*{kind}"):
+        parse(data, "x")

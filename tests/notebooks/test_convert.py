@@ -136,3 +136,14 @@ def test_what_cannot_be(
     assert (said.exit_code, said.stdout) == (code, "")
     assert words in " ".join(said.stderr.split())
     assert not list(Path().glob("a.*"))
+
+
+def test_one_icon_as_hjif_stands_alone(cli: Any, tmp_path: Path) -> None:
+    path = tmp_path / "a.cue"
+    text = "cue 1\nset { control display; baseline 32 °C }\nicon a { cool by 2 °C over 1 s; return over 1 s }\n"
+    path.write_text(text + "icon b { play a; rest for 1 s; play a }\n", encoding="utf-8")
+    out = tmp_path / "b.hjif"
+    said = cli("convert", str(path), "--icon", "b", "-o", str(out))
+    assert said.exit_code == 0
+    assert "1 icon" in said.stderr
+    assert out.read_text(encoding="utf-8").count("perception_modality") == 1
