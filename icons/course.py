@@ -1,14 +1,13 @@
 """The course of an icon in the words of a paper, from its statements."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from thermicon.icons.faults import Control
+from thermicon.icons.format import Holes, Path, Wording
 from thermicon.icons.shapes import Pulse, Step, Wave
 from thermicon.icons.statements import Broken, Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
-from thermicon.icons.units import Kind, quantity
+from thermicon.icons.units import Kind
 
-Path = tuple[int, ...]
-Holes = Mapping[tuple[Path, str], str]
 _RAMPS = {"warm": "warming", "cool": "cooling", "change": "a change"}
 _SIDES = {"warm": " up", "cool": " down", "change": ""}
 _COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
@@ -43,11 +42,7 @@ def listed(parts: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(parts[:-1]), *parts[-1:])))
 
 
-class _Teller:
-    def __init__(self, control: Control, holes: Holes) -> None:
-        self.control = control
-        self.holes = holes
-
+class _Teller(Wording):
     def body(self, body: "Sequence[Statement | Broken]", path: Path) -> str:
         told = (self.phrase(part, (*path, n)) for n, part in enumerate(body))
         return listed([phrase for phrase in told if phrase])
@@ -83,23 +78,6 @@ class _Teller:
             case Total() | Broken():
                 return ""
 
-    def goal(self, part: object, path: Path) -> str:
-        kinds: tuple[tuple[str, Kind], ...] = (
-            ("by_K", "change"),
-            ("to_C", "absolute"),
-            ("by_A", "current"),
-            ("to_A", "current"),
-        )
-        name, kind = next(pair for pair in kinds if getattr(part, pair[0], None) is not None)
-        return f"{name[:2]} {self.value(part, path, name, kind)}"
-
-    def pace(self, part: object, path: Path) -> str:
-        for name in ("rate_K_per_s", "rate_A_per_s", "rate_per_s"):
-            if getattr(part, name, None) is not None:
-                kind: Kind = "current_rate" if self.control == "current" else "rate"
-                return f"at {self.value(part, path, name, kind)}"
-        return f"over {self.value(part, path, 'duration_s', 'time')}"
-
     def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
-        hole = self.holes.get((path, name))
-        return hole or quantity(float(getattr(part, name)), kind).replace("-", "−", 1)
+        text = super().value(part, path, name, kind)
+        return text if (path, name) in self.holes else text.replace("-", "−", 1)

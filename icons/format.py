@@ -16,6 +16,12 @@ if TYPE_CHECKING:
 
 Path = tuple[int, ...]
 Holes = Mapping[tuple[Path, str], str]
+_GOALS: tuple[tuple[str, Kind], ...] = (
+    ("by_K", "change"),
+    ("to_C", "absolute"),
+    ("by_A", "current"),
+    ("to_A", "current"),
+)
 WIDEST = 120
 """Headers longer than this take several lines."""
 
@@ -35,11 +41,37 @@ def statement_text(
     return writer.statement(statement, indent, path)
 
 
-class _Writer:
+class Wording:
+    """How amounts and paces of statements are written; a parameter stands in for a number where ``holes`` names one."""
+
     def __init__(self, control: Control, holes: Holes) -> None:
         self.control = control
         self.holes = holes
 
+    def goal(self, part: object, path: Path) -> str:
+        """Return where a statement leads, such as ``by 6 °C`` or ``to 0.5 A``."""
+        name, kind = next(pair for pair in _GOALS if getattr(part, pair[0], None) is not None)
+        return f"{name[:2]} {self.value(part, path, name, kind)}"
+
+    def pace(self, part: object, path: Path) -> str:
+        """Return how fast a statement is, or how long it takes: ``at 3 °C/s`` or ``over 2 s``."""
+        rates: tuple[tuple[str, Kind], ...] = (
+            ("rate_K_per_s", "rate"),
+            ("rate_A_per_s", "current_rate"),
+            ("rate_per_s", "current_rate" if self.control == "current" else "rate"),
+        )
+        for name, kind in rates:
+            if getattr(part, name, None) is not None:
+                return f"at {self.value(part, path, name, kind)}"
+        return f"over {self.value(part, path, 'duration_s', 'time')}"
+
+    def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
+        """Return the number in a field with its unit, or the parameter that stands there."""
+        hole = self.holes.get((path, name))
+        return quantity(float(getattr(part, name)), kind) if hole is None else hole
+
+
+class _Writer(Wording):
     def statement(self, part: Statement | Broken, indent: str, path: Path) -> str:
         if isinstance(part, Repeat):
             lines = (self.statement(inner, indent + "  ", (*path, n)) for n, inner in enumerate(part.body))
@@ -50,9 +82,9 @@ class _Writer:
     def line(self, part: Statement | Broken, path: Path) -> str:
         match part:
             case Change(direction=word):
-                return f"{word} {self.goal(part, path)} {self.pace(part, path, 'rate_K_per_s', 'rate')}"
+                return f"{word} {self.goal(part, path)} {self.pace(part, path)}"
             case Drive():
-                return f"{self.goal(part, path)} {self.pace(part, path, 'rate_A_per_s', 'current_rate')}"
+                return f"{self.goal(part, path)} {self.pace(part, path)}"
             case Hold():
                 return f"hold for {self.value(part, path, 'duration_s', 'time')}"
             case Rest():
@@ -74,27 +106,7 @@ class _Writer:
                 return f"{part.shape} {self.goal(part, path)} every {period} for {time}{start}{cut}"
             case Broken() | Repeat():
                 raise ValueError("a statement that could not be read has no text")
-        kind: Kind = "current_rate" if self.control == "current" else "rate"
-        return f"return {self.pace(part, path, 'rate_per_s', kind)}"
-
-    def goal(self, part: object, path: Path) -> str:
-        kinds: tuple[tuple[str, Kind], ...] = (
-            ("by_K", "change"),
-            ("to_C", "absolute"),
-            ("by_A", "current"),
-            ("to_A", "current"),
-        )
-        name, kind = next(pair for pair in kinds if getattr(part, pair[0], None) is not None)
-        return f"{name[:2]} {self.value(part, path, name, kind)}"
-
-    def pace(self, part: object, path: Path, rate: str, kind: Kind) -> str:
-        if getattr(part, rate) is not None:
-            return f"at {self.value(part, path, rate, kind)}"
-        return f"over {self.value(part, path, 'duration_s', 'time')}"
-
-    def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
-        hole = self.holes.get((path, name))
-        return quantity(float(getattr(part, name)), kind) if hole is None else hole
+        return f"return {self.pace(part, path)}"
 
 
 def icon_text(icon: "Icon | Family") -> str:
