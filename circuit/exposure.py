@@ -66,11 +66,12 @@ def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
     rise, steps = np.diff(warm, axis=-1), np.diff(time)
     middle = warm[..., :-1] + 0.5 * rise
     per_s = _expanded(middle, rise)
-    for place in np.argwhere(np.abs(rise) > SMALL_K):
-        at = tuple(place)
-        pieces = int(np.ceil(abs(rise[at]) / SMALL_K))
-        inside = middle[at] + rise[at] * ((np.arange(pieces) + 0.5) / pieces - 0.5)
-        per_s[at] = _expanded(inside, np.full(pieces, rise[at] / pieces)).mean()
+    pieces = np.ceil(np.abs(rise) / SMALL_K).astype(np.int64)
+    for count in np.unique(pieces[pieces > 1]).tolist():
+        at = pieces == count
+        whole = rise[at][:, np.newaxis]
+        inside = middle[at][:, np.newaxis] + whole * ((np.arange(count) + 0.5) / count - 0.5)
+        per_s[at] = _expanded(inside, np.broadcast_to(whole / count, inside.shape)).mean(axis=1)
     return _summed(per_s * steps)
 
 

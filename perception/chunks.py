@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 RATE_HZ = 100.0
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a chunk, about 150 bytes each at the peak; one person's always fit."""
-OTHER_SAMPLES = 2048
+OTHER_SAMPLES = 512
 EXPERIMENTS = 20
 PROBES = ("cold_receptor_C", "warm_receptor_C")
 

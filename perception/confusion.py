@@ -179,8 +179,9 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
             noise[0] = strata
             if used > 1:
                 noise[1] = strata[rng.permutation(samples)]
-            along = np.ascontiguousarray(noise.T)
-            kernels.nearest(np.ascontiguousarray(points[person, :, :used]), favour[person], along, counts[person])
+            own = points[person, :, :used]
+            gram = own @ own.T - (0.5 * (own**2).sum(axis=1) - favour[person])[:, None]
+            kernels.nearest(gram, np.ascontiguousarray((own @ noise).T), counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
     return counts / samples

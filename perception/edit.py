@@ -264,14 +264,16 @@ class _Search:
         felt: Sensed = sense([one.icon for one in tried], self.rig, max(self.end_s, end_of([longest])))
         found = dprimes(felt, self.kept, self.norm)
         answers = []
-        for one, row, against in zip(tried, found, felt.against, strict=True):
+        for at, (one, row) in enumerate(zip(tried, found, strict=True)):
             other = self.pair[1] if one.place == self.pair[0] else self.pair[0]
-            if against is None:
-                self.closest = max(self.closest, float(row[other]))
             self.rows[one.place, one.new] = row
             fallen = (row < self.now[one.place] - TOLERANCE) & (row < FAR * self.wanted)
             fallen[[one.place, other]] = False
-            answers.append(against is None and row[other] >= self.target and not fallen.any())
+            parted = bool(row[other] >= self.target and not fallen.any())
+            playable = (parted or row[other] > self.closest) and felt.against(at) is None
+            if playable:
+                self.closest = max(self.closest, float(row[other]))
+            answers.append(parted and playable)
         return answers
 
     def _why_not(self) -> str:

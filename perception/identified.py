@@ -16,7 +16,7 @@ import numpy as np
 
 from thermicon.perception.chunks import EXPERIMENTS, RATE_HZ
 from thermicon.perception.confusion import SAMPLES, normalised
-from thermicon.perception.intervals import EVERY, PEOPLE, first_people
+from thermicon.perception.intervals import EVERY, PEOPLE
 from thermicon.perception.intervals import SAMPLES as FEW_SAMPLES
 from thermicon.perception.judge import Played, feel, judge
 from thermicon.perception.measures import information_bits, percent_correct, plugin_bits
@@ -78,7 +78,7 @@ class Shown:
     def identify(self, variable: Variable, model: Model, draws: int) -> Identified:
         """Confusions of one variant from memory, by the largest difference over time."""
         played = self.played[VARIABLES.index(variable)]
-        few = first_people(self.crowd, PEOPLE)
+        few = self.crowd.part(0, PEOPLE)
         thin = played.thinned(len(few), EVERY)
         nominal = Observer.load(variable=variable, model=model)
 

@@ -20,10 +20,12 @@ from thermicon.perception.parameters import latin, observer_at, observer_paramet
 from thermicon.perception.people import People
 from thermicon.perception.receptors import Array
 
-PEOPLE = 24
+PEOPLE, FEWEST, PRESENTED = 24, 12, 768
+"""Asked again are the first 24 people; of larger sets fewer, but at least 12, so that about 768 icons are felt."""
 EVERY = 8
 """Draws are judged at 12.5 Hz: it moves the scores of shipped icons by less than 0.001, and what it does cancels."""
-SAMPLES = 512
+SAMPLES, LEAST, NAMED = 512, 128, 8192
+"""Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 DRAWS = 128
 """The ends of the interval scatter by one to two points of per cent correct from seed to seed."""
 COVER = (2.5, 97.5)
@@ -70,19 +72,21 @@ def parameter_intervals(
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the parameters, not {draws}")
     free = observer_parameters(norm, thin.site)
-    few = first_people(crowd, PEOPLE)
-    centre = score(thin, few, observer_at({}), norm, seed, SAMPLES)
+    icons = predicted.detected.size
+    thin = thin.thinned(asked_again(icons), 1)
+    few = crowd.part(0, len(thin.cold_C))
+    samples = min(SAMPLES, max(LEAST, NAMED // icons))
+    centre = score(thin, few, observer_at({}), norm, seed, samples)
 
     def drawn(shares: Array) -> Scores:
         person = observer_at({p.name: p.at(float(share)) for p, share in zip(free, shares, strict=True)})
-        return score(thin, few, person, norm, seed, SAMPLES)
+        return score(thin, few, person, norm, seed, samples)
 
     moved = []
     for found in in_order(drawn, list(latin(len(free), draws, seed))):
         moved.append(found)
         if step is not None:
             step()
-    icons = predicted.detected.size
 
     def about(value: float, each: Array, middle: float, most: float) -> Interval:
         low, high = np.percentile(value + each - middle, COVER)
@@ -115,6 +119,10 @@ def parameter_intervals(
     )
 
 
-def first_people(crowd: People, most: int) -> People:
-    """The first `most` persons of a crowd, or all of them where there are fewer."""
-    return crowd.part(0, most)
+def asked_again(icons: int) -> int:
+    """How many people, at most, judge a set of so many icons with every observer.
+
+    >>> asked_again(6), asked_again(64)
+    (24, 12)
+    """
+    return min(PEOPLE, max(FEWEST, PRESENTED // icons))

@@ -132,39 +132,26 @@ def _detect(cold: Any, warm: Any, dt: float, criterion: float, tau: float, cross
         missed[row] = log_missed
 
 
-def _nearest(points: Any, favour: Any, noise: Any, counts: Any) -> None:
-    """Counts of the nearest point (presented, answer) for one person; the innermost loops run over presented points."""
-    icons, axes = points.shape
-    gram = np.empty((icons, icons))
-    along = np.empty((axes, icons))
-    projected, score, best = np.empty(icons), np.empty(icons), np.empty(icons, np.int64)
-    for j in range(icons):
-        own = 0.0
-        for k in range(axes):
-            along[k, j] = points[j, k]
-            own += points[j, k] * points[j, k]
+def _nearest(gram: Any, projected: Any, counts: Any) -> None:
+    """Counts of the nearest point (presented, answer) for one person; the innermost loops run over presented points.
+
+    `gram` (answer, presented) speaks for an answer without noise; `projected` (draw, answer) is what the noise adds.
+    """
+    icons = gram.shape[0]
+    score, best = np.empty(icons), np.empty(icons)
+    for s in range(projected.shape[0]):
         for i in range(icons):
-            dot = 0.0
-            for k in range(axes):
-                dot += points[i, k] * points[j, k]
-            gram[j, i] = dot - 0.5 * own + favour[j]
-    for s in range(noise.shape[0]):
-        for j in range(icons):
-            projected[j] = 0.0
-        for k in range(axes):
-            for j in range(icons):
-                projected[j] += along[k, j] * noise[s, k]
-        for i in range(icons):
-            score[i] = gram[0, i] + projected[0]
-            best[i] = 0
+            score[i] = gram[0, i] + projected[s, 0]
+            best[i] = 0.0
         for j in range(1, icons):
+            push, name = projected[s, j], float(j)
             for i in range(icons):
-                value = gram[j, i] + projected[j]
+                value = gram[j, i] + push
                 better = value > score[i]
                 score[i] = value if better else score[i]
-                best[i] = j if better else best[i]
+                best[i] = name if better else best[i]
         for i in range(icons):
-            counts[i, best[i]] += 1.0
+            counts[i, int(best[i])] += 1.0
 
 
 def _bend(points: Any, distances: Any, bent: Any) -> None:

@@ -16,7 +16,7 @@ from thermicon.perception.receptors import Array
 from thermicon.perception.request import against
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
 
 RATE_HZ = 25.0
@@ -25,16 +25,24 @@ TAIL_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Sensed:
-    """Sensations (icons, n_time) of the nominal person on one clock, and what speaks against each icon, or None."""
+    """Sensations (icons, n_time) of the nominal person on one clock, and the traces that they come from."""
 
     cold: Array
     warm: Array
     dt_s: float
-    against: tuple[str | None, ...]
+    traces: tuple[Trace, ...]
+
+    def against(self, place: int) -> str | None:
+        """What speaks against playing an icon, None where nothing does; judged only when asked, since it takes long."""
+        return against(self.traces[place])
+
+    def all_against(self) -> tuple[str | None, ...]:
+        """What speaks against each icon."""
+        return tuple(map(against, self.traces))
 
 
 def sense(icons: Sequence[Icon], rig: Rig, end_s: float, observer: Observer | None = None) -> Sensed:
-    """Play icons on the rig until `end_s` and feel them; the traces also tell what is unsafe or not reached."""
+    """Play icons on the rig until `end_s` and feel them."""
     from thermicon.circuit import simulate_all
 
     person = Observer.load() if observer is None else observer
@@ -48,7 +56,7 @@ def sense(icons: Sequence[Icon], rig: Rig, end_s: float, observer: Observer | No
         area_m2=rig.contact.area_m2,
         site=rig.site,
     )
-    return Sensed(cold, warm, dt, tuple(against(trace) for trace in traces))
+    return Sensed(cold, warm, dt, tuple(traces))
 
 
 def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None = None) -> Array:

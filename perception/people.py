@@ -61,17 +61,8 @@ class People:
 
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
-        contact = rig.contact.resistance_m2K_per_W
-        outer_mm = rig.skin.layers[0].thickness_m * 1e3
-        return [
-            rig.with_(
-                **{
-                    "contact.resistance_m2K_per_W": contact * float(own_contact),
-                    "skin.layer.0.thickness_mm": outer_mm * float(own_layer),
-                }
-            )
-            for own_contact, own_layer in zip(self.contact_resistance, self.outer_layer, strict=True)
-        ]
+        columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
+        return [_as_met(rig, contact, layer) for contact, layer in zip(*columns, strict=True)]
 
     def __repr__(self) -> str:
         return (
@@ -79,6 +70,17 @@ class People:
             f"warm {_span(self.threshold_warm)}, memory noise {_span(self.memory)} of nominal, "
             f"velocity warm {_span(self.velocity_warm_m_per_s)} m/s)"
         )
+
+
+@lru_cache(maxsize=1024)
+def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
+    """The rig with contact resistance and outermost layer multiplied; kept, since a ranking asks for it twice."""
+    return rig.with_(
+        **{
+            "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
+            "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
+        }
+    )
 
 
 def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> People:

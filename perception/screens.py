@@ -33,7 +33,7 @@ class Nominal:
     def distances(self, icons: Sequence[Icon]) -> Array:
         """d′ (1, icons, icons) from memory."""
         felt = sense(icons, self.rig, end_of(self._durations(icons).tolist()))
-        self.against = felt.against
+        self.against = felt.all_against()
         return dprimes(felt, felt, self.norm)[None]
 
     def namings(self, d_prime: Array, icons: Sequence[Icon]) -> Namings:
@@ -56,7 +56,7 @@ class Few(Nominal):
 
     def distances(self, icons: Sequence[Icon]) -> Array:
         """d′ (24, icons, icons) from memory; safety and reach are those of the rig."""
-        self.against = sense(icons, self.rig, end_of(self._durations(icons).tolist())).against
+        self.against = sense(icons, self.rig, end_of(self._durations(icons).tolist())).all_against()
         return distances(icons, self.rig, self.crowd, self.tracking, self.norm, rigs=self.rigs, rate_Hz=25.0)[0]
 
     def better(self, one: list[Gene], other: list[Gene]) -> list[Gene]:
