@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.notebooks.ranking import Request
 
-PLAIN_OPTIONS = ("people", "seed", "tracking", "norm", "trials", "by", "parameters")
+PLAIN_OPTIONS = ("people", "seed", "tracking", "norm", "trials", "by", "parameters", "context", "gap", "bias")
 
 
 def command_text(files: Sequence[str], rig: Rig, request: Request) -> str:

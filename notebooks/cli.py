@@ -18,16 +18,20 @@ from thermicon.notebooks import handing, hardware, searching, validation, whatif
 from thermicon.notebooks.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import (
+    Bias,
     Changes,
     Cluster,
+    Context,
     CueFiles,
     Files,
+    Gap,
     IconName,
     Keep,
     ReportPage,
     RigName,
     Workers,
     check_tail,
+    check_task,
 )
 
 TRACKING = ("replay", "display", "ideal")
@@ -186,6 +190,9 @@ def rank_command(
         bool,
         typer.Option("--edits", help="Find the cheapest edit for every pair that is not apart, not only the worst."),
     ] = False,
+    context: Context = 0.0,
+    gap: Gap = None,
+    bias: Bias = 0.0,
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
@@ -224,6 +231,7 @@ def rank_command(
         raise usage("is for this machine; a cluster has the workers that it has", "--workers")
     if workers is not None and not 1 <= workers <= 1024:
         raise usage(f"{workers} is outside 1 to 1024", "--workers")
+    check_task(context, gap, bias)
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":
         raise usage("icons are chosen by the model; leave out --by rules", "--choose")
@@ -239,6 +247,9 @@ def rank_command(
         parameters=parameters,
         choosing=picked,
         edits="all" if edits else "worst",
+        context=context,
+        gap=gap,
+        bias=bias,
         workers=workers,
         cluster=cluster,
         keep=keep,

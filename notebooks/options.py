@@ -10,6 +10,9 @@ import typer
 
 from thermicon.notebooks.door import usage
 
+LONGEST_GAP_S, MOST_BIAS = 600.0, 5.0
+"""The ends of `thermicon.perception.Task`, here without its imports."""
+
 Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
 CueFiles = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files of your own.")]
 OneFile = Annotated[str, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")]
@@ -40,7 +43,29 @@ Keep = Annotated[
         help="Keep finished parts in DIR.  [default: in the user's cache, until a long run is done]",
     ),
 ]
+Context = Annotated[
+    float,
+    typer.Option("--context", metavar="SHARE", help="Share of memory noise that follows the range of the set, 0 to 1."),
+]
+Gap = Annotated[
+    float | None,
+    typer.Option("--gap", metavar="S", help="Time from one icon to the next.  [default: long, all has faded]"),
+]
+Bias = Annotated[
+    float, typer.Option("--bias", metavar="SD", help="Spread of how much people favour names (log likelihood).")
+]
 Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Time after the last corner.")]
+
+
+def check_task(context: float, gap_s: float | None, bias: float) -> None:
+    """Fail with a usage error where icons cannot be asked for so."""
+    for option, value, most, unit in (
+        ("--context", context, 1.0, ""),
+        ("--gap", gap_s, LONGEST_GAP_S, " s"),
+        ("--bias", bias, MOST_BIAS, ""),
+    ):
+        if value is not None and not 0.0 <= value <= most:
+            raise usage(f"{value:g}{unit} is outside 0 to {most:g}{unit}", option)
 
 
 def check_tail(tail_s: float | None) -> None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from thermicon.notebooks.beside import asked_so, carried_lines, outside_lines, playable, trouble_lines
 from thermicon.notebooks.byrules import rules_caveat, rules_lines, rules_table
 from thermicon.notebooks.cache import kept
 from thermicon.notebooks.choices import choice_lines
@@ -36,6 +37,7 @@ class Request:
 
     ``parameters`` observers are drawn for the intervals that the observer's parameters leave open; 0 draws none.
     ``choosing`` asks for the best few, ``edits`` for the cheapest edit of the ``worst`` pair or of ``all`` not apart.
+    ``context``, ``gap`` (s) and ``bias`` say how icons are asked for, as in ``thermicon.perception.Task``.
     ``workers`` are cores, ``cluster`` is the address of a scheduler to use instead, ``keep`` a folder of done parts.
     """
 
@@ -48,6 +50,9 @@ class Request:
     parameters: int = 128
     choosing: Choosing | None = None
     edits: str = "worst"
+    context: float = 0.0
+    gap: float | None = None
+    bias: float = 0.0
     workers: int | None = None
     cluster: str | None = None
     keep: Path | None = None
@@ -62,7 +67,7 @@ def rank_files(
     report_out: Path | None = None,
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, the rest where it was asked for."""
-    from thermicon.perception import NORMS, rank
+    from thermicon.perception import NORMS, Task, rank
 
     if request.norm not in NORMS:
         raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
@@ -96,6 +101,7 @@ def rank_files(
             parameters=request.parameters,
             choosing=request.choosing,
             edits=request.edits if request.by == "model" else "none",
+            task=Task(request.context, request.gap, request.bias),
             workers=request.workers,
             cluster=request.cluster,
             keep=keep,
@@ -155,9 +161,12 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
         names=("icon", "detected", "onset", "channel", "correct", "most confused with"),
     )
     labels = result["confusion"]["labels"]
-    for icon in icons:
+    apart = len(playable(icons))
+    for place, icon in enumerate(icons):
+        if place == apart and apart:
+            made.add_section()
         made.add_row(
-            icon["name"],
+            icon["name"] + (" *" if place >= apart else ""),
             percent(icon["detected_probability"]),
             seconds(icon["onset_s"]),
             icon["channel"] or "–",
@@ -182,25 +191,9 @@ def caveat(result: dict[str, Any]) -> str:
     norm = "" if result["norm"] == "max" else f", {result['norm']} norm"
     return (
         f"Predicted for {crowd} on the {result['rig']} rig{what_if} "
-        f"(seed {result['seed']}, {result['tracking']} tracking{norm}). "
+        f"(seed {result['seed']}, {result['tracking']} tracking{norm}{asked_so(result['task'])}). "
         "These are predictions of a model, not measurements."
     )
-
-
-def trouble_lines(icons: Sequence[dict[str, Any]], cures: Mapping[str, str]) -> list[str]:
-    """Return what the rig cannot play or must not, with the cure where there is one, and one line on what is amber."""
-    lines = []
-    for icon in icons:
-        if icon["reason"]:
-            said = ["NOT SAFE"] * (not icon["safe"]) + ["not reached"] * (not icon["reachable"])
-            better = f"; {cures[icon['name']]}" if icon["name"] in cures else ""
-            lines.append(f"{icon['name']} is {' and '.join(said)}: {icon['reason']}{better}")
-    amber = [icon for icon in icons if icon["cautions"]]
-    if amber:
-        names = ", ".join(icon["name"] for icon in amber)
-        first = f"of {amber[0]['name']}, " if len(amber) > 1 else ""
-        lines.append(f"Caution, soft limit of safety passed by {names}: {first}{amber[0]['cautions'][0]}")
-    return lines
 
 
 def rival(confusion: dict[str, Any], place: int) -> str:
@@ -217,7 +210,7 @@ def rival(confusion: dict[str, Any], place: int) -> str:
 
 def set_lines(result: dict[str, Any]) -> list[str]:
     """Return the sentences about the whole set: what it scores, and which pair to mend first and why."""
-    lines = number_lines(result)
+    lines = [*number_lines(result), *carried_lines(result["icons"])]
     return [*lines, "", *worst_lines(result)] if result["set"]["worst_pair"] else lines
 
 
@@ -239,19 +232,6 @@ def number_lines(result: dict[str, Any]) -> list[str]:
             f"     {whole['information_bits_plugin']:.2f} bits is what an experiment of {trials} would report",
         ]
     return lines
-
-
-def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
-    """Return one line for each way in which icons lie outside the data, with the icons that it holds for."""
-    held: dict[str, list[str]] = {}
-    for icon in icons:
-        for said in icon["outside_data"]:
-            held.setdefault(said, []).append(icon["name"])
-    every = len(icons) > 1
-    return [
-        f"Outside the data: {'all icons' if every and len(names) == len(icons) else ', '.join(names)}: {said}"
-        for said, names in held.items()
-    ]
 
 
 def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
+from thermicon.notebooks import beside
 from thermicon.notebooks import ranking as told
 from thermicon.notebooks.byrules import rules_caveat, rules_lines
 from thermicon.notebooks.choices import choice_lines
@@ -109,6 +110,7 @@ def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date:
         ("people", f"{result['people']} virtual, seed {result['seed']}"),
         ("each person gets", f"{result['tracking']} tracking"),
         ("difference over time", f"{result['norm']} norm"),
+        ("icons are asked for", beside.asked_so(result["task"]).removeprefix(", ")),
         ("draws of the parameters", str(draws) if draws else ""),
         ("experiment foretold", f"{result['set']['trials']} trials"),
         ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
@@ -120,8 +122,8 @@ def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date:
 
 
 def _warnings(result: dict[str, Any], cures: Mapping[str, str]) -> Iterator[str]:
-    lines = told.trouble_lines(result["icons"], cures)
-    outside = told.outside_lines(result["icons"])
+    lines = beside.trouble_lines(result["icons"], cures)
+    outside = beside.outside_lines(result["icons"])
     if lines or outside:
         yield element("h2", "Warnings")
         yield from (element("p", line, "warn") for line in lines)
@@ -150,10 +152,11 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
     labels = result["confusion"]["labels"]
     made = []
     for place, row in enumerate(rows, 1):
+        apart = not (row["safe"] and row["reachable"])
         trouble = ["not safe"] * (not row["safe"]) + ["not reached"] * (not row["reachable"])
         made.append(
             [
-                *(str(place), row["icon"], Cell(percent(row["percent_correct"]), strong=True)),
+                *("*" if apart else str(place), row["icon"], Cell(percent(row["percent_correct"]), strong=True)),
                 *(percent(row["detected_probability"]), seconds(row["onset_s"]), row["channel"] or "–"),
                 *(told.rival(result["confusion"], labels.index(row["icon"])), ", ".join(trouble) or "yes"),
             ]
@@ -165,7 +168,8 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
         yield element("h3", best)
         yield bullets([line.strip().removeprefix("- ") for line in more])
     yield element("h2", "The set")
-    yield bullets([line.removeprefix("Set: ").strip() for line in told.number_lines(result)])
+    lines = [*told.number_lines(result), *beside.carried_lines(result["icons"])]
+    yield bullets([line.removeprefix("Set: ").strip() for line in lines])
     if other := result["set"]["norm_sensitivity"]:
         shares = ", ".join(f"{percent(share)} by {norm}" for norm, share in other.items())
         yield element("p", f"Correct if a difference over time counted by another norm: {shares}.")

@@ -51,6 +51,8 @@ from thermicon.perception.edit import Edit, NoEdit, cheapest_edit
 from thermicon.perception.search import Searched, search
 from thermicon.perception.robust import Duel, Survival, beats, survives
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
+from thermicon.perception.task import Task
+from thermicon.perception.carryover import CarryOver, carry_over
 from thermicon.perception.rank import rank
 from thermicon.perception.map import PerceptualMap, map_of, perceptual_map
 from thermicon.perception.designs import MissingError
@@ -148,6 +150,9 @@ __all__ = [
     "Duel",
     "survives",
     "Survival",
+    "Task",
+    "carry_over",
+    "CarryOver",
     "rank",
     "Ranking",
     "IconScore",

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.perception.confusion import SAMPLES, confuse
-from thermicon.perception.distance import identification_dprime
-from thermicon.perception.judge import Played, feel
+from thermicon.perception.judge import Played, between, feel
 from thermicon.perception.measures import information_bits, percent_correct
 from thermicon.perception.namings import Objective
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import People, draw_people
 from thermicon.perception.receptors import Array
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -65,6 +65,7 @@ def appraise(
     tracking: str | None = None,
     norm: Norm = "max",
     samples: int = SAMPLES,
+    task: Task = USUAL,
 ) -> Appraisal:
     """Predict how well people tell these icons apart, with the same people and noise as `rank`.
 
@@ -79,15 +80,22 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("two icons at least are needed to be told apart")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, durations = distances(icons, rig, crowd, tracking, norm)
-    return appraised([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples)
+    d_prime, durations = distances(icons, rig, crowd, tracking, norm, task=task)
+    return appraised([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
 
 
 def appraised(
-    names: Sequence[str], d_prime: Array, lapse: Array, durations_s: Array, seed: int, samples: int = SAMPLES
+    names: Sequence[str],
+    d_prime: Array,
+    lapse: Array,
+    durations_s: Array,
+    seed: int,
+    samples: int = SAMPLES,
+    task: Task = USUAL,
 ) -> Appraisal:
     """An appraisal from d′ (people, icons, icons) and durations (s)."""
-    probability = confuse(d_prime, lapse=lapse, seed=seed, samples=samples).probability
+    bias = task.favour(0, len(d_prime), len(names), seed)
+    probability = confuse(d_prime, lapse=lapse, bias=bias, seed=seed, samples=samples).probability
     bits = float(information_bits(probability).mean())
     middle = np.median(d_prime, axis=0)
     first, second = np.triu_indices(len(names), 1)
@@ -112,6 +120,7 @@ def distances(
     rigs: Sequence[Rig] | None = None,
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
+    task: Task = USUAL,
 ) -> tuple[Array, Array]:
     """Pairwise d′ (people, icons, icons) from memory and durations (s) of the icons.
 
@@ -125,5 +134,4 @@ def distances(
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
     felt = feel(Played(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer)
-    memory = crowd.memory[:, None, None]
-    return identification_dprime(felt.apart[norm], observer, norm, felt.duration_s, memory), durations
+    return between(felt, norm, crowd.memory, observer, task), durations

@@ -20,6 +20,7 @@ from thermicon.perception.observer import Norm
 from thermicon.perception.people import People
 from thermicon.perception.receptors import Array
 from thermicon.perception.request import ChoiceError, Choosing, Usable, usable
+from thermicon.perception.task import USUAL, Task
 from thermicon.perception.widest import Limits, OutOfBudget, widest
 
 if TYPE_CHECKING:
@@ -107,6 +108,7 @@ def choose(
     seed: int = 0,
     tracking: str | None = None,
     norm: Norm = "max",
+    task: Task = USUAL,
 ) -> Choice:
     """Choose among icons of which `d_prime` (people, icons, icons) and the nominal traces are known.
 
@@ -139,7 +141,15 @@ def choose(
         excluded=pool.excluded,
         best_share=share,
         loss=loss,
-        at_own_range=appraise([icons[k] for k in chosen], rig, people=crowd, seed=seed, tracking=tracking, norm=norm),
+        at_own_range=appraise(
+            [icons[k] for k in chosen],
+            rig,
+            people=crowd,
+            seed=seed,
+            tracking=tracking,
+            norm=norm,
+            task=task.among(chosen),
+        ),
     )
 
 

@@ -24,6 +24,7 @@ from thermicon.perception.observer import NORMS, Norm, Observer
 from thermicon.perception.parallel import in_order
 from thermicon.perception.people import People, draw_people
 from thermicon.perception.receptors import Array
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -76,6 +77,7 @@ class Work:
     trials: int
     tracking: str | None
     norm: Norm
+    task: Task = USUAL
 
     @property
     def at_once(self) -> int:
@@ -101,7 +103,7 @@ class Work:
     def key(self) -> str:
         """Hash of all that a chunk's numbers hang on, this version's code and data included."""
         told = [code_digest(), self.rig.document, *self.rig.changes, repr(self.end_s), str(self.people), str(self.seed)]
-        told += [str(self.trials), str(self.tracking), self.norm, str(self.at_once)]
+        told += [str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
         for icon in self.icons:
             corners = icon.lower(None if icon.frame.control != "current" else 0.0)
             told += [icon.name, repr(icon.frame), repr(corners.time_s), repr(corners.value), str(icon)]
@@ -126,9 +128,9 @@ def run(work: Work, number: int) -> Found:
     played = Played(batch.cold_C, batch.warm_C, batch.time_s, work.rig.site, work.rig.contact.area_m2)
     observer = Observer.load()
     felt = feel(played, crowd, observer)
-    d_prime, confusion = judge(felt, work.norm, crowd, observer, work.seed, SAMPLES, start)
+    d_prime, confusion = judge(felt, work.norm, crowd, observer, work.seed, SAMPLES, start, work.task)
     others = [
-        percent_correct(judge(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start)[1].probability)
+        percent_correct(judge(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start, work.task)[1].probability)
         for n in work.other_norms
     ]
     named = confusion.probability

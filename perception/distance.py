@@ -89,10 +89,16 @@ def identification_dprime(
 
     `memory` multiplies the memory noise of this person and broadcasts against `difference`.
     """
-    log_noise = observer.memory_noise(norm) * np.asarray(memory, dtype=np.float64)
-    noise = np.hypot(sensory_noise(norm, observer, duration_s), 2.0 * observer.a * log_noise)
+    noise = identification_noise(observer, norm, duration_s, memory)
     found: Array = np.asarray(difference, dtype=np.float64) / noise
     return found
+
+
+def identification_noise(observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0) -> Array:
+    """Noise in the units of a norm when one of two comes from memory, shaped as `memory`."""
+    log_noise = observer.memory_noise(norm) * np.asarray(memory, dtype=np.float64)
+    noise: Array = np.hypot(sensory_noise(norm, observer, duration_s), 2.0 * observer.a * log_noise)
+    return noise
 
 
 def back_to_back_dprime(difference: ArrayLike, observer: Observer, norm: Norm, duration_s: float) -> Array:

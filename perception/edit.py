@@ -21,6 +21,7 @@ from thermicon.perception.observer import Norm
 from thermicon.perception.people import People, draw_people
 from thermicon.perception.receptors import Array
 from thermicon.perception.rulescore import APART_DPRIME
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -108,11 +109,13 @@ def cheapest_edit(
     tracking: str | None = None,
     norm: Norm = "max",
     before: Array | None = None,
+    task: Task = USUAL,
 ) -> Edit | NoEdit:
     """The cheapest edit of `a` or `b` that parts them by a median d′ of `wanted` (by default: apart).
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known.
+    by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known. What `task` has of
+    the icons before stays as it is for the set unedited.
     Raises `KeyError` for a name that is not there, `ValueError` for a `wanted` that is not above 0.
     """
     if not wanted > 0 or a == b:
@@ -123,7 +126,7 @@ def cheapest_edit(
             raise KeyError(name)
     search = _Search(list(icons), rig, (names.index(a), names.index(b)), wanted, norm)
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    return search.run(crowd, tracking, before)
+    return search.run(crowd, tracking, before, task)
 
 
 class _Search:
@@ -140,13 +143,22 @@ class _Search:
         self.refused: set[tuple[int, str]] = set()
         self.rows: dict[tuple[int, str], Array] = {}
 
-    def run(self, crowd: People, tracking: str | None, known: Array | None) -> Edit | NoEdit:
+    def run(self, crowd: People, tracking: str | None, known: Array | None, task: Task = USUAL) -> Edit | NoEdit:
         i, j = self.pair
         rigs = crowd.rigs(self.rig)
 
         def medians(some: Sequence[Icon]) -> Array:
-            middle: Array = np.median(distances(some, self.rig, crowd, tracking, self.norm, rigs=rigs)[0], axis=0)
+            found = distances(some, self.rig, crowd, tracking, self.norm, rigs=rigs, task=task)[0]
+            middle: Array = np.median(found, axis=0)
             return middle
+
+        def beside(one: _Tried, others: Sequence[int]) -> Array:
+            """Median d′ of an edited icon to some others; a task that looks at the whole set gets the whole set."""
+            if task.plain:
+                return medians([one.icon, *(self.icons[k] for k in others)])[0, 1:]
+            whole = [one.icon if k == one.place else icon for k, icon in enumerate(self.icons)]
+            found: Array = medians(whole)[one.place, list(others)]
+            return found
 
         before = medians(self.icons) if known is None else known
         if before[i, j] >= self.wanted:
@@ -160,7 +172,7 @@ class _Search:
                 break
             one = offered[0]
             others = [j if one.place == i else i, *self._near(one)]
-            after = medians([one.icon, *(self.icons[k] for k in others)])[0, 1:]
+            after = beside(one, others)
             parted, worse = float(after[0]), self._worse(before[one.place, others[1:]], after[1:])
             if parted >= self.wanted and not worse and _reads_back(one.icon):
                 return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon)

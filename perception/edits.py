@@ -11,6 +11,7 @@ from thermicon.perception.observer import Norm
 from thermicon.perception.people import People
 from thermicon.perception.receptors import Array
 from thermicon.perception.rulescore import APART_DPRIME
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -28,6 +29,7 @@ def with_edits(
     tracking: str | None,
     norm: Norm,
     middle: Array,
+    task: Task = USUAL,
 ) -> tuple[PairScore, ...]:
     """The pairs, with an edit for the `worst`, for `all` that are not told apart, or for `none`.
 
@@ -42,7 +44,9 @@ def with_edits(
     return tuple(
         replace(
             pair,
-            edit=cheapest_edit(icons, rig, pair.a, pair.b, people=crowd, tracking=tracking, norm=norm, before=middle),
+            edit=cheapest_edit(
+                icons, rig, pair.a, pair.b, people=crowd, tracking=tracking, norm=norm, before=middle, task=task
+            ),
         )
         if asked(pair)
         else pair

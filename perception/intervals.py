@@ -19,6 +19,7 @@ from thermicon.perception.parallel import in_order
 from thermicon.perception.parameters import latin, observer_at, observer_parameters
 from thermicon.perception.people import People
 from thermicon.perception.receptors import Array
+from thermicon.perception.task import USUAL, Task
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768
 """Asked again are the first 24 people; of larger sets fewer, but at least 12, so that about 768 icons are felt."""
@@ -62,6 +63,7 @@ def parameter_intervals(
     *,
     draws: int = DRAWS,
     seed: int = 0,
+    task: Task = USUAL,
     step: Callable[[], None] | None = None,
 ) -> ParameterIntervals:
     """Intervals about `predicted`, from `draws` observers; `step` is called after each.
@@ -76,11 +78,11 @@ def parameter_intervals(
     thin = thin.thinned(asked_again(icons), 1)
     few = crowd.part(0, len(thin.cold_C))
     samples = min(SAMPLES, max(LEAST, NAMED // icons))
-    centre = score(thin, few, observer_at({}), norm, seed, samples)
+    centre = score(thin, few, observer_at({}), norm, seed, samples, task)
 
     def drawn(shares: Array) -> Scores:
         person = observer_at({p.name: p.at(float(share)) for p, share in zip(free, shares, strict=True)})
-        return score(thin, few, person, norm, seed, samples)
+        return score(thin, few, person, norm, seed, samples, task)
 
     moved = []
     for found in in_order(drawn, list(latin(len(free), draws, seed))):

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 from thermicon.perception.confusion import SAMPLES, Confusion, confuse
 from thermicon.perception.detection import detect
-from thermicon.perception.distance import differences, identification_dprime
+from thermicon.perception.distance import differences, identification_noise
 from thermicon.perception.measures import information_bits, percent_correct
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import People
 from thermicon.perception.percept import perceive_many, uniform_clock
 from thermicon.perception.receptors import Array
+from thermicon.perception.task import USUAL, Task, range_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +33,15 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Felt:
-    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s."""
+    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s.
+
+    `range_log` (people,) is the range of the set for every person, in log units.
+    """
 
     apart: dict[Norm, Array]
     probability: Array
     duration_s: float
+    range_log: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,23 +76,39 @@ def feel(played: Played, crowd: People, observer: Observer) -> Felt:
         velocity_warm_m_per_s=crowd.velocity_warm_m_per_s[:, None],
         decision_s=crowd.decision_s[:, None],
     )
-    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1))
+    reach = range_of(cold.max(axis=-1), warm.max(axis=-1), observer)
+    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1), reach)
+
+
+def between(felt: Felt, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
+    """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) is each person's own noise."""
+    own = task.memory(memory, felt.range_log)[:, None, None]
+    return felt.apart[norm] / task.between(identification_noise(observer, norm, felt.duration_s, own), norm)
 
 
 def judge(
-    felt: Felt, norm: Norm, crowd: People, observer: Observer, seed: int, samples: int = SAMPLES, first: int = 0
+    felt: Felt,
+    norm: Norm,
+    crowd: People,
+    observer: Observer,
+    seed: int,
+    samples: int = SAMPLES,
+    first: int = 0,
+    task: Task = USUAL,
 ) -> tuple[Array, Confusion]:
     """Pairwise d′ from memory (people, icons, icons) by one norm, and the confusions that follow.
 
-    `first` is the number of the first person, on which the noise hangs.
+    `first` is the number of the first person, on which the noise and the bias hang.
     """
-    memory = crowd.memory[:, None, None]
-    d_prime = identification_dprime(felt.apart[norm], observer, norm, felt.duration_s, memory)
-    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)
+    d_prime = between(felt, norm, crowd.memory, observer, task)
+    bias = task.favour(first, len(crowd), d_prime.shape[-1], seed)
+    return d_prime, confuse(d_prime, lapse=crowd.lapse, bias=bias, seed=seed, samples=samples, first=first)
 
 
-def score(played: Played, crowd: People, observer: Observer, norm: Norm, seed: int, samples: int) -> Scores:
+def score(
+    played: Played, crowd: People, observer: Observer, norm: Norm, seed: int, samples: int, task: Task = USUAL
+) -> Scores:
     """The whole chain for one observer, without what only a report needs."""
     felt = feel(played, crowd, observer)
-    confusion = judge(felt, norm, crowd, observer, seed, samples)[1].probability
+    confusion = judge(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
     return Scores(percent_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.perception.carryover import carry_over
 from thermicon.perception.choose import choose
 from thermicon.perception.chunks import RATE_HZ, Work, own_version
 from thermicon.perception.coverage import outside_data
@@ -31,6 +32,7 @@ from thermicon.perception.request import Choosing, check_asked
 from thermicon.perception.rules import icon_rules, pair_rules, rig_rules
 from thermicon.perception.rulescore import disagreements, icon_score, pair_margin, worst_by_rules
 from thermicon.perception.spread import spread_over_people
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -56,6 +58,7 @@ def rank(
     parameters: int = DRAWS,
     choosing: Choosing | None = None,
     edits: str = "none",
+    task: Task = USUAL,
     workers: int | None = None,
     cluster: str | None = None,
     keep: Path | None = None,
@@ -68,8 +71,10 @@ def rank(
     icon's control); `norm` is `max`, `rms` or `integral`. `by` is `model`, or `rules`: then icons
     are ranked by rules alone, and the model only says where it disagrees. `parameters` observers are drawn
     for the intervals that the observer's parameters leave open (0: none). `choosing` asks for the best few of the
-    icons, `edits` for the cheapest edit of the `worst` pair, of `all` that are not apart, or of `none`. `progress`
-    is called with (steps done, steps in all). A pair's d′ is the median over people.
+    icons, `edits` for the cheapest edit of the `worst` pair, of `all` that are not apart, or of `none`. `task` says
+    how icons are asked for: memory noise that follows the range of the set, a gap so short that the icon before is
+    still felt, favoured names. `progress` is called with (steps done, steps in all). A pair's d′ is the median over
+    people. Icons that are not safe or not reached are ranked apart, after all others.
 
     The work goes in chunks of people, to `workers` threads (None: one a core) or to the dask cluster whose scheduler
     has the address `cluster`; with a folder `keep`, finished chunks stay there and a run that was ended goes on from
@@ -97,7 +102,9 @@ def rank(
     crowd = draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
-    work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen)
+    left = None if task.gap_s is None else carry_over(members, rig, end, task.gap_s, observer)
+    task = task if left is None else task.after(left.carried)
+    work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
     report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     percepts = [perceive(trace, observer) for trace in traces]
@@ -105,15 +112,20 @@ def rank(
 
     all_ = gather(work, where, report)
     made = _assemble(members, traces, percepts, all_, chosen, observer)
-    worst = _worst(made.pairs) if by == "model" else worst_by_rules(made.pairs)
-    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle)
+    counted = _playable(made)
+    worst = _worst(counted) if by == "model" else worst_by_rules(counted)
+    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task)
     picked = None
     if choosing is not None:
-        picked = choose(choosing, members, rig, traces, all_.d_prime, crowd, seed=seed, tracking=tracking, norm=chosen)
+        picked = choose(
+            choosing, members, rig, traces, all_.d_prime, crowd, seed=seed, tracking=tracking, norm=chosen, task=task
+        )
         report()
     predicted = Scores(all_.correct, all_.bits, all_.detected)
     intervals = (
-        parameter_intervals(all_.thin, crowd, predicted, chosen, draws=draws, seed=seed, step=report) if draws else None
+        parameter_intervals(all_.thin, crowd, predicted, chosen, draws=draws, seed=seed, task=task, step=report)
+        if draws
+        else None
     )
     ranking = Ranking(
         version=own_version(),
@@ -145,6 +157,8 @@ def rank(
         parameter_intervals=intervals,
         chosen=picked,
         spread=spread_over_people(all_.d_prime, all_.each_correct),
+        task=task.without_others(),
+        carry_over=left,
     )
     report()
     return ranking
@@ -225,6 +239,12 @@ def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
     from thermicon.circuit import usual_tracking
 
     return asked or ", ".join(sorted({usual_tracking(icon) for icon in icons}))
+
+
+def _playable(made: _Made) -> tuple[PairScore, ...]:
+    """The pairs of icons that can be played; all pairs where there is none of them."""
+    fine = {icon.name for icon in made.icons if icon.playable}
+    return tuple(pair for pair in made.pairs if pair.a in fine and pair.b in fine) or made.pairs
 
 
 def _worst(pairs: Sequence[PairScore]) -> tuple[str, str] | None:

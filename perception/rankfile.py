@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.perception.edit import Edit, NoEdit
+from thermicon.perception.observer import check_norm
 
 if TYPE_CHECKING:
     from thermicon.perception.intervals import Interval, ParameterIntervals
@@ -34,7 +35,11 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             "by": ranking.by,
             "norm": ranking.norm,
             "content_hash": ranking.content_hash,
-            "icons": [_icon(icon, model, d) for icon, d in zip(ranking.icons, detected, strict=True)],
+            "task": ranking.task.to_dict(),
+            "icons": [
+                {**_icon(icon, model, d), "carry_over": _carried(ranking, place)}
+                for place, (icon, d) in enumerate(zip(ranking.icons, detected, strict=True))
+            ],
             "pairs": [_pair(pair, model) for pair in ranking.pairs],
             "confusion": {
                 "labels": list(ranking.labels),
@@ -44,6 +49,7 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             },
             "set": _set(ranking, model, asked),
             "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
+            "map": _map(ranking) if model and len(ranking.icons) > 1 else None,
         }
     )
     return made
@@ -137,6 +143,27 @@ def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, 
         "rules_margin": icon.rules_margin,
         "outside_data": list(icon.outside_data),
         "detected_parameter_interval": detected,
+    }
+
+
+def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
+    """After which icon this one feels least like itself; None where every icon comes after a long pause."""
+    if ranking.carry_over is None or ranking.by == "rules":
+        return None
+    return ranking.carry_over.worst_of(place, check_norm(ranking.norm))
+
+
+def _map(ranking: Ranking) -> dict[str, Any]:
+    """The perceptual map: a point an icon, in d′, and where it lies for single people as a covariance in d′²."""
+    from thermicon.perception.map import map_of
+
+    found = map_of(ranking)
+    spread = [None] * len(found.labels) if found.covariance is None else found.covariance.tolist()
+    points = zip(found.labels, found.points.tolist(), spread, strict=True)
+    return {
+        "stress": found.stress,
+        "people": found.people,
+        "points": [{"icon": name, "x": x, "y": y, "covariance": covariance} for name, (x, y), covariance in points],
     }
 
 

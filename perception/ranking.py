@@ -15,11 +15,13 @@ from thermicon.perception.receptors import Array
 from thermicon.perception.rules import TOLD_APART, RuleResult
 from thermicon.perception.rulescore import counted
 from thermicon.perception.spread import Spread
+from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from thermicon.perception.carryover import CarryOver
     from thermicon.perception.choose import Choice
     from thermicon.perception.edit import Edit, NoEdit
 
@@ -51,6 +53,11 @@ class IconScore:
     rules_margin: float | None
     cautions: tuple[str, ...] = ()
     outside_data: tuple[str, ...] = ()
+
+    @property
+    def playable(self) -> bool:
+        """Whether the icon is safe and the rig reaches it."""
+        return self.safe and self.reachable
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +95,8 @@ class Ranking:
     the accuracy of confusions, not spread over people.
     `parameter_intervals` is what the observer's parameters leave open (None: not asked for). `by` says what
     the icons are ranked by and which worst pair is told; the model's numbers are there in both cases. `chosen` are
-    the best few of them, where asked for; `spread` is what pictures need of single people.
+    the best few of them, where asked for; `spread` is what pictures need of single people. `task` is how icons are
+    asked for; `carry_over`, with a gap between them, what each leaves behind for the next (None: nothing).
     """
 
     version: str
@@ -120,6 +128,8 @@ class Ranking:
     rig_changes: tuple[str, ...] = ()
     chosen: Choice | None = None
     spread: Spread | None = None
+    task: Task = USUAL
+    carry_over: CarryOver | None = None
 
     def __post_init__(self) -> None:
         own = np.array(self.confusion, dtype=np.float64)
@@ -151,7 +161,7 @@ class Ranking:
     def rows(self) -> list[dict[str, Any]]:
         """One plain row for each icon, the best first: by per cent correct, or by its rules when `by` is rules.
 
-        By rules, what only the model gives is None.
+        Icons that are not safe or not reached come after all others. By rules, what only the model gives is None.
         """
         model = self.by == "model"
         return [
@@ -225,11 +235,11 @@ class Ranking:
     def _pairs_apart(self, name: str) -> int:
         return sum(pair.rules_pass for pair in self.pairs if name in (pair.a, pair.b))
 
-    def _order(self, icon: IconScore) -> tuple[float, float, str]:
+    def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
         if self.by == "rules":
             margin = float("inf") if icon.rules_margin is None else icon.rules_margin
-            return (-icon.rules_score, -margin, icon.name)
-        return (-icon.percent_correct, 0.0, icon.name)
+            return (not icon.playable, -icon.rules_score, -margin, icon.name)
+        return (not icon.playable, -icon.percent_correct, 0.0, icon.name)
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:

@@ -24,6 +24,7 @@ from thermicon.perception.distance import differences, memory_from_task
 from thermicon.perception.fits import RIG, with_unit_drives
 from thermicon.perception.observer import Observer
 from thermicon.perception.percept import perceive_many
+from thermicon.perception.rows import Array
 from thermicon.perception.variants import source_of
 
 TAIL_S = 10.0
@@ -123,6 +124,19 @@ def rate_task(known: Table, observer: Observer) -> list[RateCase]:
         duration = played.dt_s * (cold.shape[-1] - 1)
         cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, duration))
     return cases
+
+
+def peaks_of_task(known: Table, observer: Observer) -> Array:
+    """Peak cold sensations of all ramps of the rate task, in d′."""
+    fraction = known.one("rate Weber fraction").central
+    rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
+    peaks = []
+    for rate, span in itertools.product(rates, spans):
+        played = _pair(span, rate, rate * (1.0 + fraction))
+        at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
+        cold, _ = perceive_many(at_cold, at_warm, played.dt_s, observer)
+        peaks.extend(cold.max(axis=-1).ravel().tolist())
+    return np.array(peaks)
 
 
 def with_gain(observer: Observer, strength: float) -> Observer:

@@ -296,7 +296,7 @@ def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_what_is_outside_is_said_once_with_its_icons() -> None:
-    from thermicon.notebooks.ranking import outside_lines
+    from thermicon.notebooks.beside import outside_lines
 
     icons = [{"name": n, "outside_data": ["too fast"] if n != "b" else []} for n in "abc"]
     assert outside_lines(icons) == ["Outside the data: a, c: too fast"]

@@ -165,7 +165,7 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
         "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n"
     )
     made = report(rank(icons, rig, people=2, parameters=0), icons, rig, cures={"jolt": "it would be with less"})
-    assert '<p class="warn">burn is NOT SAFE and not reached: ' in made
+    assert '<p class="warn">* burn is NOT SAFE and not reached: ' in made
     assert "; it would be with less</p>" in made
     assert '<p class="note">Outside the data: burn: ' in made
     assert "<td>not safe, not reached</td>" in made

@@ -1,0 +1,161 @@
+"""How icons are asked for: memory that follows the range, what the icon before leaves behind, favoured names."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, parse, read_cue
+from thermicon.perception import CarryOver, Observer, Ranking, Task, carry_over, rank
+from thermicon.perception.confusion import confuse
+from thermicon.perception.edit import Edit, cheapest_edit
+from thermicon.perception.observer import NORMS
+from thermicon.perception.task import NARROWEST, range_of, reference_range
+
+RIG = Rig.load("thenar")
+SIX = read_cue("six-icons")
+
+
+def ranked(icons: IconSet = SIX, *, task: Task | None = None) -> Ranking:
+    return rank(icons, RIG, people=12, parameters=0, task=task or Task())
+
+
+@pytest.fixture(scope="module")
+def usual() -> Ranking:
+    return ranked()
+
+
+@pytest.fixture(scope="module")
+def left_behind() -> CarryOver:
+    return carry_over(list(SIX), RIG, 18.0, 2.0)
+
+
+def test_the_usual_task_adds_nothing(usual: Ranking) -> None:
+    assert Task().plain
+    assert ranked(task=Task(context=0.0)).to_json() == usual.to_json()
+    assert usual.to_dict()["task"] == {"context": 0.0, "gap_s": None, "bias": 0.0}
+    assert all(icon["carry_over"] is None for icon in usual.to_dict()["icons"])
+
+
+def test_range_is_that_of_the_channel_with_the_larger_one() -> None:
+    observer = Observer.load()
+    cold = np.array([[10.0, 30.0, 0.2], [10.0, 10.0, 10.0]])
+    warm = np.array([[0.0, 5.0, 0.0], [0.0, 0.0, 0.9]])
+    assert range_of(cold, warm, observer) == pytest.approx([20.0 / (2 * observer.a), 0.0])
+
+
+def test_context_multiplies_memory_noise_by_the_range_in_the_calibrating_task() -> None:
+    own, reference = np.array([1.0, 2.0]), reference_range()
+    assert 0.2 < reference < 2.0
+    wide = np.array([2.0 * reference, 2.0 * reference])
+    assert Task(context=1.0).memory(own, wide) == pytest.approx([2.0, 4.0])
+    assert Task(context=0.5).memory(own, wide) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
+    assert Task(context=1.0).memory(own, np.zeros(2)) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
+
+
+def test_a_narrower_set_is_remembered_better_in_context() -> None:
+    text = "cue 1\nset s {{ control display; baseline 32 °C }}\n{}"
+    lines = [f"icon c{k} {{ cool by {size} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}"
+             for k, size in enumerate((1.0, 1.6, 2.5, 4.0, 6.0))]  # fmt: skip
+    narrow, wide = parse(text.format("\n".join(lines[1:3]))), parse(text.format("\n".join(lines)))
+    task = Task(context=1.0)
+
+    def pair(icons: IconSet, asked: Task) -> float:
+        found = ranked(icons, task=asked)
+        return next(p.d_prime for p in found.pairs if {p.a, p.b} == {"c1", "c2"})
+
+    assert pair(narrow, Task()) == pytest.approx(pair(wide, Task()), rel=0.02)
+    assert pair(narrow, task) > 1.3 * pair(wide, task)
+
+
+def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOver) -> None:
+    near, far = ranked(task=Task(gap_s=2.0)), ranked(task=Task(gap_s=600.0))
+    assert near.percent_correct < usual.percent_correct - 0.05
+    assert far.percent_correct == pytest.approx(usual.percent_correct, abs=1e-6)
+    told = near.to_dict()["icons"][0]["carry_over"]
+    assert told["after"] in usual.labels and told["d_prime"] > 0.5
+    noise = float(left_behind.noise[0])
+    worst = max(float(left_behind.apart[0, j, 0]) for j in range(6))
+    assert told["d_prime"] == pytest.approx(worst / noise, rel=1e-9)
+
+
+def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver) -> None:
+    """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
+    from thermicon.circuit import simulate
+    from thermicon.icons import Icon, rest
+    from thermicon.perception import differences
+    from thermicon.perception.percept import perceive
+
+    first, second = SIX["double-dip"], SIX["warming-step"]
+    both = Icon("both", [*first.statements, rest(2.0), *second.statements], frame=second.frame)
+    gap = round((first.lower().duration_s + 2.0) * 25)
+    after = perceive(simulate(both, RIG, rate_Hz=25.0, tail_s=18.0))
+    alone = perceive(simulate(second, RIG, rate_Hz=25.0, tail_s=18.0 - second.lower().duration_s))
+    rows = alone.psi_cold.size
+    stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
+              for psi in ("psi_cold", "psi_warm")]  # fmt: skip
+    found = differences(*stacks, 0.04, Observer.load())
+    place = {name: k for k, name in enumerate(left_behind.names)}
+    for k, norm in enumerate(NORMS):
+        told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
+        assert found[norm][0, 0, 1] == pytest.approx(told, rel=0.02)
+
+
+def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
+    biased = ranked(task=Task(bias=1.0))
+    assert biased.percent_correct < usual.percent_correct
+    assert [p.d_prime for p in biased.pairs] == [p.d_prime for p in usual.pairs]
+    drawn = Task(bias=2.0).favour(0, 500, 6, seed=3)
+    assert isinstance(drawn, np.ndarray)
+    assert drawn.std() == pytest.approx(2.0, rel=0.05) and abs(drawn.mean()) < 0.1
+    again = Task(bias=2.0).favour(100, 5, 6, seed=3)
+    assert np.array_equal(drawn[100:105], again)
+
+
+def test_a_favoured_name_is_given_more_often() -> None:
+    d = 2.0 * (1 - np.eye(3))
+    plain, favoured = confuse(d, lapse=0.0).pooled, confuse(d, lapse=0.0, bias=[1.0, 0.0, 0.0]).pooled
+    assert (favoured[:, 0] > plain[:, 0] + 0.02).all()
+
+
+def test_the_same_whoever_works_on_it() -> None:
+    task = Task(context=0.5, gap_s=5.0, bias=0.5)
+    one, two = (rank(SIX, RIG, people=150, parameters=0, task=task, workers=n) for n in (1, 2))
+    assert one.to_json() == two.to_json()
+
+
+def test_an_edit_parts_a_pair_in_the_task_asked_for() -> None:
+    task = Task(context=0.3)
+    found = cheapest_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task)
+    assert isinstance(found, Edit)
+    edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
+    after = rank(edited, RIG, people=20, parameters=0, task=task)
+    pair = next(p for p in after.pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
+    assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6) and pair.d_prime >= 2.56
+
+
+def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"context = 1.5 must lie in 0 to 1"):
+        Task(context=1.5)
+    with pytest.raises(ValueError, match=r"gap of -1 s between icons must lie in 0 to 600 s"):
+        Task(gap_s=-1.0)
+    with pytest.raises(ValueError, match=r"bias = 9 must lie in 0 to 5"):
+        Task(bias=9.0)
+    with pytest.raises(ValueError, match=r"a gap of -1 s between icons must be 0 or more"):
+        carry_over(list(SIX), RIG, 18.0, -1.0)
+
+
+def test_icons_that_cannot_be_played_are_ranked_apart() -> None:
+    text = (
+        "cue 1\nset s { site thenar; control skin; baseline 32 °C }\n"
+        "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
+        "icon fine { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
+        "icon fast { cool by 6 °C at 15 °C/s; hold for 1 s; return at 2 °C/s }\n"
+        "icon other { warm by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
+    )
+    found = ranked(parse(text))
+    assert {row["icon"] for row in found.rows()[:2]} == {"fine", "other"}
+    assert {row["icon"] for row in found.rows()[2:]} == {"hot", "fast"}
+    assert found.worst_pair == ("fine", "other")
+    assert all(row["reason"] for row in found.rows()[2:])
