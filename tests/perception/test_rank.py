@@ -8,10 +8,10 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, perceive, rank
 
-TOP = "thermicon rig rig_changes seed people tracking by norm content_hash icons pairs confusion set chosen"
+TOP = "thermicon rig rig_changes seed people tracking by norm content_hash task icons pairs confusion set chosen map"
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s percent_correct reachable safe "
-    "reason cautions rules rules_score rules_margin outside_data detected_parameter_interval"
+    "reason cautions rules rules_score rules_margin outside_data detected_parameter_interval carry_over"
 )
 PAIR = "a b d_prime confused_probability why rules edit told_apart_by_rules rules_margin no_edit parts"
 SET = (
