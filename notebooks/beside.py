@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from thermicon.notebooks.wording import number
+from thermicon.notebooks.wording import number, percent
 
 
 def playable(icons: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -52,6 +52,24 @@ def carried_lines(icons: Sequence[dict[str, Any]]) -> Iterator[str]:
         d_prime, name, before = max(carried)
         again = "itself" if before == name else before
         yield f"     Carry-over: {name} feels least like itself after {again}, by d′ {number(d_prime)}"
+
+
+def norm_lines(result: dict[str, Any]) -> Iterator[str]:
+    """Say whether the ranking would change if a difference over time counted by another norm; nothing for one icon.
+
+    >>> whole = {"norm_sensitivity": {"rms": 0.7}, "norm_changes": {"rms": [["a", "b"], ["a", "c"]]}}
+    >>> list(norm_lines({"pairs": [{}], "set": whole}))
+    ['     by the rms norm 70 % correct, and b would come before a (1 more change of order)']
+    """
+    whole = result["set"] if result["pairs"] else {"norm_sensitivity": {}}
+    for norm, share in whole["norm_sensitivity"].items():
+        changes = whole["norm_changes"][norm]
+        if not changes:
+            said = "in the same order"
+        else:
+            more = f" ({len(changes) - 1} more change{'s' * (len(changes) > 2)} of order)" if len(changes) > 1 else ""
+            said = f"and {changes[0][1]} would come before {changes[0][0]}{more}"
+        yield f"     by the {norm} norm {percent(share)} correct, {said}"
 
 
 def asked_so(task: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from thermicon.notebooks.beside import asked_so, carried_lines, outside_lines, playable, trouble_lines
+from thermicon.notebooks.beside import asked_so, carried_lines, norm_lines, outside_lines, playable, trouble_lines
 from thermicon.notebooks.byrules import rules_caveat, rules_lines, rules_table
 from thermicon.notebooks.cache import kept
 from thermicon.notebooks.choices import choice_lines
@@ -210,7 +210,7 @@ def rival(confusion: dict[str, Any], place: int) -> str:
 
 def set_lines(result: dict[str, Any]) -> list[str]:
     """Return the sentences about the whole set: what it scores, and which pair to mend first and why."""
-    lines = [*number_lines(result), *carried_lines(result["icons"])]
+    lines = [*number_lines(result), *norm_lines(result), *carried_lines(result["icons"])]
     return [*lines, "", *worst_lines(result)] if result["set"]["worst_pair"] else lines
 
 

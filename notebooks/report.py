@@ -168,11 +168,8 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
         yield element("h3", best)
         yield bullets([line.strip().removeprefix("- ") for line in more])
     yield element("h2", "The set")
-    lines = [*told.number_lines(result), *beside.carried_lines(result["icons"])]
+    lines = [*told.number_lines(result), *beside.norm_lines(result), *beside.carried_lines(result["icons"])]
     yield bullets([line.removeprefix("Set: ").strip() for line in lines])
-    if other := result["set"]["norm_sensitivity"]:
-        shares = ", ".join(f"{percent(share)} by {norm}" for norm, share in other.items())
-        yield element("p", f"Correct if a difference over time counted by another norm: {shares}.")
 
 
 def _worst(result: dict[str, Any]) -> Iterator[str]:

@@ -19,7 +19,7 @@ import numpy as np
 from thermicon.perception.confusion import SAMPLES
 from thermicon.perception.intervals import EVERY, PEOPLE
 from thermicon.perception.judge import Played, feel, judge
-from thermicon.perception.measures import experiments_bits, information_bits, percent_correct
+from thermicon.perception.measures import experiments_bits, information_bits
 from thermicon.perception.observer import NORMS, Norm, Observer
 from thermicon.perception.parallel import in_order
 from thermicon.perception.people import People, draw_people
@@ -43,7 +43,7 @@ class Found:
     """What the people of a chunk make of the icons, a row a person; p people, m icons, q = m(m − 1)/2 pairs.
 
     `detected` (p, m) and `confusion` (p, m, m) are probabilities, `d_prime` (p, q) from memory, `correct` (p, m) 0–1,
-    `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct` (p, norms) by
+    `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct` (p, norms, m) by
     the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
     """
 
@@ -130,7 +130,9 @@ def run(work: Work, number: int) -> Found:
     felt = feel(played, crowd, observer)
     d_prime, confusion = judge(felt, work.norm, crowd, observer, work.seed, SAMPLES, start, work.task)
     others = [
-        percent_correct(judge(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start, work.task)[1].probability)
+        np.diagonal(
+            judge(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start, work.task)[1].probability, axis1=1, axis2=2
+        )
         for n in work.other_norms
     ]
     named = confusion.probability

@@ -38,7 +38,7 @@ class Gathered:
     """What all people made of m icons.
 
     `detected` (m,) means; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m); `each_correct` (people, m);
-    `bits`, `plugin`, `stress` (people,); `by_norm` proportion correct by the other norms.
+    `bits`, `plugin`, `stress` (people,); `by_norm` (m,) proportion correct of each icon by the other norms.
     `standard_error` and `person_standard_error` are the most by which sampling blurs a cell, pooled and of one person.
     """
 
@@ -49,7 +49,7 @@ class Gathered:
     bits: Array
     plugin: Array
     stress: Array
-    by_norm: dict[Norm, float]
+    by_norm: dict[Norm, Array]
     standard_error: float
     person_standard_error: float
     thin: Played
@@ -109,7 +109,7 @@ def gather(work: Work, where: Where, step: Callable[[], None]) -> Gathered:
         bits=joined("bits"),
         plugin=joined("plugin"),
         stress=joined("stress"),
-        by_norm={norm: float(value) for norm, value in zip(work.other_norms, other, strict=True)},
+        by_norm=dict(zip(work.other_norms, other, strict=True)),
         standard_error=sampling_error(mean, SAMPLES * people) if icons > 2 else 0.0,
         person_standard_error=blur if icons > 2 else 0.0,
         thin=Played(joined("cold_C"), joined("warm_C"), time_s(work, EVERY), work.rig.site, work.rig.contact.area_m2),

@@ -149,7 +149,7 @@ def rank(
         trials=trials,
         worst_pair=worst,
         rules_disagree=disagreements(made.icons, made.pairs),
-        norm_sensitivity=dict(all_.by_norm.items()),
+        by_norm={norm: tuple(each.tolist()) for norm, each in all_.by_norm.items()},
         stress=float(np.median(all_.stress)),
         standard_error=all_.standard_error,
         person_standard_error=all_.person_standard_error,

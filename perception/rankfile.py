@@ -113,6 +113,7 @@ def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dic
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
         "rules_disagree": list(ranking.rules_disagree),
         "norm_sensitivity": ranking.norm_sensitivity if model else {},
+        "norm_changes": ranking.norm_changes if model else {},
         "percent_correct_parameter_interval": asked.percent_correct if asked else None,
         "information_bits_parameter_interval": asked.information_bits if asked and many else None,
         "parameter_draws": asked.draws if asked else None,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
     from thermicon.perception.carryover import CarryOver
     from thermicon.perception.choose import Choice
     from thermicon.perception.edit import Edit, NoEdit
+
+
+A_POINT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +100,8 @@ class Ranking:
     `parameter_intervals` is what the observer's parameters leave open (None: not asked for). `by` says what
     the icons are ranked by and which worst pair is told; the model's numbers are there in both cases. `chosen` are
     the best few of them, where asked for; `spread` is what pictures need of single people. `task` is how icons are
-    asked for; `carry_over`, with a gap between them, what each leaves behind for the next (None: nothing).
+    asked for; `carry_over`, with a gap between them, what each leaves behind for the next (None: nothing). `by_norm` is
+    the proportion correct of each icon by the norms that were not asked for.
     """
 
     version: str
@@ -119,7 +124,7 @@ class Ranking:
     trials: int
     worst_pair: tuple[str, str] | None
     rules_disagree: tuple[dict[str, Any], ...]
-    norm_sensitivity: dict[str, float]
+    by_norm: dict[str, tuple[float, ...]]
     stress: float
     standard_error: float
     person_standard_error: float
@@ -152,6 +157,27 @@ class Ranking:
             i, j = place[pair.a], place[pair.b]
             matrix[i, j] = matrix[j, i] = pair.d_prime
         return matrix
+
+    @property
+    def norm_sensitivity(self) -> dict[str, float]:
+        """Proportion correct of the set by each of the other norms."""
+        return {norm: sum(each) / len(each) for norm, each in self.by_norm.items()}
+
+    @property
+    def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """By each other norm, the pairs of icons that change places: the first is better here, the second there.
+
+        Only by more than one point of per cent correct in both, since less is within what sampling blurs.
+        """
+        own = [icon.percent_correct for icon in self.icons]
+        return {
+            norm: tuple(
+                (self.labels[i], self.labels[j])
+                for i, j in permutations(range(len(own)), 2)
+                if own[i] > own[j] + A_POINT and each[j] > each[i] + A_POINT
+            )
+            for norm, each in self.by_norm.items()
+        }
 
     @property
     def rules_score(self) -> float | None:

@@ -16,8 +16,8 @@ ICON = (
 PAIR = "a b d_prime confused_probability why rules edit told_apart_by_rules rules_margin no_edit parts"
 SET = (
     "percent_correct percent_correct_interval information_bits information_bits_interval bits_per_s "
-    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity percent_correct_parameter_interval "
-    "information_bits_parameter_interval parameter_draws rules_score rules"
+    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity norm_changes "
+    "percent_correct_parameter_interval information_bits_parameter_interval parameter_draws rules_score rules"
 )
 
 
@@ -62,6 +62,7 @@ def test_numbers_hang_together(held: Any) -> None:
     assert low <= whole["percent_correct"] <= high
     assert whole["bits_per_s"] == pytest.approx(whole["information_bits"] / 8.0, rel=0.01)
     assert set(whole["norm_sensitivity"]) == {"rms", "integral"}
+    assert set(whole["norm_changes"]) == {"rms", "integral"}
     assert len(held["pairs"]) == 15
     worst = max(held["pairs"], key=lambda pair: pair["confused_probability"])
     assert whole["worst_pair"] == [worst["a"], worst["b"]]
@@ -184,6 +185,17 @@ def test_what_does_not_exist_is_null(rig: Rig) -> None:
     assert held["pairs"] == []
     assert held["confusion"]["probability"] == [[1.0]]
     assert whole["rules_disagree"] == []
+
+
+def test_changes_of_order_under_another_norm_are_told(rig: Rig) -> None:
+    icons = load_library("wave-confusions")
+    by = {norm: rank(icons, rig, people=10, parameters=0, norm=norm) for norm in ("max", "rms")}
+    changes = by["max"].norm_changes["rms"]
+    assert changes
+    places = {norm: {icon.name: icon.percent_correct for icon in ranking.icons} for norm, ranking in by.items()}
+    for better, worse in changes:
+        assert places["max"][better] > places["max"][worse] + 0.01
+        assert places["rms"][worse] > places["rms"][better]
 
 
 def test_identical_icons_are_guessed(rig: Rig) -> None:
