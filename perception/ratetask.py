@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
@@ -113,30 +113,26 @@ class RateCase(NamedTuple):
 
 def rate_task(known: Table, observer: Observer) -> list[RateCase]:
     """The published rate discrimination, simulated: every rate and span, against a rate larger by the fraction."""
-    fraction = known.one("rate Weber fraction").central
-    rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     cases = []
-    for rate, span in itertools.product(rates, spans):
-        played = _pair(span, rate, rate * (1.0 + fraction))
-        at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
-        cold, warm = perceive_many(at_cold, at_warm, played.dt_s, observer)
-        apart = differences(cold[None], warm[None], played.dt_s, observer)
-        duration = played.dt_s * (cold.shape[-1] - 1)
-        cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, duration))
+    for cold, warm, dt in _felt(known, observer):
+        apart = differences(cold[None], warm[None], dt, observer)
+        cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, dt * (cold.shape[-1] - 1)))
     return cases
 
 
 def peaks_of_task(known: Table, observer: Observer) -> Array:
     """Peak cold sensations of all ramps of the rate task, in d′."""
+    return np.concatenate([cold.max(axis=-1).ravel() for cold, _, _ in _felt(known, observer)])
+
+
+def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
+    """Cold and warm sensations (2, n_time) of the two ramps of every condition, and the step of their clock in s."""
     fraction = known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
-    peaks = []
     for rate, span in itertools.product(rates, spans):
         played = _pair(span, rate, rate * (1.0 + fraction))
         at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
-        cold, _ = perceive_many(at_cold, at_warm, played.dt_s, observer)
-        peaks.extend(cold.max(axis=-1).ravel().tolist())
-    return np.array(peaks)
+        yield *perceive_many(at_cold, at_warm, played.dt_s, observer), played.dt_s
 
 
 def with_gain(observer: Observer, strength: float) -> Observer:
