@@ -13,7 +13,7 @@ from pathlib import Path
 
 from thermicon.notebooks.outputs import check_folder
 
-LONG_PAIRS = 10_000
+LONG_PAIRS = 30_000
 """Icons × people from which parts are kept without being asked to: below it, to start again takes seconds."""
 STALE_S = 14 * 24 * 3600.0
 

@@ -25,6 +25,8 @@ PEOPLE, FEWEST, PRESENTED = 24, 12, 768
 """Asked again are the first 24 people; of larger sets fewer, but at least 12, so that about 768 icons are felt."""
 EVERY = 8
 """Draws are judged at 12.5 Hz: it moves the scores of shipped icons by less than 0.001, and what it does cancels."""
+MANY = 32
+"""Larger sets are judged at half of these instants: it moves the ends of an interval by less than 0.002."""
 SAMPLES, LEAST, NAMED = 512, 128, 8192
 """Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 DRAWS = 128
@@ -75,7 +77,7 @@ def parameter_intervals(
         raise ValueError(f"an interval needs at least two draws of the parameters, not {draws}")
     free = observer_parameters(norm, thin.site)
     icons = predicted.detected.size
-    thin = thin.thinned(asked_again(icons), 1)
+    thin = thin.thinned(asked_again(icons), 1 if icons <= MANY else 2)
     few = crowd.part(0, len(thin.cold_C))
     samples = min(SAMPLES, max(LEAST, NAMED // icons))
     centre = score(thin, few, observer_at({}), norm, seed, samples, task)
