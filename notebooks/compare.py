@@ -10,6 +10,7 @@ from thermicon.notebooks.cues import pick, read_set
 from thermicon.notebooks.curves import Curves, LogError, curves_of, read_curves
 from thermicon.notebooks.differences import Aligned, align, differences, quantity, with_unit
 from thermicon.notebooks.door import load_rig, note, usage
+from thermicon.notebooks.duel import duel_of
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
 from thermicon.notebooks.sides import Request, check_request, kind_of_both
 from thermicon.notebooks.simulate import headline
@@ -47,6 +48,9 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
         if place:
             show("")
         show_comparison(each)
+    if kind == "set" and request.icon is None:
+        said = duel_of(first, second, load_rig(request.rig, request.changes))
+        show(*(["", said] if said else []))
     if figure is not None:
         note(f"wrote {figure}")
 

@@ -70,8 +70,20 @@ def test_two_sets_are_paired_by_name(cli: Cli, two: Path, tmp_path: Path) -> Non
     assert said.exit_code == 0, said.stderr
     assert said.stdout.startswith("cool-step\nA  two.cue: 8 s")
     assert f"only in one of the two: warm-step ({two}), hot-step ({other})" in said.stderr
-    assert cli("compare", two, other, "--icon", "cool-step").stdout == said.stdout
+    tables, _, duel = said.stdout.partition("\npredicted: ")
+    assert "draws of person, contact, room and rig" in " ".join(duel.split())
+    assert cli("compare", two, other, "--icon", "cool-step").stdout == tables
     assert cli("compare", two, other, "--icon", "warm-step").exit_code == 1
+
+
+def test_the_better_of_two_sets_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
+    worse = tmp_path / "worse.cue"
+    body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
+    alike = body.replace("by 3 ", "by 3.3 ")
+    worse.write_text(f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon cool-step {body}\nicon b {alike}\n")
+    forth, back = (cli("compare", *sides).stdout.partition("predicted: ")[2] for sides in ((two, worse), (worse, two)))
+    assert forth.startswith("A is told apart better than B in 100 %")
+    assert back == forth.replace("A is told apart better than B", "B is told apart better than A")
 
 
 def test_two_sets_without_a_common_name(cli: Cli, two: Path) -> None:
