@@ -85,6 +85,13 @@ def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
         f"{scored('correct', own['percent_correct'])}, {scored('bits', own['information_bits'])}, "
         f"{scored('bits-per-s', own['bits_per_s'])}"
     )
+    if own["percent_correct_parameter_interval"]:
+        low, high = own["percent_correct_parameter_interval"]
+        least, most = own["information_bits_parameter_interval"]
+        yield (
+            f"  - over the range of the model's parameters {percent(low)} to {percent(high)} correct, "
+            f"{least:.2f} to {most:.2f} bits"
+        )
     yield f"  - together they last {number(chosen['total_s'])} s and take {number(chosen['total_J'])} J"
     if chosen["best_for_people"] is not None:
         asked = min(chosen["people"], ONE_BY_ONE)

@@ -246,7 +246,7 @@ def rank_command(
         by=by,
         parameters=parameters,
         choosing=picked,
-        edits="all" if edits else "worst",
+        edits="all" if edits else ("worst" if picked is None else "none"),
         context=context,
         gap=gap,
         bias=bias,

@@ -15,6 +15,7 @@ import numpy as np
 
 from thermicon.perception.appraise import Appraisal, appraise
 from thermicon.perception.bounds import upper_bound
+from thermicon.perception.intervals import ParameterIntervals
 from thermicon.perception.namings import Namings, Objective
 from thermicon.perception.observer import Norm
 from thermicon.perception.people import People
@@ -53,7 +54,8 @@ class Choice:
     `value` and `bound` are at the range of the pool: median d′ of the worst pair over all people, or proportion
     correct, bits or bits a second of the first `people`. `excluded` are icons that could not be chosen, and why.
     `best_share` is the proportion of the first 50 people for whom no other choice parts its worst pair farther,
-    `loss` what the middle one of them loses by it in d′ (both None but for `worst`).
+    `loss` what the middle one of them loses by it in d′ (both None but for `worst`). `parameter_intervals` are what the
+    observer's parameters leave open for the chosen (None: not asked for).
     """
 
     icons: tuple[str, ...]
@@ -71,9 +73,11 @@ class Choice:
     best_share: float | None
     loss: float | None
     at_own_range: Appraisal
+    parameter_intervals: ParameterIntervals | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
+        open_ = self.parameter_intervals
         return {
             "icons": list(self.icons),
             "objective": self.objective,
@@ -89,7 +93,11 @@ class Choice:
             "excluded": [{"icon": name, "reason": reason} for name, reason in self.excluded],
             "best_for_people": self.best_share,
             "median_loss": self.loss,
-            "at_own_range": self.at_own_range.to_dict(),
+            "at_own_range": {
+                **self.at_own_range.to_dict(),
+                "percent_correct_parameter_interval": None if open_ is None else list(open_.percent_correct),
+                "information_bits_parameter_interval": None if open_ is None else list(open_.information_bits),
+            },
         }
 
     def __repr__(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from thermicon.perception.confusion import SAMPLES, Confusion, confuse
@@ -24,6 +25,10 @@ class Played:
     time_s: Array
     site: str
     area_m2: float
+
+    def of(self, icons: Sequence[int]) -> Played:
+        """Some of the icons."""
+        return Played(self.cold_C[:, icons], self.warm_C[:, icons], self.time_s, self.site, self.area_m2)
 
     def thinned(self, people: int, every: int) -> Played:
         """The first people of them at every k-th instant, on arrays of their own."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.perception.carryover import carry_over
-from thermicon.perception.choose import choose
+from thermicon.perception.choose import Choice, choose
 from thermicon.perception.chunks import RATE_HZ, Work, own_version
 from thermicon.perception.coverage import outside_data
 from thermicon.perception.edits import with_edits
@@ -23,7 +23,7 @@ from thermicon.perception.intervals import DRAWS, parameter_intervals
 from thermicon.perception.judge import Scores
 from thermicon.perception.observer import DATA, Norm, Observer, check_norm
 from thermicon.perception.parts import course, course_parts
-from thermicon.perception.people import draw_people
+from thermicon.perception.people import People, draw_people
 from thermicon.perception.percept import Percept, perceive
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
 from thermicon.perception.reasons import pair_reasons
@@ -71,10 +71,11 @@ def rank(
     icon's control); `norm` is `max`, `rms` or `integral`. `by` is `model`, or `rules`: then icons
     are ranked by rules alone, and the model only says where it disagrees. `parameters` observers are drawn
     for the intervals that the observer's parameters leave open (0: none). `choosing` asks for the best few of the
-    icons, `edits` for the cheapest edit of the `worst` pair, of `all` that are not apart, or of `none`. `task` says
-    how icons are asked for: memory noise that follows the range of the set, a gap so short that the icon before is
-    still felt, favoured names. `progress` is called with (steps done, steps in all). A pair's d′ is the median over
-    people. Icons that are not safe or not reached are ranked apart, after all others.
+    icons, and the intervals are then those of the chosen; `edits` for the cheapest edit of the `worst` pair, of `all`
+    that are not apart, or of `none`. `task` says how icons are asked for: memory noise that follows the range of the
+    set, a gap so short that the icon before is still felt, favoured names. `progress` is called with (steps done,
+    steps in all). A pair's d′ is the median over people. Icons that are not safe or not reached are ranked apart,
+    after all others.
 
     The work goes in chunks of people, to `workers` threads (None: one a core) or to the dask cluster whose scheduler
     has the address `cluster`; with a folder `keep`, finished chunks stay there and a run that was ended goes on from
@@ -121,12 +122,12 @@ def rank(
             choosing, members, rig, traces, all_.d_prime, crowd, seed=seed, tracking=tracking, norm=chosen, task=task
         )
         report()
-    predicted = Scores(all_.correct, all_.bits, all_.detected)
-    intervals = (
-        parameter_intervals(all_.thin, crowd, predicted, chosen, draws=draws, seed=seed, task=task, step=report)
-        if draws
-        else None
-    )
+    whole = None if picked is not None else Scores(all_.correct, all_.bits, all_.detected)
+    intervals = None
+    if draws and whole is not None:
+        intervals = parameter_intervals(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
+    elif draws and picked is not None:
+        picked = _with_interval(picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, task, report)
     ranking = Ranking(
         version=own_version(),
         rig=rig.name,
@@ -239,6 +240,27 @@ def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
     from thermicon.circuit import usual_tracking
 
     return asked or ", ".join(sorted({usual_tracking(icon) for icon in icons}))
+
+
+def _with_interval(
+    picked: Choice,
+    names: Sequence[str],
+    all_: Gathered,
+    crowd: People,
+    norm: Norm,
+    draws: int,
+    seed: int,
+    task: Task,
+    step: Callable[[], None],
+) -> Choice:
+    """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
+    places = [names.index(name) for name in picked.icons]
+    own = picked.at_own_range
+    at_once = Scores(np.array([own.percent_correct]), np.array([own.information_bits]), all_.detected[places])
+    found = parameter_intervals(
+        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=task.among(places), step=step
+    )
+    return replace(picked, parameter_intervals=found)
 
 
 def _playable(made: _Made) -> tuple[PairScore, ...]:

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import combinations
 from typing import Any
 
@@ -5,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, duration_s, simulate_all
-from thermicon.icons import Icon, parse
-from thermicon.perception import ChoiceError, Choosing, appraise, choose, draw_people, energy_J
+from thermicon.icons import Icon, parse, read_cue
+from thermicon.perception import ChoiceError, Choosing, appraise, choose, draw_people, energy_J, rank
 from thermicon.perception.appraise import distances
 from thermicon.perception.people import People
 
@@ -122,8 +123,21 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     assert one == pool.choose(3, objective, ("a",))
     assert "a" in one.icons
     assert list(one.to_dict()["at_own_range"]) == [
-        *("worst_pair", "d_prime", "percent_correct", "information_bits", "bits_per_s")
+        *("worst_pair", "d_prime", "percent_correct", "information_bits", "bits_per_s"),
+        *("percent_correct_parameter_interval", "information_bits_parameter_interval"),
     ]
+
+
+def test_intervals_are_those_of_the_chosen() -> None:
+    six, rig = read_cue("six-icons"), Rig.load("thenar")
+    found = rank(six, rig, people=8, parameters=8, choosing=Choosing(3))
+    assert found.parameter_intervals is None and found.chosen is not None
+    own = found.chosen.to_dict()["at_own_range"]
+    low, high = own["percent_correct_parameter_interval"]
+    assert low < own["percent_correct"] < high
+    alone = rank(replace(six, entries=tuple(six[name] for name in found.chosen.icons)), rig, people=8, parameters=8)
+    assert alone.parameter_intervals is not None
+    assert (low, high) == pytest.approx(alone.parameter_intervals.percent_correct, abs=0.02)
 
 
 def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:
