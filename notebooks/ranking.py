@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from thermicon.perception.request import Choosing
 
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
-MOST_DISAGREEMENTS = 5
+MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +211,7 @@ def rival(confusion: dict[str, Any], place: int) -> str:
 def set_lines(result: dict[str, Any]) -> list[str]:
     """Return the sentences about the whole set: what it scores, and which pair to mend first and why."""
     lines = [*number_lines(result), *norm_lines(result), *carried_lines(result["icons"])]
-    return [*lines, "", *worst_lines(result)] if result["set"]["worst_pair"] else lines
+    return [*lines, "", *worst_lines(result), *other_edits(result)] if result["set"]["worst_pair"] else lines
 
 
 def number_lines(result: dict[str, Any]) -> list[str]:
@@ -260,14 +260,31 @@ def disagreement_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def worst_lines(result: dict[str, Any]) -> Iterator[str]:
-    """Yield which pair is confused most often, why, and what would part it."""
-    for pair in result["pairs"]:
-        if [pair["a"], pair["b"]] == result["set"]["worst_pair"]:
-            confused = percent(pair["confused_probability"])
-            head = f"Worst pair: {pair['a']} and {pair['b']}"
-            yield f"{head}, confused in {confused} of trials (d′ {number(pair['d_prime'])})"
-            yield from (f"  - {reason}" for reason in pair["why"])
-            yield from edit_lines(pair)
+    """Yield which pair is confused most often, why, and what would part it; and the nearest, where it is another."""
+    pairs, fine = result["pairs"], {icon["name"] for icon in playable(result["icons"])}
+    (worst,) = (pair for pair in pairs if [pair["a"], pair["b"]] == result["set"]["worst_pair"])
+    confused = percent(worst["confused_probability"])
+    head = f"Worst pair: {worst['a']} and {worst['b']}"
+    yield f"{head}, confused in {confused} of trials (d′ {number(worst['d_prime'])})"
+    yield from (f"  - {reason}" for reason in worst["why"])
+    yield from edit_lines(worst)
+    near = min((p for p in pairs if not fine or {p["a"], p["b"]} <= fine), key=lambda p: p["d_prime"], default=worst)
+    if near["d_prime"] < worst["d_prime"] - SAME_DPRIME:
+        share = percent(near["confused_probability"])
+        yield f"Nearest in d′: {near['a']} and {near['b']}, d′ {number(near['d_prime'])}, confused in {share} of trials"
+
+
+def other_edits(result: dict[str, Any]) -> Iterator[str]:
+    """Yield the cheapest edits that were found for pairs other than the worst, a line each."""
+    others = [pair for pair in result["pairs"] if [pair["a"], pair["b"]] != result["set"]["worst_pair"]]
+    found = [(pair, said.removeprefix("  - cheapest edit: ")) for pair in others for said in edit_lines(pair)]
+    if found:
+        yield ""
+        yield "Cheapest edits of the other pairs that are not apart"
+    for pair, said in found[:MOST_EDITS]:
+        yield f"  - {pair['a']} and {pair['b']}, d′ {number(pair['d_prime'])}: {said.removeprefix('  - ')}"
+    if len(found) > MOST_EDITS:
+        yield f"  - and {len(found) - MOST_EDITS} more, all of them in --json"
 
 
 def edit_lines(pair: dict[str, Any]) -> Iterator[str]:

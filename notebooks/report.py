@@ -92,9 +92,12 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[str]
         shown.append((f"{whole['bits_per_s']:.2f} bits/s", "at the mean duration of the icons"))
     for pair in result["pairs"]:
         if whole["worst_pair"] == [pair["a"], pair["b"]]:
-            confused = f"confused in {percent(pair['confused_probability'])} of trials"
+            confused = f"most often confused, in {percent(pair['confused_probability'])} of trials"
             shown.append(
-                (f"d′ {number(pair['d_prime'])}", f"in the worst pair, {pair['a']} and {pair['b']}, {confused}")
+                (
+                    f"d′ {number(pair['d_prime'])}",
+                    f"between {pair['a']} and {pair['b']}, {confused}",
+                )
             )
     yield cards(shown)
 
@@ -199,7 +202,8 @@ def _sized(value: float | None, unit: str) -> str:
     """
     if value is None:
         return "–"
-    return f"{value:.2f} {'×' if unit == '1' else unit}" if abs(value) < 10 else f"{value:.1f} {unit}"
+    written = "×" if unit == "1" else unit
+    return f"{value:.2f} {written}" if abs(value) < 10 else f"{value:.1f} {written}"
 
 
 def _pairs(result: dict[str, Any]) -> Iterator[str]:

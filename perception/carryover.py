@@ -7,7 +7,7 @@ that what is left of the icon before adds to what the next one brings; adaptatio
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from thermicon.perception.distance import differences, identification_noise
 from thermicon.perception.observer import NORMS, Norm, Observer
 from thermicon.perception.percept import perceive_many, uniform_clock
 from thermicon.perception.receptors import Array
+from thermicon.perception.task import Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -37,19 +38,19 @@ class CarryOver:
     noise: Array
 
     def __repr__(self) -> str:
-        most = f"up to {self.carried[0].max():.3g} d′ of sensation"
-        return f"CarryOver({len(self.names)} icons, {self.gap_s:g} s apart: {most})"
+        icons = "1 icon" if len(self.names) == 1 else f"{len(self.names)} icons"
+        most = f"up to {self.apart[0].max():.3g} d′ of sensation"
+        return f"CarryOver({icons}, {self.gap_s:g} s apart: {most})"
 
-    @property
-    def carried(self) -> Array:
-        """Root mean square over the icons before, (norms, icons): each of them is as likely as the next."""
-        found: Array = np.sqrt((self.apart**2).mean(axis=1))
+    def over(self, places: Sequence[int]) -> Array:
+        """Root mean square (norms, icons) over some icons before, each of them as likely as the next."""
+        found: Array = np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1))
         return found
 
-    def worst_of(self, place: int, norm: Norm) -> dict[str, Any]:
-        """After which icon one feels least like itself, and by how many d′ from memory, for `rank --json`."""
-        k = NORMS.index(norm)
-        before = int(self.apart[k, :, place].argmax())
+    def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> dict[str, Any]:
+        """After which icon (of some) one feels least like itself, and by how many d′ from memory, for `rank --json`."""
+        k, some = NORMS.index(norm), list(places or range(len(self.names)))
+        before = some[int(self.apart[k, some, place].argmax())]
         return {"after": self.names[before], "d_prime": float(self.apart[k, before, place] / self.noise[k])}
 
 
@@ -58,12 +59,12 @@ def carry_over(
 ) -> CarryOver:
     """Let the nominal person feel every icon of a set after every other, each followed for `end_s`.
 
-    Raises `ValueError` for a gap below 0.
+    Raises `ValueError` for a gap below 0, without icons, and for an end before that of the longest icon.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> icons, rig = list(read_cue("six-icons")), Rig.load("thenar")
-    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).carried[0].max() for gap_s in (1.0, 60.0))
+    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).apart[0].max() for gap_s in (1.0, 60.0))
     >>> bool(near > 3 * far)
     True
     """
@@ -71,8 +72,13 @@ def carry_over(
 
     if not gap_s >= 0.0:
         raise ValueError(f"a gap of {gap_s:g} s between icons must be 0 or more")
+    if not icons:
+        raise ValueError("without icons nothing is left behind: give at least one")
+    lasting = [duration_s(icon, rig) for icon in icons]
+    if end_s < max(lasting):
+        raise ValueError(f"icons of up to {max(lasting):g} s cannot be followed for {end_s:g} s: give a later end")
     person = Observer.load() if observer is None else observer
-    waits = [max(1, round((duration_s(icon, rig) + gap_s) * RATE_HZ)) for icon in icons]
+    waits = [max(1, round((lasted + gap_s) * RATE_HZ)) for lasted in lasting]
     rows = round(end_s * RATE_HZ) + 1
     traces = simulate_all(list(icons), rig, end_s=(max(waits) + rows) / RATE_HZ, rate_Hz=RATE_HZ)
     dt, _ = uniform_clock(traces[0].time_s)
@@ -92,6 +98,28 @@ def carry_over(
         apart[:, before] = [found[norm][:, 0, 1] for norm in NORMS]
     noise = np.array([float(identification_noise(person, norm, dt * (rows - 1))) for norm in NORMS])
     return CarryOver(tuple(icon.name for icon in icons), gap_s, apart, noise)
+
+
+def prepared(
+    task: Task, icons: Sequence[Icon], rig: Rig, end_s: float, counted: Sequence[int] = ()
+) -> tuple[Task, CarryOver | None]:
+    """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
+    asked = task.asked()
+    if asked.plain:
+        return asked, None
+    played = tuple(counted or range(len(icons)))
+    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s)
+    return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
+
+
+def among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Task:
+    """The task for some icons of a set that are then asked for on their own."""
+    own = () if left is None else _rows(left.over(places)[:, list(places)])
+    return replace(task.asked(), carried=own, places=() if task.asked().plain else tuple(places))
+
+
+def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(float(value) for value in row) for row in values)
 
 
 def _after(received: Array, before: int, wait: int, rows: int) -> Array:

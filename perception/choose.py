@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from thermicon.perception.appraise import Appraisal, appraise
 from thermicon.perception.bounds import upper_bound
+from thermicon.perception.carryover import CarryOver, among
 from thermicon.perception.intervals import ParameterIntervals
 from thermicon.perception.namings import Namings, Objective
 from thermicon.perception.observer import Norm
@@ -117,8 +118,11 @@ def choose(
     tracking: str | None = None,
     norm: Norm = "max",
     task: Task = USUAL,
+    left: CarryOver | None = None,
 ) -> Choice:
     """Choose among icons of which `d_prime` (people, icons, icons) and the nominal traces are known.
+
+    `task` is what `d_prime` was found in, and `left` what icons leave behind for the next there (None: nothing).
 
     Raises `ChoiceError` where too few icons are usable or no choice keeps the limits.
     """
@@ -127,7 +131,10 @@ def choose(
     d = d_prime[:, places][:, :, places]
     must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
     limits = _limits(asked, pool)
-    namings = Namings.of(d, crowd.lapse, pool.durations_s, seed) if asked.objective != "worst" else None
+    namings = None
+    if asked.objective != "worst":
+        favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
+        namings = Namings.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
     picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
     if picked is None:
         raise ChoiceError(_nothing_fits(asked, pool))
@@ -156,7 +163,7 @@ def choose(
             seed=seed,
             tracking=tracking,
             norm=norm,
-            task=task.among(chosen),
+            task=among(task, left, chosen),
         ),
     )
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from thermicon.circuit.draw import COOL, new_axes
 from thermicon.perception.receptors import Array
+from thermicon.perception.rulescore import APART_DPRIME
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +33,7 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool 
     Icons that are confused stand side by side, or `clustered=False` keeps the order of the file.
     """
     order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
-    names = [ranking.labels[k] for k in order]
+    names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
     axes.set_xlabel("answered")
     axes.set_ylabel("presented")
@@ -43,8 +44,9 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool 
 def plot_distance(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
     """Predicted d′ of every pair, the median over people; icons that are near stand side by side."""
     order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
-    names = [ranking.labels[k] for k in order]
-    axes = heat(names, names, ranking.d_prime[np.ix_(order, order)], ax)
+    names = [ranking.marked[k] for k in order]
+    matrix = ranking.d_prime[np.ix_(order, order)]
+    axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * APART_DPRIME))
     axes.set_xlabel("… and")
     axes.set_ylabel("d′ between …")
     axes.set_title(f"predicted d′ between icons ({ranking.norm})")
@@ -59,8 +61,9 @@ def plot_places(ranking: Ranking, ax: Axes | None = None) -> Axes:
     if ranking.spread is None:
         raise ValueError("this ranking keeps no places of single people: rank the icons again")
     place = {name: k for k, name in enumerate(ranking.labels)}
-    names = [icon.name for icon in sorted(ranking.icons, key=lambda icon: (-icon.percent_correct, icon.name))]
-    shares = 100.0 * ranking.spread.place_probability[[place[name] for name in names]]
+    order = [place[row["icon"]] for row in ranking.rows()] if ranking.by == "model" else list(place.values())
+    names = [ranking.marked[k] for k in order]
+    shares = 100.0 * ranking.spread.place_probability[order]
     axes = heat([str(k + 1) for k in range(len(names))], names, shares, ax, top=100.0, upright=True)
     axes.set_xlabel("place (1: named best)")
     crowd = "1 person" if ranking.people == 1 else f"{ranking.people} people"

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.perception.appraise import distances
+from thermicon.perception.carryover import prepared
 from thermicon.perception.nominal import Sensed, dprimes, end_of, sense
 from thermicon.perception.numbers import Number, line_of, numbers_of, repeated, with_number
 from thermicon.perception.observer import Norm
@@ -31,7 +32,8 @@ PER_SECOND = 0.1
 TOLERANCE = 0.1
 FAR = 2.0
 """A pair that falls by more than 0.1 d′ is made worse, unless it stays beyond twice the wanted d′."""
-LARGEST = 4.0
+LARGEST, FARTHEST = 4.0, 256.0
+"""A number becomes at most four times larger or smaller; where that parts no pair, up to 256 times."""
 GRID = 6
 ROUNDS = 5
 DEARER = 1.5
@@ -114,16 +116,17 @@ def cheapest_edit(
     """The cheapest edit of `a` or `b` that parts them by a median d′ of `wanted` (by default: apart).
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known. What `task` has of
-    the icons before stays as it is for the set unedited.
+    by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known, in the same `task`.
     Raises `KeyError` for a name that is not there, `ValueError` for a `wanted` that is not above 0.
     """
-    if not wanted > 0 or a == b:
-        raise ValueError(f"a pair of two icons is parted by a d′ above 0: {a}, {b}, {wanted:g}")
+    if not 0 < wanted < math.inf:
+        raise ValueError(f"a pair is parted by a d′ above 0, not {wanted:g}")
+    if a == b:
+        raise ValueError(f"a pair is two icons, not {a} twice")
     names = [icon.name for icon in icons]
     for name in (a, b):
         if name not in names:
-            raise KeyError(name)
+            raise KeyError(f"no icon is called {name!r}; there are {', '.join(names[:20])}{' …' if names[20:] else ''}")
     search = _Search(list(icons), rig, (names.index(a), names.index(b)), wanted, norm)
     crowd = draw_people(people, seed) if isinstance(people, int) else people
     return search.run(crowd, tracking, before, task)
@@ -139,7 +142,9 @@ class _Search:
         self.kept = sense(icons, rig, self.end_s)
         self.now = dprimes(self.kept, self.kept, norm)
         self.target = wanted
+        self.largest = LARGEST
         self.closest = 0.0
+        self.opposed = False
         self.refused: set[tuple[int, str]] = set()
         self.rows: dict[tuple[int, str], Array] = {}
 
@@ -147,41 +152,49 @@ class _Search:
         i, j = self.pair
         rigs = crowd.rigs(self.rig)
 
-        def medians(some: Sequence[Icon]) -> Array:
-            found = distances(some, self.rig, crowd, tracking, self.norm, rigs=rigs, task=task)[0]
+        def medians(some: Sequence[Icon], end_s: float, asked: Task = USUAL) -> Array:
+            found = distances(some, self.rig, crowd, tracking, self.norm, rigs=rigs, end_s=end_s, task=asked)[0]
             middle: Array = np.median(found, axis=0)
             return middle
 
-        def beside(one: _Tried, others: Sequence[int]) -> Array:
-            """Median d′ of an edited icon to some others; a task that looks at the whole set gets the whole set."""
-            if task.plain:
-                return medians([one.icon, *(self.icons[k] for k in others)])[0, 1:]
-            whole = [one.icon if k == one.place else icon for k, icon in enumerate(self.icons)]
-            found: Array = medians(whole)[one.place, list(others)]
-            return found
+        def of_set(icons: Sequence[Icon], end_s: float) -> Array:
+            return medians(icons, end_s, prepared(task, icons, self.rig, end_s, task.counted)[0])
 
-        before = medians(self.icons) if known is None else known
+        before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:
             return NoEdit(f"d′ {before[i, j]:.1f} is told apart already (from {self.wanted:.3g})")
         if self.now[i, j] > 0 and before[i, j] > 0:
             self.target = self.wanted * self.now[i, j] / before[i, j]
         refused = False
         for _ in range(MOST_CONFIRMED):
-            offered = [one for one in self._offers() if (one.place, one.new) not in self.refused]
+            offered = self._untried(self._offers())
+            if not offered and self.largest < FARTHEST:
+                self.largest = FARTHEST  # icons that nobody feels need more than four times a number
+                offered = self._untried(self._offers())
             if not offered:
                 break
             one = offered[0]
-            others = [j if one.place == i else i, *self._near(one)]
-            after = beside(one, others)
-            parted, worse = float(after[0]), self._worse(before[one.place, others[1:]], after[1:])
+            end_s = max(self.end_s, end_of([self.durations[one.place] + one.added_s]))
+            if task.plain:
+                others = [j if one.place == i else i, *self._near(one)]
+                after = medians([one.icon, *(self.icons[k] for k in others)], end_s)[0, 1:]
+                parted, worse = float(after[0]), self._worse(before[one.place, others[1:]], after[1:])
+            else:  # the range, and what is left behind, move every pair of the set
+                whole = of_set([one.icon if k == one.place else icon for k, icon in enumerate(self.icons)], end_s)
+                rest = np.triu(np.ones_like(whole, dtype=bool), 1)
+                rest[min(i, j), max(i, j)] = False
+                parted, worse = float(whole[i, j]), self._worse(before[rest], whole[rest])
             if parted >= self.wanted and not worse and _reads_back(one.icon):
                 return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon)
             refused |= worse
             self.refused.add((one.place, one.new))
             if parted < self.wanted:
                 self.target *= 1.002 * min(self.wanted / max(parted, 1e-6), 1.5)
-        said = "each one that parts them makes another pair worse" if refused else self._why_not()
+        said = "each one that parts them makes another pair worse" if refused or self.opposed else self._why_not()
         return NoEdit(f"no single edit parts them to d′ {self.wanted:.3g}: {said}")
+
+    def _untried(self, offers: Sequence[_Tried]) -> list[_Tried]:
+        return [one for one in offers if (one.place, one.new) not in self.refused]
 
     def _near(self, one: _Tried) -> list[int]:
         """Icons that an edit brings nearer for the nominal person, those that end nearest; people are asked of them."""
@@ -201,7 +214,7 @@ class _Search:
             for number in numbers_of(self.icons[place], self._baseline(place))
             for up in (True, False)
         ]
-        logs = np.log(LARGEST) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
+        logs = np.log(self.largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
         tried = [one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in self._made(way, w, g, log)]
         tried += [one for place in self.pair if not self._played(place) for one in self._repeats(place)]
         good = self._good(tried)
@@ -281,15 +294,18 @@ class _Search:
             self.rows[one.place, one.new] = row
             fallen = (row < self.now[one.place] - TOLERANCE) & (row < FAR * self.wanted)
             fallen[[one.place, other]] = False
-            parted = bool(row[other] >= self.target and not fallen.any())
+            parted = bool(row[other] >= self.target)
             playable = (parted or row[other] > self.closest) and felt.against(at) is None
-            if playable:
+            if playable and parted:
+                self.opposed |= bool(fallen.any())
+            elif playable:
                 self.closest = max(self.closest, float(row[other]))
-            answers.append(parted and playable)
+            answers.append(playable and parted and not fallen.any())
         return answers
 
     def _why_not(self) -> str:
-        return f"the farthest that a safe and reachable one gets a nominal person is d′ {self.closest:.1f}"
+        most = f"with numbers up to {self.largest:g} times larger or smaller"
+        return f"the farthest that a safe and reachable one gets a nominal person, {most}, is d′ {self.closest:.1f}"
 
     def _played(self, place: int) -> bool:
         """Whether another icon of the set plays this one, and would change with it."""

@@ -13,7 +13,7 @@ from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import People
 from thermicon.perception.percept import perceive_many, uniform_clock
 from thermicon.perception.receptors import Array
-from thermicon.perception.task import USUAL, Task, range_of
+from thermicon.perception.task import USUAL, Task
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,13 +40,13 @@ class Played:
 class Felt:
     """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s.
 
-    `range_log` (people,) is the range of the set for every person, in log units.
+    `peaks` (people, icons) are the largest sensations, cold and warm.
     """
 
     apart: dict[Norm, Array]
     probability: Array
     duration_s: float
-    range_log: Array
+    peaks: tuple[Array, Array]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,13 +81,13 @@ def feel(played: Played, crowd: People, observer: Observer) -> Felt:
         velocity_warm_m_per_s=crowd.velocity_warm_m_per_s[:, None],
         decision_s=crowd.decision_s[:, None],
     )
-    reach = range_of(cold.max(axis=-1), warm.max(axis=-1), observer)
-    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1), reach)
+    peaks = (cold.max(axis=-1), warm.max(axis=-1))
+    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1), peaks)
 
 
 def between(felt: Felt, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) is each person's own noise."""
-    own = task.memory(memory, felt.range_log)[:, None, None]
+    own = task.memory(memory, felt.peaks, observer)[:, None, None]
     return felt.apart[norm] / task.between(identification_noise(observer, norm, felt.duration_s, own), norm)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.perception.carryover import carry_over
+from thermicon.perception.carryover import CarryOver, among, prepared
 from thermicon.perception.choose import Choice, choose
 from thermicon.perception.chunks import RATE_HZ, Work, own_version
 from thermicon.perception.coverage import outside_data
@@ -28,7 +28,7 @@ from thermicon.perception.percept import Percept, perceive
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
 from thermicon.perception.reasons import pair_reasons
 from thermicon.perception.receptors import Array
-from thermicon.perception.request import Choosing, check_asked
+from thermicon.perception.request import Choosing, against, check_asked
 from thermicon.perception.rules import icon_rules, pair_rules, rig_rules
 from thermicon.perception.rulescore import disagreements, icon_score, pair_margin, worst_by_rules
 from thermicon.perception.spread import spread_over_people
@@ -103,11 +103,11 @@ def rank(
     crowd = draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
-    left = None if task.gap_s is None else carry_over(members, rig, end, task.gap_s, observer)
-    task = task if left is None else task.after(left.carried)
+    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
+    fine = [] if task.plain else [k for k, trace in enumerate(traces) if against(trace) is None]
+    task, left = prepared(task, members, rig, end, fine)
     work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
     report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
-    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     percepts = [perceive(trace, observer) for trace in traces]
     report()
 
@@ -119,7 +119,17 @@ def rank(
     picked = None
     if choosing is not None:
         picked = choose(
-            choosing, members, rig, traces, all_.d_prime, crowd, seed=seed, tracking=tracking, norm=chosen, task=task
+            choosing,
+            members,
+            rig,
+            traces,
+            all_.d_prime,
+            crowd,
+            seed=seed,
+            tracking=tracking,
+            norm=chosen,
+            task=task,
+            left=left,
         )
         report()
     whole = None if picked is not None else Scores(all_.correct, all_.bits, all_.detected)
@@ -127,7 +137,9 @@ def rank(
     if draws and whole is not None:
         intervals = parameter_intervals(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
     elif draws and picked is not None:
-        picked = _with_interval(picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, task, report)
+        picked = _with_interval(
+            picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, (task, left), report
+        )
     ranking = Ranking(
         version=own_version(),
         rig=rig.name,
@@ -158,7 +170,7 @@ def rank(
         parameter_intervals=intervals,
         chosen=picked,
         spread=spread_over_people(all_.d_prime, all_.each_correct),
-        task=task.without_others(),
+        task=task,
         carry_over=left,
     )
     report()
@@ -250,7 +262,7 @@ def _with_interval(
     norm: Norm,
     draws: int,
     seed: int,
-    task: Task,
+    asked: tuple[Task, CarryOver | None],
     step: Callable[[], None],
 ) -> Choice:
     """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
@@ -258,7 +270,7 @@ def _with_interval(
     own = picked.at_own_range
     at_once = Scores(np.array([own.percent_correct]), np.array([own.information_bits]), all_.detected[places])
     found = parameter_intervals(
-        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=task.among(places), step=step
+        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=among(*asked, places), step=step
     )
     return replace(picked, parameter_intervals=found)
 

@@ -151,7 +151,7 @@ def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
     """After which icon this one feels least like itself; None where every icon comes after a long pause."""
     if ranking.carry_over is None or ranking.by == "rules":
         return None
-    return ranking.carry_over.worst_of(place, check_norm(ranking.norm))
+    return ranking.carry_over.worst_of(place, check_norm(ranking.norm), ranking.task.counted)
 
 
 def _map(ranking: Ranking) -> dict[str, Any]:

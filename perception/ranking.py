@@ -149,6 +149,11 @@ class Ranking:
         return tuple(icon.name for icon in self.icons)
 
     @property
+    def marked(self) -> tuple[str, ...]:
+        """Names of the icons for pictures: a star behind those that are not safe or not reached."""
+        return tuple(icon.name if icon.playable else f"{icon.name} *" for icon in self.icons)
+
+    @property
     def d_prime(self) -> Array:
         """Median d′ of every pair as a matrix (icons, icons), zero on the diagonal."""
         place = {name: k for k, name in enumerate(self.labels)}

@@ -40,6 +40,10 @@ class Choosing:
     most_J: float | None = None
 
     def __post_init__(self) -> None:
+        if isinstance(self.must, str):
+            raise ChoiceError(f"must is a tuple of names, such as must=({self.must!r},)")
+        if self.count != int(self.count):
+            raise ChoiceError(f"{self.count:g} icons cannot be chosen: give a whole number")
         object.__setattr__(self, "must", tuple(dict.fromkeys(self.must)))
         if self.objective not in OBJECTIVES:
             raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {self.objective!r}")

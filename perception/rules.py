@@ -127,8 +127,9 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
     moved_a, moved_b = directions(a), directions(b)
     shared = tuple(c for c in moved_a if c in moved_b)
     record = table.one("direction")
-    differ = moved_a != moved_b
-    verdict = "differ" if differ else "are the same"
+    felt_a, felt_b = _felt(table, a), _felt(table, b)
+    differ = felt_a != felt_b
+    verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
     text = f"direction: {_label(a)} {direction_words(a)}, {_label(b)} {direction_words(b)}: directions {verdict}"
     ours = [_result(record, None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
     theirs = []
@@ -161,6 +162,12 @@ def first_passing(trace: Trace) -> tuple[float, Channel] | None:
     times = [(passing_s(trace, c, table.one("change at the receptor", channel=c).central), c) for c in CHANNELS]
     found = sorted((time, channel) for time, channel in times if time is not None)
     return found[0] if found else None
+
+
+def _felt(table: Table, trace: Trace) -> tuple[Channel, ...]:
+    """Directions in which an icon passes the threshold of the receptor."""
+    least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
+    return tuple(channel for channel in directions(trace) if abs(excursion_K(trace, channel)) >= least[channel])
 
 
 def passes(results: Iterable[RuleResult], *rules: str) -> bool:

@@ -8,8 +8,7 @@ hardly depends on its span: so by default the noise is constant. `context` says 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
@@ -31,7 +30,9 @@ class Task:
     `context` (0–1) is the share of memory noise, in its logarithm, that follows the range of the set. `gap_s` is the
     time from the end of one icon to the next (None: all has faded). `bias` is the SD over people and names of the log
     likelihood that favours a name. There is no thermal record of the last two, nor of `context` above 0.
-    `carried` (norms, icons) is what the icons before change of each, in sensation units; `Task.after` fills it in.
+    The rest is filled in by `prepared` for the icons at hand: `carried` (norms, icons) is what the icons before change
+    of each, in sensation units; `counted` are the places of the icons that will be played, which make up the range
+    (none: all); `places` are those that the icons had in the set that they come from, on which bias hangs.
 
     >>> Task(context=1.5)
     Traceback (most recent call last):
@@ -43,6 +44,8 @@ class Task:
     gap_s: float | None = None
     bias: float = 0.0
     carried: tuple[tuple[float, ...], ...] = ()
+    counted: tuple[int, ...] = ()
+    places: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.context <= 1.0:
@@ -60,23 +63,16 @@ class Task:
         """Whether naming adds nothing but constant memory noise."""
         return self == USUAL
 
-    def after(self, carried: Array) -> Task:
-        """The task with what the icons before change of each, (norms, icons) in sensation units."""
-        return replace(self, carried=tuple(tuple(float(value) for value in row) for row in carried))
+    def asked(self) -> Task:
+        """The task as it was asked for, without what was filled in for some icons."""
+        return Task(self.context, self.gap_s, self.bias)
 
-    def without_others(self) -> Task:
-        """The task for other icons than those that `carried` is of: it is left out."""
-        return replace(self, carried=())
-
-    def among(self, places: Sequence[int]) -> Task:
-        """The task for some of the icons; what was carried over to them from all of them stays."""
-        return replace(self, carried=tuple(tuple(row[k] for k in places) for row in self.carried))
-
-    def memory(self, own: Array, range_log: Array) -> Array:
-        """Multiples of memory noise (people,) at the range (people,) of a set, in log units."""
+    def memory(self, own: Array, peaks: tuple[Array, Array], observer: Observer) -> Array:
+        """Multiples of memory noise (people,) for a set with these peak sensations (people, icons), cold and warm."""
         if self.context == 0.0:
             return own
-        reach = np.maximum(range_log / reference_range(), NARROWEST)
+        cold, warm = (peak[:, list(self.counted)] if self.counted else peak for peak in peaks)
+        reach = np.maximum(range_of(cold, warm, observer) / reference_range(), NARROWEST)
         found: Array = own * reach**self.context
         return found
 

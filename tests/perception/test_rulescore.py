@@ -2,6 +2,8 @@ from typing import Any
 
 import pytest
 
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import parse
 from thermicon.perception import Observer, icon_rules, pair_rules, perceive
 from thermicon.perception.rulescore import counted, icon_score, pair_margin
 
@@ -33,3 +35,15 @@ def test_nothing_of_the_model_is_in_a_pair(cue: Any) -> None:
     (onset,) = (r for r in early if r.quantity == "onset")
     assert onset.value == pytest.approx(0.5)
     assert onset.text == "onset (warm): 0.5 s against at least 0.4 s: passes"
+
+
+def test_directions_that_nobody_feels_tell_nothing_apart() -> None:
+    rig = Rig.load("thenar")
+    text = "cue 1\nset s { control display; baseline 32 °C }\n" + "".join(
+        f"icon {name} {{ {way} by {size} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n"
+        for name, way, size in (("up", "warm", 0.02), ("down", "cool", 0.02), ("strong", "cool", 2))
+    )
+    up, down, strong = (simulate(icon, rig, tail_s=5.0) for icon in parse(text))
+    assert not pair_rules(up, down)[-1].passed
+    assert "directions differ below the threshold alone" in pair_rules(up, down)[0].text
+    assert pair_rules(up, strong)[-1].passed

@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import CarryOver, Observer, Ranking, Task, carry_over, rank
+from thermicon.perception import CarryOver, Choosing, Observer, Ranking, Task, carry_over, rank
 from thermicon.perception.confusion import confuse
 from thermicon.perception.edit import Edit, cheapest_edit
 from thermicon.perception.observer import NORMS
@@ -15,6 +15,7 @@ from thermicon.perception.task import NARROWEST, range_of, reference_range
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")
+SIX_NAMES = [icon.name for icon in SIX]
 
 
 def ranked(icons: IconSet = SIX, *, task: Task | None = None) -> Ranking:
@@ -46,12 +47,15 @@ def test_range_is_that_of_the_channel_with_the_larger_one() -> None:
 
 
 def test_context_multiplies_memory_noise_by_the_range_in_the_calibrating_task() -> None:
-    own, reference = np.array([1.0, 2.0]), reference_range()
+    own, reference, observer = np.array([1.0, 2.0]), reference_range(), Observer.load()
     assert 0.2 < reference < 2.0
-    wide = np.array([2.0 * reference, 2.0 * reference])
-    assert Task(context=1.0).memory(own, wide) == pytest.approx([2.0, 4.0])
-    assert Task(context=0.5).memory(own, wide) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
-    assert Task(context=1.0).memory(own, np.zeros(2)) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
+    low = 5.0
+    wide = np.array([[low, low + 2.0 * reference * 2.0 * observer.a]] * 2), np.zeros((2, 2))
+    narrow = np.full((2, 2), low), np.zeros((2, 2))
+    assert Task(context=1.0).memory(own, wide, observer) == pytest.approx([2.0, 4.0])
+    assert Task(context=0.5).memory(own, wide, observer) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
+    assert Task(context=1.0).memory(own, narrow, observer) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
+    assert Task(context=1.0, counted=(0,)).memory(own, wide, observer) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
 
 
 def test_a_narrower_set_is_remembered_better_in_context() -> None:
@@ -125,14 +129,53 @@ def test_the_same_whoever_works_on_it() -> None:
     assert one.to_json() == two.to_json()
 
 
-def test_an_edit_parts_a_pair_in_the_task_asked_for() -> None:
-    task = Task(context=0.3)
-    found = cheapest_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task)
+@pytest.mark.parametrize(
+    ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=20.0), 2.0)], ids=["context", "gap"]
+)
+def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -> None:
+    found = cheapest_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task, wanted=wanted)
     assert isinstance(found, Edit)
     edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
     after = rank(edited, RIG, people=20, parameters=0, task=task)
     pair = next(p for p in after.pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
-    assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6) and pair.d_prime >= 2.56
+    assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6) and pair.d_prime >= wanted
+    before = {(p.a, p.b): p.d_prime for p in rank(SIX, RIG, people=20, parameters=0, task=task).pairs}
+    for other in after.pairs:
+        if {other.a, other.b} != {"warming-step", "linear-warming"}:
+            assert other.d_prime > min(before[other.a, other.b] - 0.101, 2 * wanted)
+
+
+def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
+    """Neither what the icons left out would leave behind, nor the range that they would make, counts any more."""
+    hot = "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
+    pool = parse(str(SIX) + "\n" + hot)
+    for task in (Task(gap_s=3.0), Task(context=1.0), Task(bias=1.5)):
+        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Choosing(3)).chosen
+        assert chosen is not None and "hot" not in chosen.icons
+        alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
+        if not task.bias:  # favoured names hang on places in the pool
+            assert chosen.at_own_range.percent_correct == pytest.approx(alone.percent_correct, abs=2e-3)
+        assert chosen.at_own_range.d_prime == pytest.approx(min(p.d_prime for p in alone.pairs), rel=1e-2)
+
+
+def test_what_is_not_safe_leaves_nothing_behind() -> None:
+    hot = "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
+    with_it = ranked(parse(str(SIX) + "\n" + hot), task=Task(gap_s=3.0))
+    assert {icon["carry_over"]["after"] for icon in with_it.to_dict()["icons"]} <= set(SIX_NAMES)
+    without = {(p.a, p.b): p.d_prime for p in ranked(task=Task(gap_s=3.0)).pairs}
+    for pair in with_it.pairs:
+        if "hot" not in (pair.a, pair.b):
+            assert pair.d_prime == pytest.approx(without[pair.a, pair.b], rel=1e-2)
+
+
+def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
+    plain, biased = (
+        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Choosing(3, "correct")).chosen
+        for bias in (0.0, 3.0)
+    )
+    assert plain is not None and biased is not None
+    assert biased.value < plain.value - 0.005
+    assert biased.value == pytest.approx(biased.at_own_range.percent_correct, abs=0.02)
 
 
 def test_messages() -> None:
@@ -144,6 +187,10 @@ def test_messages() -> None:
         Task(bias=9.0)
     with pytest.raises(ValueError, match=r"a gap of -1 s between icons must be 0 or more"):
         carry_over(list(SIX), RIG, 18.0, -1.0)
+    with pytest.raises(ValueError, match=r"icons of up to 8 s cannot be followed for 2 s: give a later end"):
+        carry_over(list(SIX), RIG, 2.0, 1.0)
+    with pytest.raises(ValueError, match=r"without icons nothing is left behind"):
+        carry_over([], RIG, 18.0, 1.0)
 
 
 def test_icons_that_cannot_be_played_are_ranked_apart() -> None:
