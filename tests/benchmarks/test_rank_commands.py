@@ -17,10 +17,10 @@ HEAD = "cue 1\nset ten { site thenar; control display; baseline 32 °C }\n"
 
 
 def ten_seconds(folder: Path, icons: int = 64) -> Path:
-    """A file with so many icons of 10 s that the thenar rig reaches: ramps of different size and rate, once or twice."""
+    """A file with so many icons of 10 s that the thenar rig reaches: ramps of other sizes and rates, once or twice."""
     lines = []
     for k in range(icons):
-        size, rate, rounds = (1.5, 2.5, 3.5, 4.5)[k // 2 % 4], (1.0, 1.5, 2.0, 3.0)[k // 8 % 4], 1 + k // 32
+        size, rate, rounds = (1.0, 2.0, 3.0, 4.0)[k // 2 % 4], (1.5, 2.0, 2.5, 3.0)[k // 8 % 4], 1 + k // 32
         verb, whole = ("cool", "warm")[k % 2], 10.0 / rounds
         hold = whole - size / rate - size / 2.0
         body = f"{verb} by {size} °C at {rate} °C/s; hold for {max(hold, 0.2):.4f} s; return at 2 °C/s"
