@@ -67,6 +67,8 @@ def _operand(piece: Piece, names: Container[str]) -> bool:
 
 def _fraction(pieces: list[Piece]) -> str | None:
     """Return a fraction of two whole numbers as a decimal number, where that is exact."""
+    if len(pieces) < 3:  # nothing stands behind the stroke
+        return None
     over, under = pieces[0].text, pieces[2].text
     if not (over.isdecimal() and under.isdecimal() and len(over + under) < 10 and int(under)):
         return None

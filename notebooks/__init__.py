@@ -1,6 +1,6 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.notebooks.overview import overview, set_figure
 from thermicon.notebooks.sweep import sweep
@@ -9,18 +9,31 @@ from thermicon.notebooks.sweepfigure import sweep_figure
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-__all__ = ["overview", "set_figure", "sweep", "sweep_figure"]
+    from thermicon.notebooks.workbench import Workbench as Workbench
+
+__all__ = ["overview", "set_figure", "sweep", "sweep_figure", "Workbench"]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the workbench when it is first asked for: commands that draw nothing do without."""
+    if name == "Workbench":
+        from thermicon.notebooks.workbench import Workbench
+
+        return Workbench
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def load_ipython_extension(shell: "InteractiveShell") -> None:
-    """Bring the ``%%cue`` cell magic: what ``%load_ext thermicon.notebooks`` calls."""
-    from thermicon.notebooks.magic import register
+    """Bring the ``%%cue`` cell magic and small pictures of figures: what ``%load_ext thermicon.notebooks`` calls."""
+    from thermicon.notebooks import inline, magic
 
-    register(shell)
+    magic.register(shell)
+    inline.register(shell)
 
 
 def unload_ipython_extension(shell: "InteractiveShell") -> None:
-    """Take the magic away again: what ``%unload_ext thermicon.notebooks`` calls."""
-    from thermicon.notebooks.magic import unregister
+    """Take both away again: what ``%unload_ext thermicon.notebooks`` calls."""
+    from thermicon.notebooks import inline, magic
 
-    unregister(shell)
+    magic.unregister(shell)
+    inline.unregister(shell)

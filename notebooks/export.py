@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +16,7 @@ from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig
-    from thermicon.circuit.export import Prepared
+    from thermicon.circuit.export import Prepared, Refusal
     from thermicon.circuit.formats import Format
     from thermicon.icons import Icon
     from thermicon.perception import FeltChange
@@ -84,7 +84,12 @@ def prepare_all(icons: Sequence[Icon], rig: Rig, device: Device, form: Format, t
 
 
 def compare_felt(
-    ready: Sequence[Prepared], rest: Sequence[Icon], rig: Rig, device: Device, tail_s: float
+    ready: Sequence[Prepared],
+    rest: Sequence[Icon],
+    rig: Rig,
+    device: Device,
+    tail_s: float,
+    warn: Callable[[str], None] = note,
 ) -> tuple[FeltChange, ...]:
     """What the device changes of the exported icons for a nominal person, beside the others of the set."""
     from thermicon.circuit.door import InputError
@@ -96,11 +101,11 @@ def compare_felt(
         try:
             everyone.append(realise(icon, rig, device, tail_s=tail_s))
         except InputError as problem:
-            note(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
+            warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
     end = max(realised.end_s for realised in everyone) + AFTER_S
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
     if len(groups) > 1:
-        note(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
+        warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
     felt: list[FeltChange] = []
     for group in groups:
         traces = [traces_until(realised, end) for realised in group]
@@ -112,30 +117,45 @@ def compare_felt(
 def tell(ready: Sequence[Prepared]) -> None:
     """Say of every icon how it is played and how far that is from the design, and what is to be known of it."""
     for one in ready:
-        realised = one.realised
-        receptors = [each for each in one.apart.places if "receptor" in each.place]
-        largest = 1e3 * max(abs(each.largest_K) for each in receptors)
-        rms = 1e3 * max(each.rms_K for each in receptors)
-        note(
-            f"{realised.icon.name}: {number(realised.end_s, 2)} s at {number(realised.rate_Hz, 1)} Hz on "
-            f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
-            f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
-        )
-        for warning in (*realised.told, *one.verdict.cautions):
-            note(f"warning: {realised.icon.name}: {warning}")
+        for line in told_of(one):
+            note(line)
 
 
-def refused(ready: Sequence[Prepared], losses: dict[str, tuple[str, ...]], force: bool) -> bool:
-    """Say why icons are refused, and whether any is."""
+def told_of(one: Prepared) -> Iterator[str]:
+    """How an icon is played and how far that is from the design, then a warning a line."""
+    realised = one.realised
+    receptors = [each for each in one.apart.places if "receptor" in each.place]
+    largest = 1e3 * max(abs(each.largest_K) for each in receptors)
+    rms = 1e3 * max(each.rms_K for each in receptors)
+    yield (
+        f"{realised.icon.name}: {number(realised.end_s, 2)} s at {number(realised.rate_Hz, 1)} Hz on "
+        f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
+        f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
+    )
+    for warning in (*realised.told, *one.verdict.cautions):
+        yield f"warning: {realised.icon.name}: {warning}"
+
+
+def refusals(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]]) -> list[tuple[str, Refusal]]:
+    """Every reason against exporting, with the name of its icon; `losses` are what perception adds."""
     from thermicon.circuit.export import Refusal
 
-    final = forcible = False
-    for one in ready:
-        name = one.realised.icon.name
-        for refusal in (*one.refusals, *(Refusal("lossy", text) for text in losses.get(name, ()))):
-            stops = not (force and refusal.forcible)
-            final, forcible = final or not refusal.forcible, forcible or refusal.forcible
-            note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
+    names = [one.realised.icon.name for one in ready]
+    return [
+        (name, refusal)
+        for name, one in zip(names, ready, strict=True)
+        for refusal in (*one.refusals, *(Refusal("lossy", text) for text in losses.get(name, ())))
+    ]
+
+
+def refused(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]], force: bool) -> bool:
+    """Say why icons are refused, and whether any is."""
+    found = refusals(ready, losses)
+    for name, refusal in found:
+        stops = not (force and refusal.forcible)
+        note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
+    final = any(not refusal.forcible for _, refusal in found)
+    forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:
         note("--force exports it as it is, and the sidecar says so")
     return final or (forcible and not force)

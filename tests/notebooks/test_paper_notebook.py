@@ -26,3 +26,4 @@ def test_every_cell_runs_and_shows_something(tmp_path: Path) -> None:
     assert [("image/png" in kind) for kind in kinds[1:]] == [True, True, True, True, True, False, False]
     assert "text/html" in kinds[6]
     assert "change at the receptors (differs)" in code[7].outputs[0]["text"]
+    assert len(nbformat.writes(notebook)) < 300_000

@@ -1,0 +1,153 @@
+// The design view: text on the left, time line on the right, and what is true of both above and below.
+
+const BADGES = {
+  green: { word: "safe", sign: "\u2713" },
+  amber: { word: "caution", sign: "!" },
+  red: { word: "not safe", sign: "\u2715" },
+  grey: { word: "not judged", sign: "?" },
+};
+
+class DesignView {
+  constructor(root, flow, say) {
+    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {} });
+    this.editor = new Editor({
+      onText: (text) => this.edited(text),
+      onUndo: () => flow.post({ type: "undo" }),
+      onRedo: () => flow.post({ type: "redo" }),
+      onApply: (line) => flow.post({ type: "apply", line }),
+    });
+    this.timeline = new Timeline(root, (message) => flow.post(message), say);
+    this.timeline.onHandle = (line, follow) => this.editor.pointAt(line, follow);
+    this.badge = new Badge(say);
+    this.element = this.build();
+  }
+
+  build() {
+    const { flow } = this;
+    const button = (type, sign, name, keys) =>
+      make("button", { type: "button", class: "tm-button", title: `${name} (${keys})`, onclick: () => flow.post({ type }) },
+        make("span", { "aria-hidden": true, class: "tm-sign" }, sign), name);
+    this.picker = make("select", { class: "tm-picker", onchange: () => flow.post({ type: "icon", name: this.picker.value }) });
+    this.undo = button("undo", "\u21b6", "Undo", "Ctrl+Z");
+    this.redo = button("redo", "\u21b7", "Redo", "Ctrl+Shift+Z");
+    this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
+    const picker = make("label", { class: "tm-pick" }, "Icon ", this.picker);
+    const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
+    const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
+    return make("div", { class: "tm-design" }, bar, split, this.noteList);
+  }
+
+  edited(text) {
+    this.editSeq = this.flow.post({ type: "text", text });
+    this.onLocalText(text);
+  }
+
+  get textPending() {
+    return this.editSeq > this.flow.answered;
+  }
+
+  /** Takes a text of the kernel or of another view of the same model, unless something newer was typed here. */
+  takeText(text) {
+    if (text !== null && !this.textPending) this.editor.replace(text);
+  }
+
+  show(frame) {
+    this.takeText(frame.text);
+    if (!this.textPending) this.editor.show(frame.troubles);
+    this.showIcons(frame);
+    this.undo.disabled = !frame.can_undo;
+    this.redo.disabled = !frame.can_redo;
+    this.badge.show(frame.badge);
+    this.showNotes(frame.notes);
+    this.timeline.show(frame);
+    Object.assign(this.root.dataset, { icon: frame.icon ?? "", colour: frame.badge.colour });
+  }
+
+  showIcons({ icons, icon }) {
+    const names = icons.join("\n");
+    if (names !== this.names) {
+      this.names = names;
+      this.picker.replaceChildren(...icons.map((name) => make("option", { value: name }, name)));
+      this.picker.disabled = icons.length === 0;
+    }
+    if (icon !== null && this.picker.value !== icon) this.picker.value = icon;
+    if (icon !== this.icon && !this.editor.element.contains(document.activeElement)) this.editor.revealIcon(icon);
+    this.icon = icon;
+  }
+
+  showNotes(notes) {
+    const text = notes.join("\n");
+    if (text === this.notes) return;
+    this.notes = text;
+    this.noteList.replaceChildren(...notes.map((note) => make("li", {}, note)));
+    this.noteList.hidden = notes.length === 0;
+    if (notes.length) this.say(notes[0]);
+  }
+
+  stop() {
+    this.editor.stop();
+    this.timeline.stop();
+    this.badge.stop();
+  }
+}
+
+/** The verdict on safety as colour, sign and word, with the rule and its time; a click shows the whole. */
+class Badge {
+  constructor(say) {
+    Object.assign(this, { colour: null, say });
+    this.more = make("ul", { class: "tm-badge-more", id: uniqueId("badge"), hidden: true });
+    this.pill = make("span", { class: "tm-pill" });
+    this.text = make("span", { class: "tm-badge-text" });
+    this.button = make(
+      "button",
+      { class: "tm-badge-button", type: "button", "aria-expanded": "false", "aria-controls": this.more.id, onclick: () => this.open(this.more.hidden) },
+      this.pill, this.text,
+    );
+    this.element = make("div", { class: "tm-badge", onkeydown: (event) => event.key === "Escape" && this.open(false) }, this.button, this.more);
+    this.outside = (event) => !this.element.contains(event.target) && this.open(false);
+    document.addEventListener("pointerdown", this.outside, true);
+  }
+
+  open(open) {
+    this.more.hidden = !open || !this.more.children.length;
+    this.button.setAttribute("aria-expanded", String(!this.more.hidden));
+  }
+
+  show({ colour, text, more }) {
+    const { word, sign } = BADGES[colour] ?? BADGES.grey;
+    this.element.dataset.colour = colour;
+    setText(this.pill, `${sign} ${word}`);
+    setText(this.text, text.startsWith(`${word}: `) ? text.slice(word.length + 2) : text); // the pill says the word
+    this.button.title = text;
+    const lines = (more ?? []).join("\n");
+    if (lines !== this.lines) {
+      this.lines = lines;
+      this.more.replaceChildren(...(more ?? []).map((line) => make("li", {}, line)));
+    }
+    if (this.colour !== null && this.colour !== colour) this.say(`Safety: ${word}. ${text}`);
+    this.colour = colour;
+  }
+
+  stop() {
+    document.removeEventListener("pointerdown", this.outside, true);
+  }
+}
+
+/** Two icons over each other: the time line alone. */
+class TracesView {
+  constructor(root, flow, say) {
+    this.timeline = new Timeline(root, null, say);
+    this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
+    this.element = make("div", { class: "tm-traces" }, this.timeline.element, this.noteList);
+  }
+
+  show(frame) {
+    this.timeline.show(frame);
+    this.noteList.replaceChildren(...frame.notes.map((note) => make("li", {}, note)));
+    this.noteList.hidden = frame.notes.length === 0;
+  }
+
+  stop() {
+    this.timeline.stop();
+  }
+}

@@ -1,0 +1,103 @@
+// What anywidget calls: a view of the kernel's newest frame in an element of the page.
+
+const VIEWS = {
+  design: { make: DesignView, read: tracesFrame },
+  traces: { make: TracesView, read: tracesFrame },
+  heat: { make: HeatView, read: heatFrame },
+};
+const LATE = "No answer from the kernel; run the cell again to go on";
+const siblings = new Map(); // the workbenches of one model on this page, which show one text
+
+class Workbench {
+  constructor(model, el) {
+    Object.assign(this, { model, view: null, kind: null, newest: null, raf: 0 });
+    this.banner = make("div", { class: "tm-banner", role: "alert", hidden: true });
+    this.live = make("div", { class: "tm-unseen tm-live-region", "aria-live": "polite" });
+    this.place = make("div", { class: "tm-place" }, make("p", { class: "tm-waiting" }, "Waiting for the first drawing …"));
+    this.root = make("div", { class: "tm-root" }, this.banner, this.place, this.live);
+    this.say = whenQuiet((text) => setText(this.live, text), 600);
+    this.flow = new Flow((message) => model.send(message), (late) => this.showLate(late));
+    this.key = model.get?.("key") || model;
+    this.onMessage = (meta, buffers) => this.receive(meta, buffers);
+    el.append(this.root);
+    model.on("msg:custom", this.onMessage);
+    if (!siblings.has(this.key)) siblings.set(this.key, new Set());
+    siblings.get(this.key).add(this);
+    const view = model.get?.("view");
+    if (VIEWS[view]) this.become(view);
+    this.flow.hello();
+  }
+
+  showLate(late) {
+    this.banner.hidden = !late;
+    setText(this.banner, late ? LATE : "");
+  }
+
+  receive(meta, buffers) {
+    if (meta?.type !== "frame") return;
+    const sent = this.flow.arrived(meta.seq ?? 0);
+    const older = this.newest; // a frame that is never drawn may still be the one that brings a text
+    const text = meta.text ?? older?.meta.text ?? null;
+    this.newest = { meta: { ...meta, text }, buffers, sent: sent ?? older?.sent ?? null, arrived: performance.now() };
+    if (!this.raf) this.raf = requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    const { meta, buffers, sent, arrived } = this.newest;
+    this.raf = 0;
+    this.newest = null;
+    const began = performance.now();
+    const kind = VIEWS[meta.view] ? meta.view : this.kind ?? "traces";
+    if (kind !== this.kind) this.become(kind);
+    if (!this.view.element.isConnected) this.place.replaceChildren(this.view.element);
+    const frame = VIEWS[kind].read(meta, buffers);
+    this.view.show(frame);
+    if (frame.troubles) this.sayTroubles(frame.troubles);
+    this.root.dataset.seq = frame.seq;
+    this.repeatText();
+    const drawn = performance.now();
+    measure(kind, { seq: frame.seq, sent_ms: sent, arrived_ms: arrived, drawn_ms: drawn, kernel_ms: frame.ms, draw_ms: drawn - began });
+  }
+
+  become(kind) {
+    this.view?.stop();
+    this.kind = kind;
+    this.root.dataset.view = kind;
+    this.view = new VIEWS[kind].make(this.root, this.flow, this.say);
+    this.view.onLocalText = (text) => this.tellSiblings(text);
+  }
+
+  /** Views of one model show one text: what is typed in one stands in the others at once. */
+  tellSiblings(text) {
+    for (const other of siblings.get(this.key)) if (other !== this) other.view?.takeText?.(text);
+  }
+
+  /** A text whose answer got lost is sent again as soon as the kernel shows life. */
+  repeatText() {
+    if (this.view.textPending && this.flow.inFlight === null && this.flow.waiting.size === 0) this.view.edited(this.view.editor.text);
+  }
+
+  sayTroubles(troubles) {
+    const text = troubles.map(({ line, code, headline }) => `Line ${line}: ${code} ${headline}`).join(". ");
+    if (text !== (this.troublesSaid ?? "")) this.say(text || "No errors");
+    this.troublesSaid = text;
+  }
+
+  stop() {
+    cancelAnimationFrame(this.raf);
+    this.model.off?.("msg:custom", this.onMessage);
+    this.flow.stop();
+    this.say.cancel();
+    this.view?.stop();
+    siblings.get(this.key)?.delete(this);
+    if (!siblings.get(this.key)?.size) siblings.delete(this.key);
+    this.root.remove();
+  }
+}
+
+function render({ model, el }) {
+  const workbench = new Workbench(model, el);
+  return () => workbench.stop();
+}
+
+export default { render };

@@ -1,0 +1,98 @@
+"""What the export view says in words: how icons are delivered, the gate's verdict, and what speaks against writing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermicon.notebooks.export import CAUTION, told_of
+from thermicon.notebooks.wording import number, percent
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Prepared
+    from thermicon.circuit.limits import Check
+    from thermicon.notebooks.exporting import Ready
+    from thermicon.perception import FeltChange
+
+COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
+
+
+def delivered_html(ready: Ready) -> str:
+    """A row for every icon: how long, how near to the design, detection and safety; then warnings and refusals."""
+    head = ("icon", "lasts", "rate", "receptors within", "rms", "detected", "d′ changes by", "safety")
+    felt = {change.icon: change for change in ready.felt}
+    rows = "".join(_delivered(one, felt.get(one.realised.icon.name)) for one in ready.prepared)
+    cells = "".join(f"<th>{name}</th>" for name in head)
+    table = f'<table class="th"><thead><tr>{cells}</tr></thead><tbody>{rows}</tbody></table>'
+    warned = [line for one in ready.prepared for line in list(told_of(one))[1:]]
+    notes = [line.removeprefix("warning: ") for line in (*ready.warnings, *warned)]
+    against = "".join(
+        f'<div class="th-note th-bad">{escape(name)}: {escape(str(refusal))}</div>' for name, refusal in ready.against
+    )
+    return table + against + "".join(f'<div class="th-note">{escape(line)}</div>' for line in dict.fromkeys(notes))
+
+
+def _delivered(one: Prepared, felt: FeltChange | None) -> str:
+    realised, receptors = one.realised, [each for each in one.apart.places if "receptor" in each.place]
+    largest = max((abs(each.largest_K), each.at_s) for each in receptors)
+    moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None
+    cells = (
+        escape(realised.icon.name),
+        f"{number(realised.end_s, 2)} s",
+        f"{number(realised.rate_Hz, 1)} Hz",
+        f"{number(1e3 * largest[0])} mK at {largest[1]:.2f} s",
+        f"{number(1e3 * max(each.rms_K for each in receptors))} mK",
+        f"{percent(felt.detection.designed)} → {percent(felt.detection.delivered)}" if felt else "–",
+        f"{number(moved[0], 2)} to {escape(moved[1])}" if moved else "–",
+        f'<span class="{COLOURS[one.verdict.colour]}">{one.verdict.colour}</span>',
+    )
+    return '<tr class="tight">' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
+
+
+def gate_html(one: Prepared) -> str:
+    """The gate's verdict on one icon: every rule with its worst value, the limit, when and in which scenario."""
+    verdict = one.verdict
+    checks: Sequence[Check] = getattr(verdict, "checks", ())
+    name = escape(one.realised.icon.name)
+    summary = f'{name}: <span class="{COLOURS[verdict.colour]}">safety {verdict.colour}</span>'
+    first = verdict.reason or next(iter(verdict.cautions), None)
+    told = f" – {escape(first)}" if first else f", {len(checks)} rules kept in {verdict.scenarios} scenarios"
+    body = "".join(_check(check) for check in sorted(checks, key=lambda check: check.passed))
+    head = "".join(f"<th>{word}</th>" for word in ("", "rule", "worst", "limit", "at", "in", "source"))
+    table = f'<table class="th gate"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
+    return f"<details><summary>{summary}{told}</summary>{table}</details>"
+
+
+def _check(check: Check) -> str:
+    unit = "" if check.unit == "1" else f" {check.unit}"
+    kind = "" if check.passed else "bad" if check.severity == "hard" else "amber"
+    cells = (
+        {"": "ok", "bad": "RED", "amber": "amber"}[kind],
+        check.quantity,
+        f"{check.value:.4g}{unit}",
+        f"{'≤' if check.upper else '≥'} {check.limit:.4g}{unit} {check.severity}",
+        f"{check.time_s:.2f} s",
+        check.scenario,
+        check.source,
+    )
+    return f'<tr class="{kind}">' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
+
+
+def written_html(ready: Ready, paths: Sequence[Path]) -> str:
+    """Which files were written, and how they are played."""
+    drives = len(ready.prepared)
+    head = f"wrote {drives} {'drive' if drives == 1 else 'drives'} with sidecars into {paths[0].parent.resolve()}"
+    names = "".join(f"<li>{escape(path.name)}</li>" for path in paths)
+    played = f"to play: {escape(ready.form.how)}"
+    return (
+        f'<div class="th-good">{escape(head)}</div><ul class="th th-code">{names}</ul>'
+        f'<div class="th-soft">{played}<br>{escape(CAUTION)}</div>'
+    )
+
+
+def told_lines(ready: Ready) -> Iterator[str]:
+    """The same in plain lines, as ``thermicon export`` prints them."""
+    for one in ready.prepared:
+        yield from told_of(one)

@@ -1,0 +1,100 @@
+"""A real browser, JupyterLab on the shipped notebooks, and Voila; each test gets a page of 1280 x 800."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from tests.browser.jupyter import Server, end_kernels, running
+
+CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
+WINDOW = {"width": 1280, "height": 800}
+LAB = (
+    "--ServerApp.ip=127.0.0.1",
+    "--IdentityProvider.token=",
+    "--ServerApp.allow_root=True",
+    "--ServerApp.disable_check_xsrf=True",
+    "--ServerApp.port_retries=0",
+    "--LabApp.expose_app_in_browser=True",
+)
+VOILA = ("--Voila.ip=127.0.0.1", "--ServerApp.allow_root=True", "--VoilaConfiguration.show_tracebacks=True")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Browser tests come last: Playwright keeps an event loop running in this thread, which others would trip over."""
+    items.sort(key=lambda item: Path(__file__).parent in item.path.parents)
+
+
+@pytest.fixture(scope="session")
+def browser(tool: Callable[[str], str]) -> Iterator[Browser]:
+    """Debian's chromium, without a window. Missing, the test is skipped, or fails where tools are required."""
+    path = next((found for name in CHROMIUMS if (found := shutil.which(name))), None) or tool("chromium")
+    with sync_playwright() as playwright:
+        opened = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def page(browser: Browser) -> Iterator[Page]:
+    """A new window of 1280 x 800 that shares nothing with other tests."""
+    context = browser.new_context(viewport=WINDOW, accept_downloads=True)
+    context.set_default_timeout(30_000)
+    yield context.new_page()
+    context.close()
+
+
+@pytest.fixture(scope="session")
+def jupyterlab(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Server]:
+    """One JupyterLab for all tests, since it takes seconds to start."""
+    own = tmp_path_factory.mktemp("lab")
+    (own / "notebooks").mkdir()
+    with running("jupyterlab", LAB, own / "notebooks", own / "jupyter") as server:
+        yield server
+
+
+@pytest.fixture
+def lab(jupyterlab: Server) -> Iterator[Server]:
+    """JupyterLab on the notebooks as ``thermicon lab --files-only`` puts them, fresh and without a kernel."""
+    from thermicon.notebooks.lab import copy_notebooks
+
+    theme = jupyterlab.log.parent / "settings/@jupyterlab/apputils-extension/themes.jupyterlab-settings"
+    theme.unlink(missing_ok=True)
+    for left in jupyterlab.folder.iterdir():
+        shutil.rmtree(left) if left.is_dir() else left.unlink()
+    copy_notebooks(jupyterlab.folder)
+    yield jupyterlab
+    end_kernels(jupyterlab)
+
+
+@pytest.fixture
+def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[[Path], Server]]:
+    """``serve_page(path)`` serves a notebook with Voila, as ``thermicon lab --page`` does."""
+    with ExitStack() as stack:
+
+        def serve(notebook: Path) -> Server:
+            own = tmp_path_factory.mktemp("voila")
+            return stack.enter_context(running("voila", (notebook.name, *VOILA), notebook.parent, own))
+
+        yield serve
+
+
+@pytest.fixture
+def shot(page: Page, tmp_path: Path, request: pytest.FixtureRequest) -> Callable[[str], Path]:
+    """``shot("design")`` saves the window as PNG in the folder THERMICON_SCREENSHOTS, or in the test's own."""
+
+    def take(name: str) -> Path:
+        folder = Path(os.environ.get("THERMICON_SCREENSHOTS") or tmp_path)
+        folder.mkdir(parents=True, exist_ok=True)
+        path = folder / f"{re.sub(r'[^a-z0-9]+', '-', name.lower())}.png"
+        page.screenshot(path=path)
+        return path
+
+    return take

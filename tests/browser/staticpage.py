@@ -1,0 +1,143 @@
+"""The canvas module in a static page: a model that sends nowhere and answers as the test says, no Jupyter."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy
+
+from thermicon.notebooks.canvas import module_text, style_text
+
+URL = "http://thermicon.test/"
+PAGE = """<!doctype html><html><head><meta charset="utf-8"><style>%s</style></head><body><div id="app"></div>
+<script type="module">
+import widget from "./module.mjs";
+function unpacked(buffer) { // at an odd place, as buffers come out of a message
+  const text = atob(buffer), bytes = new Uint8Array(text.length + 3);
+  for (let k = 0; k < text.length; k += 1) bytes[k + 3] = text.charCodeAt(k);
+  return new DataView(bytes.buffer, 3, text.length);
+}
+window.listeners = new Set();
+window.sent = [];
+window.deliver = (meta, buffers) => [...listeners].forEach((tell) => tell(meta, buffers.map(unpacked)));
+window.show = (view, key) => {
+  const el = document.body.appendChild(document.createElement("div"));
+  const model = {
+    get: (name) => ({ view, key })[name], send: (message) => window.sent.push(message),
+    on: (_, tell) => listeners.add(tell), off: (_, tell) => listeners.delete(tell),
+  };
+  window.leave = widget.render({ model, el });
+};
+window.ready = true;
+</script></body></html>"""
+TEXT = "cue 1\n\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4\n  return at 3 °C/s\n}\n"
+TROUBLE = {
+    "line": 5,
+    "column": 12,
+    "end_column": 13,
+    "code": "E102",
+    "headline": "missing unit: this number has no unit",
+    "hint": 'a time is written as "4 s"',
+    "suggestion": "  hold for 4 s",
+}
+ROWS = 600
+# How much of a canvas is drawn on; the picture of the numbers on an axis; how many pixels are light, and how many dark.
+PIXELS = "c.getContext('2d').getImageData(0, 0, c.width, c.height).data"
+INKED = f"c => new Uint32Array({PIXELS}.buffer).filter((pixel) => pixel).length"
+NUMBERS = """() => {
+  const c = document.querySelector(".tm-base");
+  return c.getContext("2d").getImageData(0, 0, 44, c.height).data.join();
+}"""
+SHADES = f"""() => {{
+  const c = document.querySelector(".tm-base"), data = {PIXELS};
+  let light = 0, dark = 0;
+  for (let k = 0; k < data.length; k += 4) {{
+    const sum = data[k] + data[k + 1] + data[k + 2];
+    if (data[k + 3] > 200) sum > 600 ? light += 1 : sum < 120 ? dark += 1 : 0;
+  }}
+  return [light, dark];
+}}"""
+
+
+def packed(values: Any) -> str:
+    return base64.b64encode(numpy.asarray(values, dtype="<f4").tobytes()).decode()
+
+
+def design(**changes: Any) -> dict[str, Any]:
+    """A frame of one panel with a straight fall from 32 to 26 °C in 6 s, and three corners."""
+    skin = {"key": "skin", "label": "skin", "buffer": 0, "role": "ink", "dash": [], "width": 1.5, "step": False}
+    handle = {"panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 4}
+    fixed = {"moves_time": False, "moves_level": False, "why": "rest is at baseline"}
+    panel = {"key": "temperature", "label": "temperature (°C)", "height": 1, "series": [skin]}
+    panel |= {"bands": [], "levels": [], "spans": [], "marks": []}
+    return {
+        "type": "frame",
+        "view": "design",
+        "seq": 0,
+        "text": TEXT,
+        "icons": ["dip", "rise"],
+        "icon": "dip",
+        "troubles": [],
+        "stale": False,
+        "can_undo": True,
+        "can_redo": False,
+        "badge": {"colour": "green", "text": "no limit is passed", "more": ["28 °C at 2 s"]},
+        "notes": [],
+        "time": {"t0": 0.0, "dt": 0.01, "n": ROWS + 1},
+        "panels": [panel],
+        "handles": [
+            {**handle, "t": 2.0, "y": 30.0},
+            {**handle, "t": 4.0, "y": 28.0},
+            {**handle, **fixed, "t": 6.0, "y": 26.0},
+        ],
+        "ms": 2.0,
+    } | changes
+
+
+class Bench:
+    """The page as a person and a kernel use it."""
+
+    def __init__(self, page: Any) -> None:
+        self.page = page
+        self.wrong: list[str] = []
+
+    def show(self, view: str = "design", key: str = "one") -> None:
+        self.page.evaluate("([view, key]) => show(view, key)", [view, key])
+
+    def frame(self, meta: dict[str, Any], *arrays: Any) -> None:
+        given = arrays or (numpy.linspace(32.0, 26.0, ROWS + 1),)
+        self.page.evaluate("([meta, buffers]) => deliver(meta, buffers)", [meta, [packed(each) for each in given]])
+        self.page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def sent(self, *kinds: str) -> list[dict[str, Any]]:
+        messages = self.page.evaluate("sent")
+        return [message for message in messages if not kinds or message["type"] in kinds]
+
+    def answer(self, **changes: Any) -> None:
+        """A frame that answers the newest message."""
+        self.frame(design(**{"text": None, "seq": self.sent()[-1]["seq"]} | changes))
+
+    def corner(self, t: float, y: float) -> tuple[float, float]:
+        """Where a point of the temperature panel is in the window."""
+        box = self.page.locator(".tm-over").bounding_box()
+        low, high = 29.0 - 3.0 * 1.12, 29.0 + 3.0 * 1.12
+        across = 46 + (box["width"] - 56) * t / 6.0
+        down = (box["height"] - 6) - (box["height"] - 11) * (y - low) / (high - low)
+        return box["x"] + across, box["y"] + down
+
+
+def open_bench(page: Any) -> Bench:
+    """A page with the module, which shows nothing yet."""
+    bench = Bench(page)
+    page.on("pageerror", lambda problem: bench.wrong.append(str(problem)))
+    parts = {"": (PAGE % style_text(), "text/html"), "module.mjs": (module_text(), "text/javascript")}
+
+    def serve(route: Any) -> None:
+        body, kind = parts.get(route.request.url.removeprefix(URL), ("", "text/plain"))
+        route.fulfill(body=body, content_type=f"{kind}; charset=utf-8")
+
+    page.route("**/*", serve)
+    page.goto(URL)
+    page.wait_for_function("window.ready === true")
+    return bench

@@ -1,0 +1,270 @@
+"""The design view of the canvas module alone: a static page, and frames as the kernel would send them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy
+import pytest
+
+from tests.browser.staticpage import INKED, NUMBERS, ROWS, TEXT, TROUBLE, Bench, design, open_bench
+
+
+@pytest.fixture
+def drawn(page: Any) -> Iterator[Bench]:
+    """The design view with its first frame; at the end nothing has gone wrong in the page."""
+    made = open_bench(page)
+    made.show()
+    made.frame(design())
+    yield made
+    assert made.wrong == []
+
+
+def test_a_view_greets_and_draws_the_first_frame(drawn: Bench) -> None:
+    assert drawn.sent() == [{"type": "hello"}]
+    root = drawn.page.locator(".tm-root")
+    assert {name: root.get_attribute(f"data-{name}") for name in ("icon", "colour", "seq", "view")} == {
+        "icon": "dip",
+        "colour": "green",
+        "seq": "0",
+        "view": "design",
+    }
+    assert drawn.page.locator(".tm-area").input_value() == TEXT
+    assert drawn.page.locator(".tm-pill").inner_text() == "✓ safe"
+    assert [option.inner_text() for option in drawn.page.locator(".tm-picker option").all()] == ["dip", "rise"]
+    assert drawn.page.locator(".tm-base").evaluate(INKED) > 1_000
+    measured = drawn.page.evaluate("__thermicon.design")
+    assert measured[-1]["kernel_ms"] == 2.0
+    assert measured[-1]["drawn_ms"] > 0
+
+
+def test_typing_sends_text_one_message_at_a_time_and_the_newest_wins(drawn: Bench) -> None:
+    drawn.page.locator(".tm-area").press("Control+End")
+    drawn.page.keyboard.type("# abc")
+    first = drawn.sent("text")
+    assert [message["text"] for message in first] == [TEXT + "#"]
+    drawn.answer()
+    texts = [message["text"] for message in drawn.sent("text")]
+    assert texts == [TEXT + "#", TEXT + "# abc"]
+    numbers = [message["seq"] for message in drawn.sent("text")]
+    assert numbers == sorted(set(numbers))
+
+
+def test_a_frame_that_answers_nothing_lets_no_message_go(drawn: Bench) -> None:
+    drawn.page.locator(".tm-area").press("Control+End")
+    drawn.page.keyboard.type("ab")
+    drawn.frame(design(seq=0, text=None, notes=["the skin is at 33 °C"]))
+    assert drawn.page.locator(".tm-notes").inner_text() == "the skin is at 33 °C"
+    assert len(drawn.sent("text")) == 1
+    drawn.answer()
+    assert len(drawn.sent("text")) == 2
+
+
+def test_a_text_of_the_kernel_never_replaces_newer_typing_and_the_caret_stays(drawn: Bench) -> None:
+    area = drawn.page.locator(".tm-area")
+    area.focus()
+    area.evaluate("area => area.setSelectionRange(7, 7)")
+    drawn.page.keyboard.type("# x")
+    drawn.frame(design(text="cue 1\n"))
+    assert area.input_value().startswith("cue 1\n\n# xicon")
+    assert area.evaluate("area => area.selectionStart") == 10
+    drawn.answer()
+    drawn.answer(text="\n" + area.input_value())
+    assert area.input_value().startswith("\ncue 1")
+    assert area.evaluate("area => area.selectionStart") == 11
+
+
+def test_colours_of_the_copy_lie_exactly_under_the_text(drawn: Bench) -> None:
+    assert [line.text_content() for line in drawn.page.locator(".tm-line").all()] == TEXT.split("\n")
+    kinds = (
+        drawn.page.locator(".tm-line >> nth=3")
+        .locator("span")
+        .evaluate_all("all => all.map(s => [s.className, s.textContent])")
+    )
+    assert kinds == [
+        ["tm-keyword", "cool"],
+        ["tm-keyword", "by"],
+        ["tm-number", "6"],
+        ["tm-unit", "°C"],
+        ["tm-keyword", "at"],
+        ["tm-number", "3"],
+        ["tm-unit", "°C/s"],
+    ]
+    style = (
+        "e => { const s = getComputedStyle(e); return [s.font, s.lineHeight, s.padding, s.letterSpacing, s.tabSize] }"
+    )
+    area, copy = (drawn.page.locator(name) for name in (".tm-area", ".tm-backdrop"))
+    assert area.evaluate(style) == copy.evaluate(style)
+    assert area.bounding_box() == copy.bounding_box()
+
+
+def test_an_error_stands_under_its_line_with_its_hint_and_a_cure(drawn: Bench) -> None:
+    drawn.frame(design(troubles=[TROUBLE], stale=True))
+    page = drawn.page
+    message = page.locator(".tm-trouble")
+    assert message.inner_text() == "E102 missing unit: this number has no unit"
+    wrong = page.locator(".tm-wrong")
+    assert wrong.inner_text() == "4"
+    at, line, after = (
+        page.locator(name).bounding_box() for name in (".tm-trouble", ".tm-line >> nth=4", ".tm-line >> nth=5")
+    )
+    letters = 13.0
+    assert at["y"] >= line["y"] + line["height"] / 2 + letters / 2
+    assert at["y"] + at["height"] <= after["y"] + after["height"] / 2 - letters / 2 + 1.0
+    assert abs(at["x"] - wrong.bounding_box()["x"]) < 4
+    assert page.locator(".tm-stale-tag").is_visible()
+    assert page.locator(".tm-more").is_hidden()
+    message.hover()
+    assert page.locator(".tm-more .tm-hint").inner_text() == 'a time is written as "4 s"'
+    page.locator(".tm-take").click()
+    assert drawn.sent("apply")[-1]["line"] == 5
+    page.wait_for_function("document.querySelector('[aria-live]').textContent.startsWith('Line 5: E102')")
+    drawn.answer(text=TEXT.replace("4\n", "4 s\n"))
+    assert page.locator(".tm-trouble").count() == 0
+    assert page.locator(".tm-status").inner_text() == "no errors"
+
+
+def test_the_keyboard_reaches_hint_cure_undo_and_leaves_the_editor(drawn: Bench) -> None:
+    drawn.frame(design(troubles=[TROUBLE]))
+    page = drawn.page
+    page.locator(".tm-area").focus()
+    page.keyboard.press("Tab")
+    assert page.locator(".tm-more").is_visible()
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.className") == "tm-take"
+    page.locator(".tm-area").focus()
+    page.keyboard.press("Control+z")
+    drawn.answer(troubles=[TROUBLE])
+    page.keyboard.press("Control+Shift+z")
+    drawn.answer()
+    page.keyboard.press("Control+y")
+    assert [message["type"] for message in drawn.sent("undo", "redo")] == ["undo", "redo", "redo"]
+    assert page.locator(".tm-area").input_value() == TEXT
+
+
+def test_enter_keeps_the_indentation(drawn: Bench) -> None:
+    area = drawn.page.locator(".tm-area")
+    area.focus()
+    area.evaluate("area => area.setSelectionRange(17, 17)")
+    drawn.page.keyboard.press("Enter")
+    drawn.page.keyboard.type("rest")
+    assert area.input_value().startswith("cue 1\n\nicon dip {\n  rest\n  cool")
+
+
+def test_a_drag_sends_the_newest_place_and_ends_once(drawn: Bench) -> None:
+    page = drawn.page
+    x, y = drawn.corner(2.0, 30.0)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(1, 9):
+        page.mouse.move(x + 10 * step, y + 4 * step)
+    first = drawn.sent("drag")
+    assert len(first) == 1, "one message in flight"
+    assert (first[0]["handle"], first[0]["end"]) == (0, False)
+    drawn.answer()
+    newest = drawn.sent("drag")[-1]
+    assert len(drawn.sent("drag")) == 2
+    per_px = 6.0 / (page.locator(".tm-over").bounding_box()["width"] - 56)
+    assert newest["t"] == pytest.approx(2.0 + 80 * per_px, abs=per_px)
+    assert newest["y"] < 30.0
+    drawn.answer()
+    page.mouse.up()
+    drags = drawn.sent("drag")
+    assert [message["end"] for message in drags] == [False, False, True]
+    assert drags[-1]["t"] == newest["t"]
+
+
+def test_axes_stand_still_under_the_pointer(drawn: Bench) -> None:
+    page = drawn.page
+    before = page.evaluate(NUMBERS)
+    page.mouse.move(*drawn.corner(4.0, 28.0))
+    page.mouse.down()
+    page.mouse.move(*drawn.corner(4.0, 27.0))
+    moved = design(text=None, seq=drawn.sent()[-1]["seq"])
+    drawn.frame(moved, numpy.linspace(32.0, 12.0, ROWS + 1))
+    assert page.evaluate(NUMBERS) == before
+    page.mouse.up()
+    drawn.frame(design(text=None, seq=drawn.sent()[-1]["seq"]), numpy.linspace(32.0, 12.0, ROWS + 1))
+    assert page.evaluate(NUMBERS) != before
+
+
+def test_a_fixed_corner_says_why_and_sends_nothing(drawn: Bench) -> None:
+    page = drawn.page
+    x, y = drawn.corner(6.0, 26.0)
+    page.mouse.move(x, y)
+    page.wait_for_selector(".tm-tip:not([hidden])")
+    assert page.locator(".tm-tip").inner_text() == "line 4 · 6.00 s, 26.00 °C · fixed: rest is at baseline"
+    page.mouse.down()
+    page.mouse.move(x - 50, y - 50)
+    page.mouse.up()
+    assert drawn.sent("drag") == []
+
+
+def test_keys_move_cursor_and_corners(drawn: Bench) -> None:
+    page = drawn.page
+    page.locator(".tm-stage").focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("Shift+ArrowRight")
+    page.wait_for_function("document.querySelector('.tm-value').textContent === '31.50'")
+    page.keyboard.press("]")
+    page.keyboard.press("]")
+    page.keyboard.press("ArrowUp")
+    drawn.answer()
+    page.keyboard.press("Shift+ArrowRight")
+    drawn.answer()
+    drags = drawn.sent("drag")
+    assert {message["handle"] for message in drags} == {1}
+    assert (drags[0]["t"], drags[0]["y"], drags[0]["end"]) == (4.0, 28.1, False)
+    assert drags[-1]["end"]
+    page.wait_for_function("document.querySelector('[aria-live]').textContent.startsWith('Corner 2 of 3, line 4')")
+
+
+def test_the_cursor_reads_every_series_with_its_unit(drawn: Bench) -> None:
+    page = drawn.page
+    x, y = drawn.corner(3.0, 27.0)
+    page.mouse.move(x, y)
+    page.wait_for_function("document.querySelector('.tm-value').textContent.startsWith('29.0')")
+    assert re.fullmatch(r"skin 29\.0\d °C", page.locator(".tm-entry").text_content())
+
+
+def test_without_an_answer_a_banner_says_so_and_the_text_is_sent_again(drawn: Bench) -> None:
+    page = drawn.page
+    page.locator(".tm-area").press("Control+End")
+    page.keyboard.type("#")
+    assert page.locator(".tm-banner").is_hidden()
+    page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
+    assert page.locator(".tm-banner").inner_text() == "No answer from the kernel; run the cell again to go on"
+    page.keyboard.type("x")
+    assert page.locator(".tm-area").input_value() == TEXT + "#x"
+    drawn.frame(design(seq=0))
+    assert page.locator(".tm-banner").is_hidden()
+    assert page.locator(".tm-area").input_value() == TEXT + "#x"
+    assert drawn.sent("text")[-1]["text"] == TEXT + "#x"
+
+
+def test_a_text_that_cannot_be_drawn_leaves_a_page_that_works(drawn: Bench) -> None:
+    nothing = {"t0": 0.0, "dt": 0.0, "n": 0}
+    drawn.frame(design(text="cue", panels=[], handles=[], time=nothing, icons=[], icon=None, stale=True))
+    page = drawn.page
+    assert page.locator(".tm-nothing").inner_text() == "Nothing to draw yet."
+    page.locator(".tm-stage").press("ArrowRight")
+    page.locator(".tm-area").press("Control+End")
+    page.keyboard.type(" 1")
+    drawn.answer()
+    assert page.locator(".tm-nothing").is_hidden()
+    assert page.locator(".tm-panel").count() == 1
+
+
+def test_the_badge_says_the_rule_and_opens_to_more(drawn: Bench) -> None:
+    page = drawn.page
+    red = {"colour": "red", "text": "not safe: skin above 42 °C at 5.0 s", "more": ["skin 45 °C", "dose 4 min"]}
+    drawn.frame(design(badge=red))
+    assert page.locator(".tm-badge-button").inner_text().split("\n") == ["✕ not safe", "skin above 42 °C at 5.0 s"]
+    assert page.locator(".tm-root").get_attribute("data-colour") == "red"
+    page.locator(".tm-badge-button").press("Enter")
+    assert page.locator(".tm-badge-more li").all_inner_texts() == ["skin 45 °C", "dose 4 min"]
+    page.keyboard.press("Escape")
+    assert page.locator(".tm-badge-more").is_hidden()
+    page.wait_for_function("document.querySelector('[aria-live]').textContent.startsWith('Safety: not safe')")

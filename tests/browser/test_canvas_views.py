@@ -1,0 +1,103 @@
+"""Heat maps, themes, several views and speed of the canvas module alone, in a static page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Any
+
+import numpy
+import pytest
+
+from tests.browser.staticpage import SHADES, TEXT, Bench, design, open_bench
+
+
+@pytest.fixture
+def made(page: Any) -> Iterator[Bench]:
+    """The module in a page, without a view; at the end nothing has gone wrong there."""
+    bench = open_bench(page)
+    yield bench
+    assert bench.wrong == []
+
+
+@pytest.mark.parametrize("count", [2, 16])
+@pytest.mark.parametrize("width", [900, 1280])
+def test_labels_of_a_heat_map_do_not_overlap(page: Any, made: Bench, count: int, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    made.show("heat")
+    labels = [f"a-rather-long-name_amount=-3_rate={k}" for k in range(count)]
+    one = {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": 6, "text": "0.0"}
+    both = [one, {**one, "key": "confusion", "label": "confusion", "text": "0%", "high": 1}]
+    meta = {"type": "frame", "view": "heat", "seq": 0, "labels": labels, "matrices": both, "picked": None, "ms": 1.0}
+    made.frame(meta, numpy.full(count * count, 0.5))
+    for kind in (".tm-row", ".tm-column"):
+        boxes = [each.bounding_box() for each in page.locator(f"[data-matrix=distance] {kind}").all()]
+        axis, size = ("y", "height") if kind == ".tm-row" else ("x", "width")
+        assert all(one[axis] + one[size] <= other[axis] + 0.1 for one, other in pairwise(boxes))
+    first, second = (page.locator(f"[data-matrix={key}]").bounding_box() for key in ("distance", "confusion"))
+    assert first["x"] + first["width"] <= second["x"]
+    assert first["y"] == second["y"]
+
+
+def test_themes_change_the_colours_that_are_drawn(page: Any, made: Bench) -> None:
+    page.emulate_media(color_scheme="dark")
+    made.show()
+    made.frame(design())
+    ground = "() => getComputedStyle(document.querySelector('.tm-root')).backgroundColor"
+    light, dark = page.evaluate(SHADES)
+    assert light > 5 * dark, "the skin's line is pale on a dark page"
+    assert page.evaluate(ground) == "rgb(20, 23, 26)"
+    page.evaluate("document.body.dataset.jpThemeLight = 'true'")
+    page.wait_for_timeout(150)
+    assert page.evaluate(ground) == "rgb(255, 255, 255)"
+    light, dark = page.evaluate(SHADES)
+    assert dark > 100, "and dark on a light one, redrawn at once"
+
+
+def test_a_cell_is_picked_by_click_and_by_keys(page: Any, made: Bench) -> None:
+    made.show("heat")
+    labels = ["cool", "warm", "wave"]
+    both = [
+        {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": 6, "text": "0.0"},
+        {"key": "confusion", "label": "confusion", "buffer": 1, "unit": "", "low": 0, "high": 1, "text": "0%"},
+    ]
+    meta = {"type": "frame", "view": "heat", "seq": 0, "labels": labels, "matrices": both, "picked": None, "ms": 1.0}
+    arrays = ([0, 1, 2, 1, 0, 3.25, 2, 3.25, 0], [0.9, 0.1, 0, 0.1, 0.9, 0, 0, 0.05, 0.95])
+    made.frame(meta, *arrays)
+    cell = page.locator("[data-matrix=confusion] .tm-cell[data-row='2'][data-column='1']")
+    assert cell.inner_text() == "5%"
+    cell.click()
+    assert {**made.sent("cell")[0], "seq": 0} == {"type": "cell", "row": 2, "column": 1, "seq": 0}
+    assert page.locator(".tm-reading").inner_text() == "wave → warm: distance (d′) 3.3, confusion 5%"
+    made.frame({**meta, "seq": made.sent("cell")[0]["seq"], "picked": [2, 1]}, *arrays)
+    assert page.locator(".tm-picked").count() == 2
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Enter")
+    assert (made.sent("cell")[-1]["row"], made.sent("cell")[-1]["column"]) == (1, 0)
+
+
+def test_two_views_of_one_model_show_one_text_and_leave_nothing_behind(page: Any, made: Bench) -> None:
+    made.show()
+    made.show()
+    made.frame(design())
+    page.locator(".tm-area >> nth=0").press("Control+End")
+    page.keyboard.type("#")
+    assert page.locator(".tm-area >> nth=1").input_value() == TEXT + "#"
+    page.evaluate("leave()")
+    assert page.locator(".tm-root").count() == 1
+    assert page.evaluate("listeners.size") == 1
+
+
+def test_3000_points_times_10_series_are_drawn_in_8_ms(page: Any, made: Bench) -> None:
+    made.show("traces")
+    clock = numpy.arange(3_000) * 0.01
+    wavy = [numpy.sin(clock * (1 + k / 5)) + 0.05 * numpy.cos(clock * 71 * k) for k in range(10)]
+    roles = ("ink", "cool", "warm")
+    series = [{"key": str(k), "label": f"s{k}", "buffer": k, "role": roles[k % 3], "width": 1.5} for k in range(10)]
+    panels = [{"key": f"p{k}", "label": f"p{k} (K)", "height": 1, "series": series[k::4]} for k in range(4)]
+    meta = {"type": "frame", "view": "traces", "seq": 0, "time": {"t0": 0, "dt": 0.01, "n": 3_000}, "panels": panels}
+    for _ in range(15):
+        made.frame(meta, *wavy)
+    took = [each["draw_ms"] for each in page.evaluate("__thermicon.traces")]
+    assert numpy.percentile(took[3:], 25) < 8.0, "the better frames: others work on this machine as well"

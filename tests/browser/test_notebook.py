@@ -1,0 +1,67 @@
+"""The first notebook in JupyterLab, from the file that ``thermicon lab`` wrote to its pictures; a page under Voila."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import nbformat
+from playwright.sync_api import Page
+
+from tests.browser.jupyter import (
+    Server,
+    errors_in,
+    make_notebook,
+    open_notebook,
+    restart_kernel,
+    run_all,
+    save,
+    set_cell,
+)
+
+MOST_SAVED = 300_000
+
+
+def test_the_first_notebook_runs_and_shows_its_pictures(page: Page, lab: Server, shot: Callable[[str], Path]) -> None:
+    notebook = open_notebook(page, lab, "01_first_icon.ipynb")
+    run_all(page)
+    assert errors_in(page) == []
+    pictures = notebook.locator(".jp-OutputArea-output img")
+    assert pictures.count() == 2
+    for place in range(2):
+        pictures.nth(place).scroll_into_view_if_needed()
+        box = pictures.nth(place).bounding_box()
+        assert box is not None
+        assert box["width"] > 500
+    assert notebook.locator(".jp-OutputArea-output svg").count() >= 2
+    shot("notebook-01-overview")
+    save(page)
+    saved = lab.folder / "01_first_icon.ipynb"
+    assert saved.stat().st_size < MOST_SAVED
+    assert any(cell.get("outputs") for cell in nbformat.read(saved, as_version=4).cells)
+
+
+def test_a_mistake_in_a_cue_cell_is_told_and_the_kernel_can_be_restarted(page: Page, lab: Server) -> None:
+    right = "%%cue\nicon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }"
+    make_notebook(lab.folder / "slip.ipynb", "%load_ext thermicon.notebooks", right.replace("3 °C", "3", 1))
+    notebook = open_notebook(page, lab, "slip.ipynb")
+    run_all(page)
+    told = errors_in(page)
+    assert len(told) == 1
+    assert "E102 missing unit" in told[0]
+    restart_kernel(page)
+    set_cell(page, 1, right)
+    run_all(page)
+    assert errors_in(page) == []
+    assert notebook.locator(".jp-OutputArea-output svg").count() == 1
+
+
+def test_a_notebook_is_served_as_a_page(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
+) -> None:
+    cue = "%%cue\nicon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }"
+    made = make_notebook(tmp_path / "page.ipynb", "%load_ext thermicon.notebooks", cue)
+    page.goto(serve_page(made).url)
+    page.locator(".jp-OutputArea-output svg").first.wait_for()
+    assert page.get_by_text("%%cue").count() == 0
+    shot("page-of-a-cue")

@@ -1,0 +1,118 @@
+"""The workbench in JupyterLab, as a lab uses it: text and curve, set, export, and going on after an interruption."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.jupyter import Server, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
+from tests.browser.onbench import (
+    TWO,
+    click_a_confusion,
+    editor,
+    open_tab,
+    root,
+    type_drag_and_err,
+    type_text,
+    wait_until_drawn,
+    wait_until_refined,
+    write_drives,
+)
+
+Shot = Callable[[str], Path]
+MOST_SAVED = 300_000
+
+
+@pytest.fixture
+def bench(page: Page, lab: Server) -> Page:
+    """JupyterLab with the workbench notebook run, its views at the top of the window."""
+    open_notebook(page, lab, "workbench.ipynb")
+    run_all(page)
+    assert errors_in(page) == []
+    wait_until_drawn(page)
+    return page
+
+
+def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
+    fits = bench.evaluate(
+        "() => { const box = (name) => document.querySelector(name).getBoundingClientRect();"
+        " return box('.thermicon').bottom - box('.jp-Notebook').bottom; }"
+    )
+    assert fits <= 0, "the design view does not fit into the window"
+    shot("lab-design-light")
+    dark(bench)
+    shot("lab-design-dark")
+    dark(bench, False)
+    type_drag_and_err(bench)
+
+
+def test_an_error_and_an_icon_that_is_not_reached_are_shown(bench: Page, shot: Shot) -> None:
+    type_text(bench, TWO.replace("hold for 2 s", "hold for 2", 1))
+    expect(bench.locator('.tm-trouble-place[data-line="5"]')).to_be_visible()
+    shot("lab-design-error")
+    type_text(bench, TWO.replace("warm by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
+    expect(bench.locator(".tm-notes").first).to_contain_text("near is not reached")
+    shot("lab-design-not-reached")
+
+
+def test_a_slider_changes_the_curves_and_reset_brings_them_back(bench: Page) -> None:
+    before = root(bench).get_attribute("data-seq")
+    slider = bench.locator(".thermicon-knob").filter(has_text="current limit").locator(".noUi-handle")
+    slider.focus()
+    for _ in range(26):
+        bench.keyboard.press("ArrowLeft")
+    expect(bench.locator(".tm-notes").first).to_contain_text("cooling-step is not reached")
+    assert root(bench).get_attribute("data-seq") is not None, before
+    bench.get_by_role("button", name="Reset").click()
+    expect(bench.locator(".tm-notes").first).to_be_hidden()
+
+
+def test_the_set_is_compared_and_an_edit_applied(bench: Page, shot: Shot) -> None:
+    open_tab(bench, "Set")
+    wait_until_refined(bench)
+    expect(bench.get_by_role("button", name="Apply edit")).to_be_enabled(timeout=60_000)
+    shot("lab-set-light")
+    open_tab(bench, "Design")
+    type_text(bench, TWO)
+    click_a_confusion(bench)
+    bench.get_by_role("button", name="Apply edit").click()
+    open_tab(bench, "Design")
+    expect(editor(bench)).not_to_have_value(TWO)
+    assert "# as far as is pleasant" in editor(bench).input_value()
+
+
+def test_a_drive_is_written_and_can_be_read(bench: Page, lab: Server, shot: Shot) -> None:
+    write_drives(bench, lab.folder / "drives")
+    shot("lab-export-light")
+    sidecar = json.loads((lab.folder / "drives" / "cooling-step.json").read_text(encoding="utf-8"))
+    assert sidecar["safety"]["colour"] == "green"
+    rows = (lab.folder / "drives" / "cooling-step.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) > 700
+
+
+def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server, shot: Shot) -> None:
+    type_text(bench, TWO)
+    expect(root(bench)).to_have_attribute("data-icon", "near")
+    reload(bench)
+    assert (lab.folder / "workbench.ipynb").stat().st_size < MOST_SAVED
+    wait_until_drawn(bench)
+    expect(editor(bench)).to_have_value(TWO)
+    type_text(bench, TWO.replace("icon near ", "icon nigh "))
+    expect(root(bench)).to_have_attribute("data-icon", "nigh")
+
+    restart_kernel(bench)
+    type_text(bench, TWO)
+    banner = root(bench).locator(".tm-banner")
+    expect(banner).to_contain_text("run the cell again", timeout=15_000)
+    assert editor(bench).input_value() == TWO
+    shot("lab-kernel-restarted")
+    run_all(bench)
+    wait_until_drawn(bench)
+    expect(banner).to_be_hidden()
+    type_text(bench, TWO)
+    expect(root(bench)).to_have_attribute("data-icon", "near")
+    save(bench)

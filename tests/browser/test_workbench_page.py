@@ -1,0 +1,37 @@
+"""The workbench as a page of its own, under Voila: the same smoke as in JupyterLab."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from tests.browser.jupyter import Server
+from tests.browser.onbench import (
+    click_a_confusion,
+    root,
+    type_drag_and_err,
+    wait_until_drawn,
+    write_drives,
+)
+
+
+def test_the_page_designs_compares_and_exports(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
+) -> None:
+    notebook = tmp_path / "workbench.ipynb"
+    with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
+        shutil.copy(shipped, notebook)
+    page.goto(serve_page(notebook).url)
+    wait_until_drawn(page)
+    expect(root(page)).to_have_attribute("data-icon", "cooling-step")
+    shot("page-design")
+    type_drag_and_err(page)
+    click_a_confusion(page)
+    shot("page-set")
+    write_drives(page, tmp_path / "drives")
+    shot("page-export")
+    assert (tmp_path / "drives" / "near.csv").exists()

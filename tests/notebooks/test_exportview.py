@@ -1,0 +1,133 @@
+"""The export view without a browser: what is prepared, what is refused, and what is written."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.notebooks.designing import Designing
+from thermicon.notebooks.exporting import prepare_icons, write
+from thermicon.notebooks.exportview import ExportView
+from thermicon.notebooks.outputs import OutputError
+
+TWO = """cue 1
+icon dip { cool by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
+icon glow { warm by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
+"""
+
+
+class Bench:
+    """An export view that is shown."""
+
+    def __init__(self, folder: Path, text: str = TWO) -> None:
+        self.design = Designing(text, Rig.load("thenar"))
+        self.view = ExportView(self.design, folder)
+        self.design.on_change(self.view.renew)
+        self.view.shown = True
+        self.view.renew()
+        self.wait()
+
+    def wait(self) -> None:
+        assert self.view.worker.wait()
+
+    def said(self, name: str) -> str:
+        return str(self.view.said[name].value)
+
+
+def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
+    bench = Bench(tmp_path / "drives")
+    assert "ready to be written" in bench.said("status")
+    assert "dip" in bench.said("delivered")
+    assert "mK" in bench.said("delivered")
+    assert "safety green" in bench.said("gate")
+    assert "<svg" in bench.said("figure")
+    bench.view.button.click()
+    assert sorted(path.name for path in (tmp_path / "drives").iterdir()) == ["dip.csv", "dip.json"]
+    assert str(tmp_path / "drives") in bench.said("written")
+    assert json.loads((tmp_path / "drives" / "dip.json").read_text(encoding="utf-8"))["safety"]["colour"] == "green"
+
+
+def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    bench.view.which.value = "all"
+    bench.wait()
+    bench.view.button.click()
+    assert len(list(tmp_path.iterdir())) == 4
+    bench.view.button.click()
+    assert "nothing was written" in bench.said("written")
+    assert "tick overwrite" in bench.said("written")
+    bench.view.overwrite.value = True
+    bench.view.button.click()
+    assert "wrote 2 drives" in bench.said("written")
+
+
+def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, "cue 1; icon hot { warm by 14 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }")
+    assert bench.view.button.disabled
+    assert "not safe is never written" in bench.said("status")
+    bench.view.insist.value = True
+    assert bench.view.button.disabled
+    assert "NOT SAFE" in bench.said("delivered")
+    assert "safety red" in bench.said("gate")
+    assert bench.view.ready is not None
+    with pytest.raises(OutputError, match="hot: NOT SAFE"):
+        write(bench.view.ready, tmp_path, insist=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_not_reached_is_written_only_on_request(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, "cue 1; icon cold { cool by 8 °C at 9 °C/s; hold for 1 s; return at 1 °C/s }")
+    assert bench.view.button.disabled
+    assert "only if you tick it" in bench.said("status")
+    bench.view.insist.value = True
+    assert not bench.view.button.disabled
+    bench.view.button.click()
+    assert (tmp_path / "cold.csv").exists()
+
+
+def test_a_device_offers_the_formats_that_it_takes(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    bench.view.device.value = "qst-tcs2"
+    assert [name for _, name in bench.view.form.options] == ["tcs2-serial", "tcs2-protocol-ini", "psychopy"]
+    bench.wait()
+    assert bench.view.ready is not None
+    assert bench.view.ready.device.name == "qst-tcs2"
+
+
+def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    bench.design.receive({"type": "text", "text": TWO.replace("3 °C at", "3 at")})
+    assert bench.view.button.disabled
+    assert "the text has errors" in bench.said("status")
+    bench.view.button.click()
+    assert list(tmp_path.iterdir()) == []
+    bench.design.receive({"type": "text", "text": TWO})
+    bench.wait()
+    assert not bench.view.button.disabled
+
+
+def test_a_folder_that_cannot_be_is_said(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    bench = Bench(tmp_path / "file")
+    bench.view.button.click()
+    assert "it is a file" in bench.said("written")
+
+
+def test_a_device_that_cannot_play_it_is_said(tmp_path: Path) -> None:
+    bench = Bench(tmp_path, "cue 1; icon cold { cool by 31 °C at 1 °C/s; return at 1 °C/s }")
+    bench.view.device.value = "qst-tcs2"
+    bench.wait()
+    assert bench.view.button.disabled
+    assert "qst-tcs2" in bench.said("status") or "refused" in bench.said("status")
+
+
+def test_preparing_tells_how_far_it_is() -> None:
+    from thermicon.icons import parse
+
+    steps: list[tuple[int, int]] = []
+    made = prepare_icons(list(parse(TWO)), [], Rig.load("thenar"), step=lambda done, total: steps.append((done, total)))
+    assert steps == [(1, 2), (2, 2)]
+    assert [change.icon for change in made.felt] == ["dip", "glow"]

@@ -1,0 +1,250 @@
+"""The set view without a browser: what it ranks, what it says, and what a click and a button do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import parse
+from thermicon.notebooks.applied import CannotApply, with_edit
+from thermicon.notebooks.background import Newest, Superseded, Turn
+from thermicon.notebooks.designing import Designing
+from thermicon.notebooks.setcompute import QUICK, overlay_frame, rank_set
+from thermicon.notebooks.setview import SetView
+from thermicon.perception.numbers import numbers_of, repeated, with_number
+
+TWO = """cue 1
+
+icon near {
+  warm by 4 °C at 2 °C/s  # as far as is pleasant
+  hold for 2 s
+  return at 2 °C/s
+}
+
+icon nearer { warm by 3.6 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+"""
+THREE = TWO + "icon far { cool by 4 °C at 2 °C/s; return at 2 °C/s }\n"
+
+
+class Bench:
+    """A set view that is shown, on a text."""
+
+    def __init__(self, text: str) -> None:
+        self.design = Designing(text, Rig.load("thenar"))
+        self.view = SetView(self.design, lambda new: self.type(new))
+        self.design.on_change(self.view.renew)
+        self.view.shown = True
+        self.view.renew()
+        self.wait()
+
+    def type(self, text: str) -> None:
+        self.design.receive({"type": "text", "text": text})
+
+    def wait(self) -> None:
+        assert self.view.worker.wait()
+        assert self.view.editor.wait()
+
+    def said(self, name: str) -> str:
+        return str(self.view.said[name].value)
+
+    @property
+    def stale(self) -> bool:
+        return "thermicon-stale" in self.view.body._dom_classes
+
+    def click(self, row: int, column: int) -> dict[str, Any]:
+        self.view.heat._receive(self.view.heat, {"type": "cell", "seq": 7, "row": row, "column": column}, [])
+        assert self.view.heat._newest is not None
+        return dict(self.view.heat._newest[0])
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_people() -> Iterator[None]:
+    """Numbers are not what is tested here, so a few people do."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("thermicon.notebooks.setview.WELL", (24, 2))
+        yield
+
+
+@pytest.fixture(scope="module")
+def ranked() -> Bench:
+    """Three icons, ranked to the end; tests that change it make their own."""
+    return Bench(THREE)
+
+
+def test_a_set_is_ranked_with_its_intervals_and_worst_pair(ranked: Bench) -> None:
+    assert "24 people" in ranked.said("status")
+    assert "parameters" in ranked.said("scores")
+    assert ranked.said("table").count("<tr>") == 4
+    assert "near" in ranked.said("pair")
+    assert "nearer" in ranked.said("pair")
+    assert "<svg" in ranked.said("map")
+    assert not ranked.stale
+
+
+def test_the_heat_maps_put_near_icons_side_by_side(ranked: Bench) -> None:
+    made = ranked.view.made
+    assert made is not None
+    labels = made.labels
+    assert abs(labels.index("near") - labels.index("nearer")) == 1
+    assert ranked.view.heat._newest is not None
+    assert ranked.view.heat._newest[0]["labels"] == labels
+    assert [len(buffer) for buffer in ranked.view.heat._newest[1]] == [36, 36]
+
+
+def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> None:
+    made = ranked.view.made
+    assert made is not None
+    place = made.labels.index
+    answer = ranked.click(place("near"), place("far"))
+    assert answer["seq"] == 7
+    assert answer["picked"] == [place("near"), place("far")]
+    assert "opposite" in ranked.said("why") or "direction" in ranked.said("why")
+    ranked.wait()
+    assert "told apart already" in ranked.said("edit_text")
+    assert ranked.view.apply.disabled
+    ranked.click(place("near"), place("near"))
+    assert "two icons" in ranked.said("edit_text")
+    assert "there is no cell" in str(ranked.click(0, 9)) or "there is no cell" in ranked.said("status")
+
+
+def test_both_icons_lie_over_each_other_on_one_clock(ranked: Bench) -> None:
+    assert ranked.view.made is not None
+    frame = overlay_frame(ranked.view.made, "near", "far")
+    assert [panel["key"] for panel in frame.meta["panels"]] == ["skin", "cold", "warm"]
+    assert [series["label"] for series in frame.meta["panels"][0]["series"]] == ["near", "far"]
+    assert {len(buffer) for buffer in frame.buffers} == {frame.meta["time"]["n"]}
+
+
+def test_an_edit_is_applied_to_the_text_and_can_be_undone() -> None:
+    bench = Bench(TWO)
+    assert not bench.view.apply.disabled, bench.said("edit_text")
+    bench.view.apply.click()
+    assert bench.design.text != TWO
+    assert "# as far as is pleasant" in bench.design.text
+    assert "applied" in bench.said("edit_text")
+    bench.wait()
+    made = bench.view.made
+    assert made is not None
+    assert made.text == bench.design.text
+    assert made.pair("near", "nearer").d_prime > 2.4
+    bench.design.receive({"type": "undo"})
+    assert bench.design.text == TWO
+
+
+def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
+    bench = Bench(TWO)
+    bench.type(TWO.replace("by 4 °C", "by 4"))
+    assert bench.stale
+    assert "line 4, missing unit" in bench.said("status")
+    assert "last good set is shown" in bench.said("status")
+    bench.type(TWO)
+    bench.wait()
+    assert not bench.stale
+
+
+def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
+    design = Designing(TWO, Rig.load("thenar"))
+    view = SetView(design, lambda text: None)
+    design.on_change(view.renew)
+    design.receive({"type": "text", "text": THREE})
+    assert not view.worker.busy
+    assert view.made is None
+    assert "when this tab is opened" in view.said["status"].value
+
+
+def test_a_set_of_one_says_that_it_is_never_confused() -> None:
+    bench = Bench("cue 1; icon dip { cool by 4 °C at 2 °C/s; return at 2 °C/s }")
+    assert "never confused" in bench.said("scores")
+    assert "dip" in bench.said("table")
+    assert bench.view._maps.layout.display == "none"
+
+
+def test_what_cannot_be_played_stands_apart_with_its_reason() -> None:
+    bench = Bench(THREE.replace("cool by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
+    table = bench.said("table")
+    assert table.index("not reached by this rig") < table.index("far")
+    assert "far is not reached" in bench.said("notes")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "error"),
+        ("cue 1; icon a { cool by 3 at 2 K/s }", "line 1, missing unit"),
+        (
+            "cue 1; icon r(a in 1..9 step 0.1 °C) { cool by a at 2 °C/s; return at 2 °C/s }",
+            "81 icons are too many to rank",
+        ),
+    ],
+)
+def test_what_cannot_be_ranked_is_said(text: str, said: str) -> None:
+    assert said in Bench(text).said("status")
+
+
+def test_the_best_few_are_chosen_and_marked() -> None:
+    bench = Bench(THREE)
+    bench.view.count.value = 2
+    bench.wait()
+    assert "Best 2 of 3" in bench.said("choice")
+    assert bench.said("table").count("✓") == 2
+    bench.view.objective.value = "bits"
+    bench.wait()
+    assert "by bits" in bench.said("choice")
+
+
+def test_a_map_stays_where_it_was_when_an_icon_changes(ranked: Bench) -> None:
+    before = ranked.view.made
+    assert before is not None
+    assert before.map is not None
+    text = THREE.replace("cool by 4 °C", "cool by 4.2 °C")
+    after = rank_set(text, Rig.load("thenar"), *QUICK, reference=before.map).map
+    assert after is not None
+    assert abs(after.points - before.map.points).max() < 2.0
+
+
+def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
+    worker, done = Newest(), list[str]()
+
+    def slow(turn: Turn) -> None:
+        with pytest.raises(Superseded):
+            while True:
+                turn.go_on()
+        done.append("ended")
+        turn.tell(lambda: done.append("never"))
+
+    worker.ask(slow)
+    worker.ask(lambda turn: turn.tell(lambda: done.append("newest")))
+    assert worker.wait(10)
+    assert "never" not in done
+    assert done[-1] == "newest"
+
+
+def test_an_edit_keeps_all_that_is_not_edited() -> None:
+    icon = parse(TWO)["near"]
+    by = numbers_of(icon, 32.0)[0]
+    edited = with_edit(TWO, with_number(icon, by, 4.3), "old", "new")
+    assert edited == TWO.replace("by 4 °C", "by 4.3 °C")
+
+
+@pytest.mark.parametrize("name", ["near", "nearer"])
+def test_a_repeat_is_put_around_what_moves(name: str) -> None:
+    icon = parse(TWO)[name]
+    edited = with_edit(TWO, repeated(icon, 2), "its 3 statements", "repeat 2 { its 3 statements }")
+    assert parse(edited)[name].statements == repeated(icon, 2).statements
+    assert "# as far as is pleasant" in edited
+
+
+def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
+    icon = parse(TWO)["near"]
+    edited = with_number(icon, numbers_of(icon, 32.0)[0], 4.3)
+    with pytest.raises(CannotApply, match="no icon is called near now; change it by hand: in near, old → new"):
+        with_edit(TWO.replace("near {", "other {", 1), edited, "old", "new")
+    with pytest.raises(CannotApply, match="the text has changed"):
+        with_edit(TWO.replace("hold for 2 s", "hold for 3 s"), edited, "old", "new")
+    family = "cue 1; icon r(a in [3, 4] °C) { cool by a at 2 °C/s; return at 2 °C/s }"
+    member = next(iter(parse(family)))
+    with pytest.raises(CannotApply, match="written by the family r"):
+        with_edit(family, member, "old", "new")

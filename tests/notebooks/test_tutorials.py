@@ -1,0 +1,80 @@
+"""The tutorials: thin, without outputs, every cell runs, pictures are there, and a saved copy stays small."""
+
+from __future__ import annotations
+
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+FOLDER = Path(__file__).parents[2] / "notebooks"
+PICTURES = {
+    "01_first_icon": 2,
+    "02_a_rig_of_your_own": 3,
+    "03_six_icons_ranked": 4,
+    "04_search_a_better_set": 2,
+    "05_export_for_an_experiment": 2,
+}
+MOST_SAVED = 300_000
+MOST_S = 60.0
+
+
+def read(name: str) -> nbformat.NotebookNode:
+    return nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
+
+
+@pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.ipynb")))
+def test_a_notebook_is_thin_and_has_no_outputs(name: str) -> None:
+    notebook = read(name)
+    assert notebook.metadata.kernelspec.name == "python3"
+    assert set(notebook.metadata) == {"kernelspec", "language_info"}
+    assert notebook.cells[0].cell_type == "markdown"
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert all(not cell.outputs and cell.execution_count is None and not cell.metadata for cell in code)
+    python = [cell.source for cell in code if not cell.source.startswith(("%%", "%load_ext"))]
+    assert all(len(text.splitlines()) <= 8 for text in python)
+    assert all("def " not in text and "class " not in text for text in python)
+    assert all(len(line) <= 120 for text in python for line in text.splitlines())
+
+
+def test_each_tutorial_leads_to_the_next() -> None:
+    names = sorted(PICTURES)
+    for name, after in pairwise(names):
+        assert f"({after}.ipynb)" in read(name).cells[-1].source
+
+
+@pytest.mark.parametrize("name", PICTURES)
+def test_a_tutorial_runs_and_shows_its_pictures(name: str, tmp_path: Path) -> None:
+    notebook, began = read(name), time.monotonic()
+    resources = {"metadata": {"path": str(tmp_path)}}
+    # As JupyterLab saves: the state of widgets stays out of the file unless a person asks for it.
+    options = {"timeout": 60, "kernel_name": "python3", "store_widget_state": False}
+    NotebookClient(notebook, **options, resources=resources).execute()
+    assert time.monotonic() - began < MOST_S
+    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == PICTURES[name]
+    assert not [output.text for output in outputs if output.get("name") == "stderr"]
+    assert len(nbformat.writes(notebook)) < MOST_SAVED
+
+
+def test_what_the_tutorials_write_can_be_read(tmp_path: Path) -> None:
+    from thermicon.circuit import Rig
+
+    cell = next(cell for cell in read("02_a_rig_of_your_own").cells if cell.source.startswith("%%writefile bench.toml"))
+    (tmp_path / "bench.toml").write_text(cell.source.partition("\n")[2], encoding="utf-8")
+    assert Rig.load(tmp_path / "bench.toml").warnings == ()
+
+
+def test_figures_are_small_pictures() -> None:
+    from matplotlib.figure import Figure
+
+    from thermicon.notebooks.inline import WIDEST_PX, small_png
+
+    wide = Figure(figsize=(20, 2))
+    wide.add_subplot().plot([0, 1])
+    made = small_png(wide)
+    assert int.from_bytes(made[16:20], "big") <= WIDEST_PX
+    assert made[25] == 3, "not a palette"

@@ -1,0 +1,253 @@
+"""The workbench without a browser: its handlers are given what the canvas sends, and what it answers is read."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+
+from thermicon.circuit import Rig, RigError
+from thermicon.icons import CueErrors, load_library, parse
+from thermicon.notebooks import Workbench
+from thermicon.notebooks.designing import Designing
+from thermicon.notebooks.workbench import text_of
+
+DIP = """cue 1
+
+# kept as it is
+icon dip {
+  cool by 4 °C at 2 °C/s  # deep
+  hold for 2 s
+  return at 2 °C/s
+}
+
+icon glow {
+  warm by 3 °C at 2 °C/s
+  hold for 2 s
+  return at 2 °C/s
+}
+"""
+MOST_MS = 30.0
+Send = Callable[..., dict[str, Any]]
+
+
+@pytest.fixture
+def bench() -> Workbench:
+    """A workbench with its widgets, on two icons."""
+    made = Workbench(DIP)
+    assert made.page is not None
+    return made
+
+
+@pytest.fixture
+def send(bench: Workbench) -> Send:
+    """``send(type="undo")`` is a message of the page; the answer is what the canvas was told to draw."""
+    seq = [100]
+
+    def message(**content: Any) -> dict[str, Any]:
+        assert bench.design_view is not None
+        seq[0] += 1
+        canvas = bench.design_view.canvas
+        canvas._receive(canvas, {"seq": seq[0], **content}, [])
+        assert canvas._newest is not None
+        meta = canvas._newest[0]
+        assert meta["seq"] == seq[0]
+        return dict(meta)
+
+    return message
+
+
+def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
+    assert bench.design_view is not None
+    bench.design_view.sliders[key].value = value
+    assert bench.design_view.canvas._newest is not None
+    return dict(bench.design_view.canvas._newest[0])
+
+
+def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send) -> None:
+    answer = send(type="text", text=DIP.replace("4 °C", "5 °C"))
+    assert answer["text"] is None
+    assert not answer["stale"]
+    assert answer["handles"][0]["y"] == 27.0
+    assert bench.icon is not None
+    assert bench.trace is not None
+    assert bench.trace.skin_C.min() < 28.5
+    assert bench.percept is not None
+    assert bench.percept.channel == "cold"
+
+
+def test_an_error_is_named_under_its_line_and_the_drawing_stays(bench: Workbench, send: Send) -> None:
+    answer = send(type="text", text=DIP.replace("by 4 °C", "by 4"))
+    assert answer["stale"]
+    assert [(each["line"], each["code"]) for each in answer["troubles"]] == [(5, "E102")]
+    assert len(answer["panels"]) == 4
+    assert answer["badge"]["colour"] == "grey"
+    with pytest.raises(CueErrors, match="missing unit"):
+        _ = bench.icons
+    mended = send(type="apply", line=5)
+    assert mended["text"] == DIP
+    assert mended["troubles"] == []
+
+
+def test_a_drag_is_one_step_and_undo_and_redo_carry_the_text(bench: Workbench, send: Send) -> None:
+    for step in range(1, 6):
+        answer = send(type="drag", handle=0, t=2.0, y=28.0 - 0.2 * step, end=step == 5)
+        assert answer["text"] is not None
+    assert "cool by 5 °C at 2.5 °C/s  # deep" in bench.text
+    assert answer["can_undo"]
+    undone = send(type="undo")
+    assert undone["text"] == DIP
+    assert not undone["can_undo"]
+    assert "cool by 5 °C" in send(type="redo")["text"]
+    assert "nothing to redo" in send(type="redo")["notes"][0]
+
+
+def test_a_drag_that_cannot_be_says_why_and_leaves_the_text(bench: Workbench, send: Send) -> None:
+    answer = send(type="drag", handle=1, t=0.1, y=28.0, end=True)
+    assert answer["text"] == DIP
+    assert "cannot come before 2 s" in answer["notes"][0]
+    assert "none to move" in send(type="drag", handle=9, t=1.0, y=30.0, end=True)["notes"][0]
+
+
+def test_another_icon_is_shown_and_an_unknown_one_is_said(bench: Workbench, send: Send) -> None:
+    assert send(type="icon", name="glow")["icon"] == "glow"
+    assert bench.icon is not None
+    assert bench.icon.name == "glow"
+    assert "no icon is called gone" in send(type="icon", name="gone")["notes"][0]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [{"type": "nonsense"}, {"type": "drag"}, {"type": "drag", "handle": "x"}, {"type": "text", "text": None}, {}],
+)
+def test_a_message_that_makes_no_sense_is_a_note_and_the_page_goes_on(send: Send, message: dict[str, Any]) -> None:
+    assert "could not be done" in send(**message)["notes"][0]
+    assert send(type="text", text=DIP)["troubles"] == []
+
+
+def test_a_mistake_of_the_program_is_a_note_and_the_page_goes_on(send: Send, monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*given: object) -> None:
+        raise RuntimeError("the kernel hiccuped")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("thermicon.notebooks.designing.drag", broken)
+        assert send(type="drag", handle=0, t=1.0, y=30.0)["notes"][0].endswith("the kernel hiccuped")
+    assert send(type="text", text=DIP)["notes"] == []
+
+
+def test_a_burst_of_a_slider_answers_each_value_quickly(bench: Workbench) -> None:
+    spent = []
+    for step in range(40):
+        answer = turned(bench, "contact", 1.0 + 0.05 * step)
+        spent.append(answer["ms"])
+    assert bench.rig.contact.resistance_m2K_per_W == pytest.approx(
+        2.95 * Rig.load("thenar").contact.resistance_m2K_per_W
+    )
+    assert sorted(spent)[len(spent) // 2] < MOST_MS
+
+
+def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench, send: Send) -> None:
+    turned(bench, "rest", 30.0)
+    answer = turned(bench, "limit", 0.1)
+    assert answer["notes"]
+    assert send(type="text", text=DIP.replace("4 °C", "3 °C"))["icon"] == "dip"
+    assert bench.design_view is not None
+    bench.design_view.reset.click()
+    assert bench.rig.driver.current_max_A == 1.5
+    assert bench.design_view.sliders["rest"].value == 32.0
+    assert bench.scene.notes == ()
+
+
+def test_a_site_and_an_age_change_what_is_felt(bench: Workbench) -> None:
+    turned(bench, "site", "fingertip")
+    assert bench.rig.site == "fingertip"
+    assert bench.percept is not None
+    before = bench.percept.psi_cold.max()
+    turned(bench, "age", 70.0)
+    assert bench.percept.psi_cold.max() < before
+
+
+def test_a_cue_that_is_not_reached_says_so(send: Send) -> None:
+    answer = send(type="text", text=DIP.replace("cool by 4 °C at 2", "cool by 14 °C at 9"))
+    assert any("not reached" in note for note in answer["notes"])
+    assert any(panel["spans"] for panel in answer["panels"])
+
+
+def test_python_sets_the_text_as_one_step(bench: Workbench, send: Send) -> None:
+    bench.text = DIP.replace("dip", "sip")
+    assert bench.icon is not None
+    assert bench.icon.name == "sip"
+    assert send(type="undo")["text"] == DIP
+
+
+def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
+    design = Designing(text_of(None), Rig.load("thenar"))
+    spent = []
+    for step in range(60):
+        text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")
+        assert design.receive({"type": "text", "seq": step, "text": text}).meta["seq"] == step
+        spent.append(design.last_ms)
+    assert sorted(spent)[len(spent) // 2] < MOST_MS
+
+
+@pytest.mark.parametrize("view", ["design", "set", "export"])
+def test_every_view_is_a_figure(bench: Workbench, view: Any) -> None:
+    figure = bench.figure(view)
+    assert len(figure.axes) >= 2
+
+
+def test_figures_of_what_cannot_be_say_why() -> None:
+    wrong = Workbench("cue 1; icon dip { cool by 4 at 2 K/s }")
+    assert "missing unit" in wrong.figure().get_suptitle()
+    with pytest.raises(CueErrors, match="missing unit"):
+        wrong.figure("set")
+    with pytest.raises(ValueError, match="there is no icon to export"):
+        wrong.figure("export")
+    with pytest.raises(ValueError, match="there is no view 'sets'; there are design, set, export"):
+        wrong.figure("sets")  # type: ignore[arg-type]
+
+
+def test_what_a_workbench_can_be_made_of(tmp_path: Path) -> None:
+    path = tmp_path / "own.cue"
+    path.write_text(DIP, encoding="utf-8")
+    icons = parse(DIP)
+    assert Workbench(path).text == Workbench(str(path)).text == DIP
+    assert Workbench(icons).icons == icons
+    assert Workbench(icons["glow"]).icon == icons["glow"]
+    assert Workbench("wave-shapes").icons == load_library("wave-shapes")
+    assert Workbench(None, Rig.load("fingertip"), icon="double-dip").scene.icon == "double-dip"
+    assert "# Known" in Workbench().text
+    with pytest.raises(CueErrors, match="no such"):
+        Workbench("six-icon")
+    with pytest.raises(RigError, match="thenar"):
+        Workbench(rig="thenr")
+
+
+def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
+    shown = bench._repr_mimebundle_()
+    assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"
+    assert shown["image/png"][1:4] == b"PNG"
+
+
+def test_the_package_is_imported_without_widgets() -> None:
+    code = "import sys, thermicon.notebooks; print([m for m in ('ipywidgets', 'anywidget') if m in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_notebook_with_it_is_saved_small(tmp_path: Path) -> None:
+    path = tmp_path / "bench.ipynb"
+    cells = [nbformat.v4.new_code_cell("from thermicon.notebooks import Workbench\nbench = Workbench()\nbench")]
+    nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
+    command = [sys.executable, "-m", "nbconvert", "--execute", "--to", "notebook", "--inplace", str(path)]
+    subprocess.run(command, check=True, capture_output=True, cwd=tmp_path)
+    assert path.stat().st_size < 300_000
+    outputs = nbformat.read(path, as_version=4).cells[0].outputs
+    assert "application/vnd.jupyter.widget-view+json" in outputs[0]["data"]
+    assert "image/png" not in outputs[0]["data"]
+    assert "<svg" in outputs[0]["data"]["text/html"]
