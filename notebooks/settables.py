@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from thermicon.notebooks.beside import outside_lines, trouble_lines
 from thermicon.notebooks.choices import choice_lines
-from thermicon.notebooks.ranking import caveat, outside_lines, rival, trouble_lines
+from thermicon.notebooks.ranking import caveat, rival
 from thermicon.notebooks.wording import number, percent, seconds
 
 if TYPE_CHECKING:
