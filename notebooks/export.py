@@ -15,7 +15,7 @@ from thermicon.notebooks.progress import progress_bar
 from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device, Rig
+    from thermicon.circuit import Device, Realised, Rig
     from thermicon.circuit.export import Prepared
     from thermicon.circuit.formats import Format
     from thermicon.icons import Icon
@@ -38,7 +38,7 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit import Device
-    from thermicon.circuit.export import pack
+    from thermicon.circuit.export import check_names, pack
     from thermicon.circuit.formats import load_format
 
     form = load_format(to)
@@ -46,6 +46,7 @@ def export_file(
     check_folder(folder)
     whole = read_set([file])
     chosen = pick(whole, icon)
+    check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, rig)
     ready = prepare_all(chosen, rig, played, form, tail_s)
     felt = compare_felt(ready, others(whole, chosen), rig, played, tail_s)
@@ -117,7 +118,7 @@ def tell(ready: Sequence[Prepared]) -> None:
         largest = 1e3 * max(abs(each.largest_K) for each in receptors)
         rms = 1e3 * max(each.rms_K for each in receptors)
         note(
-            f"{realised.icon.name}: {number(realised.end_s, 2)} s at {number(realised.rate_Hz, 1)} Hz on "
+            f"{realised.icon.name}: {number(realised.file_s, 2)} s {_steps(realised)} on "
             f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
             f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
         )
@@ -139,6 +140,15 @@ def refused(ready: Sequence[Prepared], losses: dict[str, tuple[str, ...]], force
     if forcible and not force and not final:
         note("--force exports it as it is, and the sidecar says so")
     return final or (forcible and not force)
+
+
+def _steps(realised: Realised) -> str:
+    from thermicon.circuit import Setpoints
+
+    played = realised.played
+    if isinstance(played, Setpoints):
+        return f"in {len(played.segments)} segments"
+    return f"at {number(realised.rate_Hz, 1)} Hz"
 
 
 def _shown(names: Sequence[str], most: int = 6) -> list[str]:
