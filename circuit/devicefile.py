@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.door import InputError, nearest
+from thermicon.circuit.door import InputError, nearest, signed
 from thermicon.circuit.records import Record, RecordError
 
 
@@ -20,21 +20,25 @@ class DeviceError(InputError):
 DrivenBy = Literal["volts", "amperes", "duty", "set-points"]
 
 UNITS = {
-    "output range": ("V", "A"),
-    "resolution": ("bit",),
-    "update rate": ("Hz",),
-    "slew rate": ("V/s", "A/s"),
-    "buffer length": ("samples",),
-    "carrier frequency": ("Hz",),
-    "set-point range": ("°C",),
-    "set-point step": ("K",),
-    "tick": ("s",),
-    "segments": ("segments",),
-    "segment length": ("ticks",),
-    "baseline range": ("°C",),
-    "ramp rate": ("K/s",),
+    "resolution": "bit",
+    "update rate": "Hz",
+    "buffer length": "samples",
+    "carrier frequency": "Hz",
+    "set-point range": "°C",
+    "set-point step": "K",
+    "tick": "s",
+    "segments": "segments",
+    "segment length": "ticks",
+    "baseline range": "°C",
+    "ramp rate": "K/s",
 }
-"""Quantities a device may state, each with the units it may be stated in."""
+"""Quantities a device may state, each with its unit; those whose unit hangs on what drives it are below."""
+
+UNITS_BY_DRIVE: dict[str, dict[str, str]] = {
+    "output range": {"volts": "V", "amperes": "A", "duty": "A"},
+    "slew rate": {"volts": "V/s", "amperes": "A/s"},
+}
+"""Quantities that only some devices have, each with its unit by `driven_by`."""
 
 NEEDED: dict[str, tuple[str, ...]] = {
     "volts": ("output range", "resolution", "update rate"),
@@ -115,15 +119,16 @@ def _faults(table: DeviceTable) -> list[str]:
     found, stated = [], {record.quantity: record for record in reversed(table.record)}
     for place, record in enumerate(table.record):
         where = f"record.{place} ({record.quantity})"
-        if record.quantity not in UNITS:
-            found.append(f"{where}: no such quantity; {nearest(record.quantity, UNITS)}")
+        if record.quantity not in UNITS and record.quantity not in UNITS_BY_DRIVE:
+            found.append(f"{where}: no such quantity; {nearest(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
             continue
-        if record.unit not in UNITS[record.quantity]:
-            found.append(f"{where}: unit = {record.unit!r}: must be {' or '.join(UNITS[record.quantity])}")
+        if fault := _unit_fault(record, table.driven_by):
+            found.append(f"{where}: {fault}")
         if stated[record.quantity] is not record:
             found.append(f"{where}: is there twice; keep one")
-        if record.quantity in INTERVALS and (record.low is None or record.high is None or record.low >= record.high):
-            found.append(f"{where}: needs low and high, low below high")
+        if record.quantity in INTERVALS and (fault := _interval_fault(record)):
+            found.append(f"{where}: {fault}")
+            continue
         try:
             records_of(table.model_copy(update={"record": [record]}))
         except RecordError as problem:
@@ -135,10 +140,47 @@ def _faults(table: DeviceTable) -> list[str]:
             found.append(f"{where}: must be above 0")
     missing = [quantity for quantity in NEEDED[table.driven_by] if quantity not in stated]
     found += [
-        f"a device driven by {table.driven_by} needs a record of its {quantity}, in {UNITS[quantity][0]}"
+        f"a device driven by {table.driven_by} needs a record of its {quantity}, in "
+        f"{_unit_of(quantity, table.driven_by)}"
         for quantity in missing
     ]
     return found
+
+
+def _unit_of(quantity: str, driven_by: str) -> str | None:
+    """Unit of a quantity of such a device; None where it has none of that kind."""
+    return UNITS.get(quantity) or UNITS_BY_DRIVE[quantity].get(driven_by)
+
+
+def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
+    """What is wrong with the unit of a record, in a sentence with the cure."""
+    wanted, found = _unit_of(record.quantity, driven_by), record.unit
+    if wanted is None:
+        takers = " or ".join(UNITS_BY_DRIVE[record.quantity])
+        return f"says nothing of a device driven by {driven_by}, only of one driven by {takers}; remove it"
+    if found == wanted:
+        return None
+    others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == found]
+    if not others:
+        return f"unit = {found!r}: must be {wanted}; state it in {wanted}"
+    either = " or ".join(f'"{drive}"' for drive in others)
+    return (
+        f'unit = {found!r}: must be {wanted} for a device with driven_by = "{driven_by}"; state it in {wanted}, or set '
+        f"driven_by to {either} if {found} is what it puts out"
+    )
+
+
+def _interval_fault(record: RecordTable) -> str | None:
+    """What is wrong with the two ends of a record, in a sentence with the cure."""
+    low, high = record.low, record.high
+    if low is None or high is None:
+        return f"needs both low and high; {'low' if low is None else 'high'} is missing, add it in {record.unit}"
+    if low >= high:
+        return (
+            f"low = {signed(low)} {record.unit} is not below high = {signed(high)} {record.unit}; "
+            f"{'swap them' if low > high else 'leave some room between them'}"
+        )
+    return None
 
 
 def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:

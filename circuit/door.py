@@ -37,6 +37,15 @@ def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = 
         raise error(f"{path}: not UTF-8 text (byte {problem.start}); save the {what} as UTF-8") from None
 
 
+def signed(value: float, form: str = "g") -> str:
+    """Return a number as people write it, with a real minus sign.
+
+    >>> signed(-0.25), signed(-2.956, ".2f"), signed(3.0)
+    ('−0.25', '−2.96', '3')
+    """
+    return f"{value:{form}}".replace("-", "−")
+
+
 def nearest(word: str, known: Iterable[str], most: int = 3) -> str:
     """Return a "did you mean …" sentence with the nearest known words, or one that lists them all.
 

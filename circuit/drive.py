@@ -85,6 +85,12 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
     rows = list(csv.reader(io.StringIO(read_text(where, "drive file", 200, DriveError))))
     header = [name.strip() for name in rows[0]] if rows else []
     missing = [name for name in COLUMNS if name not in header]
+    if "duty" in header and "current_A" in missing:
+        raise DriveError(
+            f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that there "
+            f"is no current to hold; only drives for a device driven by volts or amperes can be replayed, and what "
+            f"this one does is in the sidecar beside it, under predicted"
+        )
     if missing:
         raise DriveError(
             f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "

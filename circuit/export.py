@@ -100,6 +100,31 @@ def prepare(
     return Prepared(realised, verdict, apart, tuple(against))
 
 
+def check_names(names: Sequence[str], form: Format) -> None:
+    """Raise FormatError that names both where two icons would get files of one name.
+
+    Names that differ only in capitals count as one, since some disks make no difference.
+
+    >>> from thermicon.circuit.formats import load_format
+    >>> check_names(["dip", "double-dip"], load_format("csv"))
+    """
+    taken: dict[str, str] = {}
+    for name in names:
+        stem = form.stem(name)
+        other = taken.setdefault(stem.casefold(), name)
+        if other is name:
+            continue
+        if form.stem(other) == stem:
+            raise FormatError(
+                f"{other} and {name}: the files of both would be called {stem} in the format {form.name}; rename one, "
+                f"or export them into two folders, one by one with --icon"
+            )
+        raise FormatError(
+            f"{other} and {name}: differ only in capitals, so that one's files would overwrite the other's on disks "
+            f"that make no difference; rename one, or export them into two folders, one by one with --icon"
+        )
+
+
 def pack(
     ready: Sequence[Prepared],
     form: Format,
@@ -112,8 +137,8 @@ def pack(
     `felt` and `losses` are what perception says, by the names of cues; a cue with refusals is written as forced.
     Raises FormatError where two cues would get the same name, or one is unsafe.
     """
+    check_names([one.realised.icon.name for one in ready], form)
     files: dict[str, bytes] = {}
-    taken: set[str] = set()  # in lower case, since some disks make no difference
     named = []
     for one in ready:
         name = one.realised.icon.name
@@ -121,9 +146,10 @@ def pack(
             raise FormatError(f"{name}: {unsafe[0]}")
         drive = form.file_name(one.realised)
         beside = f"{form.stem(name)}.json"
-        if drive.casefold() in taken or (form.name == psychopy.FORMAT.name and drive in psychopy.SET_FILES):
-            raise FormatError(f"{name}: another file is already called {drive}; rename the icon, or export it alone")
-        taken.add(drive.casefold())
+        if form.name == psychopy.FORMAT.name and drive.casefold() in psychopy.SET_FILES:
+            raise FormatError(
+                f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
+            )
         over = [str(refusal) for refusal in one.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         content = sidecar(one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over)

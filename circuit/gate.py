@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
+from thermicon.circuit.door import signed
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.limits import Check, as_dict, checks_of, colour_of, findings_of
 from thermicon.circuit.network import network_of
@@ -13,6 +14,7 @@ from thermicon.circuit.rig import Rig
 from thermicon.circuit.rules import Limits
 from thermicon.circuit.scenarios import ENDING_S, ENDINGS, play_out
 from thermicon.circuit.steady import steady_state
+from thermicon.circuit.unsure import surer
 
 WHAT_IT_IS_NOT = (
     "This is a calculation, no medical or ethical clearance. Hardware that touches people needs a temperature cut-off "
@@ -78,7 +80,7 @@ class Gate:
             "what_it_is_not": WHAT_IT_IS_NOT,
             "reason": self.reason,
             "limits": self.limits.to_dict(),
-            "uncertainty": asdict(self.uncertainty),
+            "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(surer(self.uncertainty))},
             "scenarios": self.scenarios,
             "ending_s": ENDING_S,
             "skin_after_ending_C": dict(zip(ENDINGS, self.after_C, strict=True)),
@@ -148,6 +150,8 @@ def _lines(one: Gate) -> Iterator[str]:
         yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
     if one.limits.loosened:
         yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
+    if claims := surer(unsure):
+        yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
     yield "exposure is that of one playing; a session adds up its playings"
     yield WHAT_IT_IS_NOT
 
@@ -158,5 +162,5 @@ def _row(one: Gate, check: Check) -> tuple[str, ...]:
     late = check.time_s - one.duration_s
     when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
     side = "≤" if check.upper else "≥"
-    limit = f"{side} {check.limit:.4g}{unit} {check.severity}"
-    return mark, check.quantity, f"{check.value:.4g}{unit}", limit, when, check.scenario, check.source
+    limit = f"{side} {signed(check.limit, '.4g')}{unit} {check.severity}"
+    return mark, check.quantity, f"{signed(check.value, '.4g')}{unit}", limit, when, check.scenario, check.source

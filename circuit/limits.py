@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from thermicon.circuit.door import signed
 from thermicon.circuit.exposure import cem43_min, henriques
 from thermicon.circuit.rules import Limits, Rule
 from thermicon.circuit.skin import Array
@@ -53,14 +54,12 @@ class Check:
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         where = f", with {self.scenario}" if self.scenario else ""
-        reached = f"{self.quantity} reaches {self.value:.4g}{unit} at {self.time_s:.2f} s{where}"
-        side = "above" if self.upper else "below"
+        reached = f"{self.quantity} reaches {signed(self.value, '.4g')}{unit} at {self.time_s:.2f} s{where}"
+        side, limit = "above" if self.upper else "below", f"{signed(self.limit, '.4g')}{unit}"
         if self.since_s is None:
-            return (
-                f"{reached}, not {side} the {self.severity} limit of {self.limit:.4g}{unit}{self.note} ({self.source})"
-            )
+            return f"{reached}, not {side} the {self.severity} limit of {limit}{self.note} ({self.source})"
         return (
-            f"{reached}, {side} the {self.severity} limit of {self.limit:.4g}{unit}{self.note} "
+            f"{reached}, {side} the {self.severity} limit of {limit}{self.note} "
             f"from {self.since_s:.2f} s on ({self.source})"
         )
 

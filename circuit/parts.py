@@ -64,11 +64,15 @@ class Ambient:
 
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
-    """How far a rig may be from its file: contact resistance and gain as shares, ambient K, each to either side."""
+    """How far a rig may be from its file: contact resistance and gain as shares, ambient K, each to either side.
+
+    `reason` says how it is known that one is smaller than what is shipped.
+    """
 
     contact_resistance_relative: float
     ambient_K: float
     gain_relative: float
+    reason: str = ""
 
 
 PLACES = ("display", "interface", "skin", "insulated skin")

@@ -12,6 +12,7 @@ import numpy as np
 
 from thermicon.circuit.bank import bank_of, run_follow
 from thermicon.circuit.device import Device
+from thermicon.circuit.door import signed
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.inverse import Design, baseline_C, design
 from thermicon.circuit.pwm import steady_of
@@ -64,6 +65,11 @@ class Realised:
     def end_s(self) -> float:
         """Time in s of the row that marks the end."""
         return float(self.delivered.time_s[-1])
+
+    @property
+    def file_s(self) -> float:
+        """How long in s the file plays; one of set-points has no rest before it, which the simulation begins with."""
+        return float(self.played.time_s[-1])
 
 
 def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> Realised:
@@ -133,8 +139,8 @@ def _narrower(device: Device, rig: Rig, narrow: Rig) -> str:
         )
         cure = f"raise driver.transconductance_A_per_V to {gain:.3g}, if the current source can"
     return (
-        f"{device.name}: asks for {held.current_min_A:g} … {held.current_max_A:g} A at most, the driver would give "
-        f"{wide.current_min_A:g} … {wide.current_max_A:g} A; {cure}"
+        f"{device.name}: asks for {signed(held.current_min_A)} … {signed(held.current_max_A)} A at most, the driver "
+        f"would give {signed(wide.current_min_A)} … {signed(wide.current_max_A)} A; {cure}"
     )
 
 

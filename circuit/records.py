@@ -73,7 +73,8 @@ class Record:
             raise RecordError("value, low and high must be finite numbers: leave out what is not known")
         known = [n for n in (self.low, self.value, self.high) if n is not None]
         if known != sorted(known):
-            raise RecordError(f"low, value, high must be in this order, not {self.low}, {self.value}, {self.high}")
+            stated = [f"{name} = {n!r}" for name in ("low", "value", "high") if (n := getattr(self, name)) is not None]
+            raise RecordError(f"{' and '.join(stated)} are not in rising order: low comes first, high last")
         if self.use and self.use not in USES:
             raise RecordError(f"use = {self.use!r} is not one of {', '.join(USES)}")
         if self.confidence and self.confidence not in CONFIDENCES:

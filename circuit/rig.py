@@ -17,11 +17,11 @@ from thermicon.circuit.modules import ModuleOrigin, module_of
 from thermicon.circuit.parts import Ambient, Contact, Controller, Driver, HeatSink, Probe, SinkController, Uncertainty
 from thermicon.circuit.probefile import probes_of
 from thermicon.circuit.receptors import HORNY_LAYER, ReceptorDepths
-from thermicon.circuit.records import load_records
 from thermicon.circuit.rigfile import RigError, RigTable, parse_toml, read_table
 from thermicon.circuit.rules import Limits
 from thermicon.circuit.settings import put_all, read_settings
 from thermicon.circuit.skin import Column, Layer, Skin, column_of
+from thermicon.circuit.unsure import surer, uncertainty_of
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
@@ -120,6 +120,13 @@ class Rig:
             )
         if loosened := self.limits.loosened:
             found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
+        if claims := surer(self.uncertainty):
+            found.append(
+                f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {self.uncertainty.reason}"
+            )
+        found += self.limits.hidden
+        if resting := self.limits.passed_at_rest(self.skin.rest_C):
+            found.append(resting)
         return (*found, *self.module_origin.warnings)
 
     @property
@@ -188,17 +195,6 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
-@cache
-def _usual_uncertainty() -> dict[str, float]:
-    table = load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
-    return {record.quantity: record.central for record in table}
-
-
-def _uncertainty(table: RigTable) -> Uncertainty:
-    given = {key: value for key, value in table.uncertainty.model_dump().items() if value is not None}
-    return Uncertainty(**{**_usual_uncertainty(), **given})
-
-
 def _heat_sink(table: RigTable) -> HeatSink:
     sink = table.heat_sink
     own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
@@ -261,7 +257,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         column,
         float(deep),
         document,
-        _uncertainty(table),
+        uncertainty_of(table.uncertainty.given, table.uncertainty.reason),
         Limits.of(table.safety.changes, table.safety.reason),
         probes_of(table.probe, body.thickness_m),
         None if table.controller is None else Controller(**table.controller.model_dump()),

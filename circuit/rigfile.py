@@ -13,6 +13,7 @@ from pydantic_core import ErrorDetails
 from thermicon.circuit.door import InputError, nearest
 from thermicon.circuit.modules import module_faults
 from thermicon.circuit.rules import faults_of
+from thermicon.circuit.unsure import uncertainty_faults
 
 
 class RigError(InputError):
@@ -145,11 +146,24 @@ class ProbeTable(_Table):
 
 
 class UncertaintyTable(_Table):
-    """What safety and robustness vary; what is left out is filled from records."""
+    """What safety and robustness vary; what is left out is filled from records, what is smaller needs a reason."""
 
     contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
     ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
     gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    reason: str = ""
+
+    @property
+    def given(self) -> dict[str, float]:
+        """The uncertainties that are given, by key."""
+        given = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _reasoned(self) -> UncertaintyTable:
+        if faults := uncertainty_faults(self.given, self.reason):
+            raise ValueError("\n".join(faults))
+        return self
 
 
 class SafetyTable(_Table):

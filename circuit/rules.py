@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 
+from thermicon.circuit.door import signed
 from thermicon.circuit.records import Record, Table, load_records
 
 SHORTEST_REASON = 20
@@ -88,6 +89,33 @@ class Limits:
         """A few words for each limit that lets more pass than the shipped one."""
         return _told(rule for rule in self.rules if rule.loosened)
 
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """A sentence for each soft limit that a hard one makes void, since nothing is amber before it is red."""
+        found = []
+        for hard, soft in _pairs(self.rules):
+            if hard.limit < soft.limit if hard.upper else hard.limit > soft.limit:
+                side = "below" if hard.upper else "above"
+                found.append(
+                    f"safety.{hard.key} = {signed(hard.limit)} {hard.unit} is hard and lies {side} the soft limit of "
+                    f"{signed(soft.limit)} {soft.unit}, so that nothing is amber before it is red; set "
+                    f"safety.{soft.key} {side} {signed(hard.limit)} {hard.unit} too"
+                )
+        return tuple(found)
+
+    def passed_at_rest(self, rest_C: float) -> str | None:
+        """A sentence where skin at its rest in °C is outside a limit already, a hard one first; otherwise None."""
+        own = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]
+        for rule in sorted(own, key=lambda one: one.severity != "hard"):
+            if rest_C > rule.limit if rule.upper else rest_C < rule.limit:
+                side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
+                return (
+                    f"the resting skin of {rest_C:g} °C (skin.rest_C) is itself {side} the {rule.severity} limit "
+                    f"safety.{rule.key} = {signed(rule.limit)} °C, so that every icon that begins there is {colour} "
+                    f"from its start; change the limit or the baseline"
+                )
+        return None
+
     def to_dict(self) -> dict[str, object]:
         """What is changed, what is loosened and why, as a sidecar holds it."""
         return {"changed": list(self.changed), "loosened": list(self.loosened), "reason": self.reason or None}
@@ -149,6 +177,18 @@ def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
                     f"{high.unit}; leave some room between them"
                 )
     return found
+
+
+def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
+    """Hard and soft rules of one quantity and side."""
+    plain = [rule for rule in rules if rule.key and not rule.relative]
+    return [
+        (hard, soft)
+        for hard in plain
+        for soft in plain
+        if (hard.severity, soft.severity) == ("hard", "soft")
+        and (hard.quantity, hard.upper) == (soft.quantity, soft.upper)
+    ]
 
 
 def _told(rules: Iterable[Rule]) -> tuple[str, ...]:

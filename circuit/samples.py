@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from thermicon.circuit.device import Device, Scale
 from thermicon.circuit.devicefile import DeviceError
+from thermicon.circuit.door import signed
 from thermicon.circuit.drive import Drive
 from thermicon.circuit.pwm import duty_of, switched
 from thermicon.circuit.rig import Rig
@@ -108,9 +109,10 @@ def sample(
     clipped = np.clip(codes, scale.lowest, scale.highest)
     beyond = int(np.argmax(np.abs(codes - clipped)))
     if abs(codes[beyond] - clipped[beyond]) > 1:
+        low, high = (signed(scale.offset + scale.step * code, ".4g") for code in (scale.lowest, scale.highest))
         told.append(
-            f"{device.name}: {limited[beyond]:.4g} {device.unit} are needed at {edges[beyond]:.2f} s, it gives "
-            f"{scale.offset + scale.step * scale.lowest:.4g} … {scale.offset + scale.step * scale.highest:.4g}; "
+            f"{device.name}: {signed(limited[beyond], '.4g')} {device.unit} are needed at {edges[beyond]:.2f} s, it "
+            f"gives {low} … {high}; "
             f"the command is clipped"
         )
     return Samples(rate_Hz, clipped, scale), tuple(told)

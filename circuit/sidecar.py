@@ -45,7 +45,10 @@ def sidecar(
     return {
         "thermicon": version("thermicon"),
         "what_it_is_not": NO_CLEARANCE,
-        "format": {"name": form.name, "source": form.source, "how_to_play": form.how},
+        "format": {
+            **{"name": form.name, "source": form.source, "how_to_play": form.how},
+            **(form.facts(realised) if form.facts else {}),
+        },
         "file": form.file_name(realised),
         "columns": [asdict(column) for column in form.columns(realised)],
         "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
@@ -61,7 +64,7 @@ def sidecar(
         "events": [_event(event, icon.frame.control) for event in events_in(realised)],
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
-        "predicted": summarise(realised.trace).to_dict(),
+        "predicted": _predicted(realised),
         "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
@@ -103,9 +106,26 @@ def _played(realised: Realised) -> dict[str, object]:
             "tick_s": played.tick_s,
             "step_K": played.step_K,
             "baseline_C": float(played.level_C[0]),
-            "duration_s": float(played.time_s[-1]),
+            "icon_begins_at_s": 0.0,
+            "duration_s": realised.file_s,
+            "clock": (
+                f"times of events count from the start command; those under safety count from {realised.lead_s:g} s "
+                f"before it, since the simulation begins with one update of baseline"
+            ),
         }
     return _samples(played, realised.lead_s)
+
+
+_NOT_ITS_OWN = ("current_", "voltage_", "energy_", "hot_plate_")
+"""What a device that gets set-points does not have: these would be those of the rig's own module."""
+
+
+def _predicted(realised: Realised) -> dict[str, object]:
+    found: dict[str, object] = dict(summarise(realised.trace).to_dict())
+    if not isinstance(realised.played, Setpoints):
+        return found
+    told = {key: None if key.startswith(_NOT_ITS_OWN) else value for key, value in found.items()}
+    return {**told, "duration_s": realised.file_s}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:

@@ -23,7 +23,9 @@ from thermicon.circuit.setpoints import Setpoints
 REACHED = "every set-point reached"
 
 _NO_LIMITS = {"driver.current_min_A": -20.0, "driver.current_limit_A": 20.0, "driver.voltage_limit_V": 200.0}
-_SURE = {"contact_resistance_relative": 0.0, "ambient_K": 0.0, "gain_relative": 0.0}
+_NO_GAIN = "the device measures its plate and corrects itself: the gain of the rig's current source is none of its own"
+_CORNER = "one corner of a rig's uncertainty, which the gate varies itself"
+_SURE = {"contact_resistance_relative": 0.0, "ambient_K": 0.0, "gain_relative": 0.0, "reason": _CORNER}
 
 
 def worst_case(realised: Realised) -> Gate:
@@ -50,7 +52,7 @@ def worst_case(realised: Realised) -> Gate:
 
 def regulated_corners(rig: Rig) -> tuple[tuple[str, Rig], ...]:
     """Corners of contact and ambient, in words and as rigs that are sure, with a driver as strong as need be."""
-    calm = rig.with_(**{"uncertainty.gain_relative": 0.0})
+    calm = rig.with_(**{"uncertainty.gain_relative": 0.0, "uncertainty.reason": _NO_GAIN})
     sure = {f"uncertainty.{key}": value for key, value in _SURE.items()}
     return tuple((str(corner), corner.rig.with_(**sure, **_NO_LIMITS)) for corner in corners_of(calm))
 
@@ -73,10 +75,14 @@ def _regulated(realised: Realised, setpoints: Setpoints) -> Gate:
     ]
     return replace(
         found[0],
-        uncertainty=replace(rig.uncertainty, gain_relative=0.0),
+        uncertainty=replace(rig.uncertainty, gain_relative=0.0, reason=_both(rig.uncertainty.reason, _NO_GAIN)),
         scenarios=sum(one.scenarios for one in found),
         checks=tuple(worst),
     )
+
+
+def _both(given: str, own: str) -> str:
+    return f"{given}; {own}" if given else own
 
 
 def _beyond(check: Check) -> float:

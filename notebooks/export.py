@@ -15,7 +15,7 @@ from thermicon.notebooks.progress import progress_bar
 from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device, Rig
+    from thermicon.circuit import Device, Realised, Rig
     from thermicon.circuit.export import Prepared, Refusal
     from thermicon.circuit.formats import Format
     from thermicon.icons import Icon
@@ -38,7 +38,7 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit import Device
-    from thermicon.circuit.export import pack
+    from thermicon.circuit.export import check_names, pack
     from thermicon.circuit.formats import load_format
 
     form = load_format(to)
@@ -46,6 +46,7 @@ def export_file(
     check_folder(folder)
     whole = read_set([file])
     chosen = pick(whole, icon)
+    check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, rig)
     ready = prepare_all(chosen, rig, played, form, tail_s)
     felt = compare_felt(ready, others(whole, chosen), rig, played, tail_s)
@@ -128,7 +129,7 @@ def told_of(one: Prepared) -> Iterator[str]:
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     yield (
-        f"{realised.icon.name}: {number(realised.end_s, 2)} s at {number(realised.rate_Hz, 1)} Hz on "
+        f"{realised.icon.name}: {number(realised.file_s, 2)} s {steps_of(realised)} on "
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
@@ -159,6 +160,16 @@ def refused(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]], forc
     if forcible and not force and not final:
         note("--force exports it as it is, and the sidecar says so")
     return final or (forcible and not force)
+
+
+def steps_of(realised: Realised) -> str:
+    """How the updates of a drive are told: so many a second, or so many segments."""
+    from thermicon.circuit import Setpoints
+
+    played = realised.played
+    if isinstance(played, Setpoints):
+        return f"in {len(played.segments)} segments"
+    return f"at {number(realised.rate_Hz, 1)} Hz"
 
 
 def _shown(names: Sequence[str], most: int = 6) -> list[str]:

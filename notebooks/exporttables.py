@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.notebooks.export import CAUTION, told_of
+from thermicon.notebooks.export import CAUTION, steps_of, told_of
 from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ def _delivered(one: Prepared, felt: FeltChange | None) -> str:
     moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None
     cells = (
         escape(realised.icon.name),
-        f"{number(realised.end_s, 2)} s",
-        f"{number(realised.rate_Hz, 1)} Hz",
+        f"{number(realised.file_s, 2)} s",
+        steps_of(realised).removeprefix("at ").removeprefix("in "),
         f"{number(1e3 * largest[0])} mK at {largest[1]:.2f} s",
         f"{number(1e3 * max(each.rms_K for each in receptors))} mK",
         f"{percent(felt.detection.designed)} → {percent(felt.detection.delivered)}" if felt else "–",

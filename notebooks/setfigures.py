@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -32,10 +33,35 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, folder: Path) -> N
         figure: Any = axes.figure
         with complete_or_absent(folder / f"{name}.png") as draft:
             figure.savefig(draft, dpi=DPI)
-    for icon in icons:
-        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{icon.name}.png", rig.changes)
+    names = [icon.name for icon in icons]
+    stems = distinct(names)
+    for icon, stem in zip(icons, stems, strict=True):
+        if stem != icon.name:
+            note(
+                f"warning: the overview of {icon.name} is overview-{stem}.png, since some disks take {icon.name} and "
+                f"{names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
+            )
+        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.png", rig.changes)
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
     note(f"wrote {', '.join(f'{name}.png' for name in drawn)} and {count} into {folder}")
+
+
+def distinct(names: Sequence[str]) -> list[str]:
+    """Return names for files that differ in more than capitals: the later of two alike gets a number.
+
+    >>> distinct(["dip", "Dip", "dip-2"])
+    ['dip', 'Dip-3', 'dip-2']
+    """
+    own, taken = {name.casefold() for name in names}, set[str]()
+    found = []
+    for name in names:
+        stem, k = name, 1
+        while stem.casefold() in taken or (k > 1 and stem.casefold() in own):
+            k += 1
+            stem = f"{name}-{k}"
+        taken.add(stem.casefold())
+        found.append(stem)
+    return found
 
 
 def set_axes(ranking: Ranking) -> dict[str, Axes]:

@@ -38,7 +38,7 @@ class Format:
 
     `device` is taken where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
     hangs on the device; `how` tells a person how to play it. `write` gives the bytes of one drive, `columns` what is in
-    them.
+    them, `facts` what else the sidecar says of the file.
     """
 
     name: str
@@ -52,6 +52,7 @@ class Format:
     columns: Callable[[Realised], tuple[Column, ...]]
     stem: Callable[[str], str] = str
     suffix_by: Callable[[Realised], str] | None = None
+    facts: Callable[[Realised], dict[str, object]] | None = None
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"

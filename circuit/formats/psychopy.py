@@ -12,7 +12,11 @@ from thermicon.circuit.realise import Realised
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")
-"""Columns of the conditions file: names without blanks, as PsychoPy needs them."""
+"""First columns of the conditions file: names without blanks, as PsychoPy needs them."""
+
+MARKED = ("ramp start", "target reached", "return start", "baseline reached")
+"""Events that may happen more than once. The first has a column without a number, as in `ramp_start_s`, the second one
+as `ramp_start_2_s`."""
 
 BY_VOLTS = '''"""Plays exported icons on an NI analogue output. Made by thermicon; never played on a device."""
 
@@ -75,17 +79,43 @@ def write(realised: Realised) -> bytes:
 
 def set_files(drives: Sequence[tuple[Realised, str, str]]) -> dict[str, bytes]:
     """Return conditions file and player for drives, each with the names of its drive file and sidecar."""
+    marks = [_marks(realised) for realised, _, _ in drives]
+    most = max(len(times) for each in marks for times in each.values())
+    later = [_column(name, k) for k in range(most) for name in MARKED]
+    used = {column for each in marks for name, times in each.items() for column in _columns(name, len(times))}
+    header = [*HEADER, *(name for name in later if name in used and name not in HEADER)]
     text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(HEADER)
-    for realised, drive, sidecar in drives:
-        first = {event.name: event.time_s for event in reversed(events_in(realised))}
-        names = ("end", "ramp start", "target reached", "return start")
-        times = ["" if name not in first else f"{first[name]:.6g}" for name in names]
-        rows.writerow([realised.icon.name, drive, sidecar, *times])
+    rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
+    rows.writeheader()
+    for (realised, drive, sidecar), each in zip(drives, marks, strict=True):
+        row = {"icon": realised.icon.name, "drive_file": drive, "sidecar_file": sidecar}
+        for name, times in each.items():
+            row |= {column: f"{time:.9g}" for column, time in zip(_columns(name, len(times)), times, strict=True)}
+        rows.writerow(row)
     by_setpoints = drives[0][0].device.driven_by == "set-points"
     player = BY_SETPOINTS if by_setpoints else BY_VOLTS
     return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: player.encode("utf-8")}
+
+
+def _marks(realised: Realised) -> dict[str, list[float]]:
+    """Times in s of every event, by its name."""
+    found: dict[str, list[float]] = {}
+    for event in events_in(realised):
+        found.setdefault(event.name, []).append(event.time_s)
+    return found
+
+
+def _columns(name: str, count: int) -> list[str]:
+    return ["duration_s"] if name == "end" else [_column(name, k) for k in range(count)]
+
+
+def _column(name: str, k: int) -> str:
+    """Column of an event that happens for the k-th time, from 0.
+
+    >>> _column("ramp start", 0), _column("ramp start", 1)
+    ('ramp_start_s', 'ramp_start_2_s')
+    """
+    return f"{name.replace(' ', '_')}{f'_{k + 1}' if k else ''}_s"
 
 
 def _drive(realised: Realised) -> Format:

@@ -86,7 +86,17 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
         (('"update rate"', '"updat rate"'), r"record\.2 \(updat rate\): no such quantity; did you mean update rate"),
         (('"update rate"', '"slew rate"'), r"a device driven by amperes needs a record of its update rate, in Hz"),
         (('"update rate"\nunit = "Hz"', '"resolution"\nunit = "bit"'), r"record\.2 \(resolution\): is there twice"),
-        (("low = -2.0", "low = 2.5"), r"record\.0 \(output range\): needs low and high, low below high"),
+        (
+            ("low = -2.0", "low = 2.5"),
+            r"^[^\n]*record\.0 \(output range\): low = 2\.5 A is not below high = 2 A; swap them$",
+        ),
+        (
+            ("low = -2.0\nhigh = 2.0", "low = -3.0\nhigh = -4.0"),
+            r"record\.0 \(output range\): low = −3 A is not below high = −4 A; swap them$",
+        ),
+        (("low = -2.0", "low = 2"), r"low = 2 A is not below high = 2 A; leave some room between them"),
+        (("low = -2.0\n", ""), r"record\.0 \(output range\): needs both low and high; low is missing, add it in A"),
+        (("high = 500", "low = 9\nhigh = 5"), r"record\.2 .*: low = 9\.0 and high = 5\.0 are not in rising order"),
         (("format = 1", "format = 1\nplayed = 1"), r"played = 1: must be true or false"),
         (("format = 1", "format = 2"), r"format = 2: must be 1"),
         (("format = 1", "format = "), r"mine\.toml: not a valid TOML file"),
@@ -97,6 +107,64 @@ def test_a_wrong_device_file_says_what_and_where(tmp_path: Path, change: tuple[s
     path.write_text(GOOD.replace(*change))
     with pytest.raises(DeviceError, match=words):
         Device.load(path)
+
+
+SLEW = '\n[[record]]\nquantity = "slew rate"\nunit = "{}"\nvalue = 5\nsource = "manual"\n'
+
+
+@pytest.mark.parametrize(
+    ("driven_by", "unit", "slew", "words"),
+    [
+        (
+            "amperes", "V", "A/s",
+            r"mine\.toml: record\.0 \(output range\): unit = 'V': must be A for a device with driven_by = \"amperes\"; "
+            r"state it in A, or set driven_by to \"volts\" if V is what it puts out$",
+        ),
+        (
+            "volts", "A", "V/s",
+            r"mine\.toml: record\.0 \(output range\): unit = 'A': must be V for a device with driven_by = \"volts\"; "
+            r"state it in V, or set driven_by to \"amperes\" or \"duty\" if A is what it puts out$",
+        ),
+        ("volts", "mV", "V/s", r"record\.0 \(output range\): unit = 'mV': must be V; state it in V$"),
+        (
+            "volts", "V", "A/s",
+            r"record\.3 \(slew rate\): unit = 'A/s': must be V/s for a device with driven_by = \"volts\"; state it "
+            r"in V/s",
+        ),
+        ("amperes", "A", "V/s", r"record\.3 \(slew rate\): unit = 'V/s': must be A/s for a device"),
+        (
+            "duty", "A", "A/s",
+            r"record\.3 \(slew rate\): says nothing of a device driven by duty, only of one driven by volts or amperes"
+            r"; remove it$",
+        ),
+    ],
+)  # fmt: skip
+def test_units_are_those_of_what_drives_it(tmp_path: Path, driven_by: str, unit: str, slew: str, words: str) -> None:
+    path = tmp_path / "mine.toml"
+    carrier = GOOD.replace("update rate", "carrier frequency") if driven_by == "duty" else GOOD
+    path.write_text(
+        carrier.replace('"amperes"', f'"{driven_by}"').replace('unit = "A"', f'unit = "{unit}"') + SLEW.format(slew)
+    )
+    with pytest.raises(DeviceError, match=words):
+        Device.load(path)
+
+
+@pytest.mark.parametrize(("driven_by", "unit"), [("amperes", "A"), ("volts", "V")])
+def test_units_that_belong_together_are_taken(tmp_path: Path, driven_by: str, unit: str) -> None:
+    path = tmp_path / "mine.toml"
+    text = GOOD.replace('"amperes"', f'"{driven_by}"').replace('unit = "A"', f'unit = "{unit}"')
+    path.write_text(text + SLEW.format(f"{unit}/s"))
+    device = Device.load(path)
+    assert (device.unit, device.most("slew rate")) == (unit, 5.0)
+
+
+def test_only_what_is_said_to_be_dc_coupled_is() -> None:
+    """A claim needs a source: a record of the profile says so in words."""
+    coupled = [device for device in map(Device.load, device_names()) if device.dc_coupled]
+    assert [device.name for device in coupled] == ["dc-coupled-audio"]
+    for device in coupled:
+        assert any("DC-coupled" in record.conditions for record in device.records)
+        assert "DC-coupled" in device.title
 
 
 def test_an_unknown_device_is_named_with_the_nearest() -> None:

@@ -146,19 +146,27 @@ class TestWorstCase:
 
 
 @pytest.mark.parametrize(
-    ("form_name", "names", "file"),
+    ("form_name", "names", "words"),
     [
-        ("c-array", ("ab", "Ab"), "Ab.h"),
-        ("c-array", ("é", "è"), "icon__.h"),
-        ("psychopy", ("a", "conditions"), "conditions.csv"),
+        (
+            "csv",
+            ("a-b", "A-B"),
+            "a-b and A-B: differ only in capitals, so that one's files would",
+        ),
+        (
+            "c-array",
+            ("ab", "Ab"),
+            "ab and Ab: differ only in capitals, so that one's files would",
+        ),
+        ("c-array", ("é", "è"), "é and è: the files of both would be called icon__ in the format c-array; rename one"),
+        ("psychopy", ("a", "Conditions"), "Conditions: its drive Conditions.csv would be taken for the set's own"),
     ],
 )
-def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], file: str) -> None:
+def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], words: str) -> None:
     text = "cue 1\n" + "".join(f"icon {name} {{ hold for 1 s }}\n" for name in names)
     form = load_format(form_name)
     made = [prepare(icon, RIG, Device.load("dac-16"), form) for icon in parse(text)]
-    words = f"{names[1]}: another file is already called {re.escape(file)}; rename the icon, or export it alone"
-    with pytest.raises(FormatError, match=words):
+    with pytest.raises(FormatError, match=re.escape(words)):
         pack(made, form)
 
 
@@ -208,6 +216,24 @@ class TestSidecar:
         assert thermode["events"][0]["time_s"] == 0.0
         assert thermode["played"]["segments"] == 3
 
+    def test_a_thermode_is_predicted_on_the_clock_of_its_commands_and_without_a_module_of_the_rig(self) -> None:
+        told = sidecar_of(ready(device="qst-tcs2", form="tcs2-serial"), "tcs2-serial")
+        assert told["played"]["icon_begins_at_s"] == told["events"][0]["time_s"] == 0.0
+        assert told["played"]["duration_s"] == told["predicted"]["duration_s"] == told["events"][-1]["time_s"] == 8.0
+        assert told["played"]["clock"] == (
+            "times of events count from the start command; those under safety count from 0.01 s before it, since the "
+            "simulation begins with one update of baseline"
+        )
+        absent = {key for key, value in told["predicted"].items() if value is None}
+        assert {
+            "current_min_A", "current_max_A", "voltage_min_V", "voltage_max_V", "energy_J", "hot_plate_min_C",
+            "hot_plate_max_C",
+        } <= absent  # fmt: skip
+        assert told["predicted"]["display_min_C"] == pytest.approx(26.0, abs=0.06)
+        volts = sidecar_of(ready())["predicted"]
+        assert volts["energy_J"] > 0
+        assert volts["duration_s"] == 8.01
+
     def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
         told = sidecar_of(ready("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
         one = ready("warming-step", "rigol-dg1000z", "rigol-raf").realised
@@ -243,6 +269,19 @@ class TestSidecar:
         assert told["limits"]["reason"] == why
         assert told["limits"]["loosened"] == ["skin_highest_C 42.5 °C instead of 42 °C"]
         assert "no medical or ethical clearance" in told["what_it_is_not"]
+
+    def test_a_smaller_uncertainty_is_in_it_with_its_reason(self) -> None:
+        why = "gain measured against a shunt, 2026-05-12"
+        rig = RIG.with_(**{"uncertainty.gain_relative": 0.02, "uncertainty.reason": why})
+        told = sidecar_of(ready("warming-step", rig=rig))
+        assert told["safety"]["uncertainty"]["smaller_than_shipped"] == ["gain ±2 % instead of ±10 %"]
+        assert told["safety"]["uncertainty"]["reason"] == why
+        assert any(text.endswith(f"instead of ±10 %. Reason given: {why}") for text in told["warnings"])
+        plain = sidecar_of(ready("warming-step"))["safety"]["uncertainty"]
+        assert (plain["smaller_than_shipped"], plain["reason"]) == ([], "")
+        thermode = sidecar_of(ready("warming-step", "qst-tcs2", "tcs2-serial", rig), "tcs2-serial")
+        assert thermode["safety"]["uncertainty"]["smaller_than_shipped"] == ["gain ±0 % instead of ±10 %"]
+        assert thermode["safety"]["uncertainty"]["reason"].startswith(f"{why}; the device measures its plate")
 
     def test_soft_limits_are_in_it_word_for_word(self) -> None:
         icon = parse(

@@ -72,6 +72,7 @@ def some_rig(rng: np.random.Generator) -> Rig:
         changes["uncertainty.contact_resistance_relative"] = between(rng, 0, 0.5)
         changes["uncertainty.ambient_K"] = between(rng, 0, 5)
         changes["uncertainty.gain_relative"] = between(rng, 0, 0.2)
+        changes["uncertainty.reason"] = "a rig made up by chance for a test"
     return base.with_(**changes)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Device, Realised, Rig, Samples, read_drive, realise, simulate_current
+from thermicon.circuit import Device, DriveError, Realised, Rig, Samples, read_drive, realise, simulate_current
 from thermicon.circuit.formats import FormatError, format_names, load_format
 from thermicon.circuit.formats.c_array import identifier
 from thermicon.icons import load_library, parse
@@ -68,6 +68,18 @@ class TestCsv:
             0: "rest", 1: "ramp start", 201: "target reached", 601: "return start", 801: "baseline reached; end",
         }  # fmt: skip
 
+    def test_a_device_in_amperes_is_replayed_too(self, tmp_path: Path) -> None:
+        volts = Device.load("dac-12")
+        scale = [
+            replace(record, unit="A", low=-2.0, high=2.0) if record.unit == "V" else record for record in volts.records
+        ]
+        found = realise(ICON, RIG, replace(volts, driven_by="amperes", records=tuple(scale)))
+        path = tmp_path / "drive.csv"
+        path.write_bytes(load_format("csv").write(found))
+        assert path.read_text().startswith("time_s,current_A,command_A,code,event\n")
+        again = simulate_current(read_drive(path, hold=True), RIG)
+        assert np.abs(again.skin_C - found.trace.skin_C).max() < 1e-9
+
     @pytest.mark.parametrize("device", ["dac-12", "dac-16", "ni-analogue-output", "rigol-dg1000z", "dc-coupled-audio"])
     @pytest.mark.parametrize("update", [100, 30])
     def test_a_replay_is_the_realised_trace(self, device: str, update: int, tmp_path: Path) -> None:
@@ -85,6 +97,14 @@ class TestCsv:
         rows = list(csv.DictReader(io.StringIO(load_format("csv").write(found).decode())))
         assert [float(row["duty"]) for row in rows] == samples.command.tolist()
         assert "current_A" not in rows[0]
+        path = tmp_path / "bridge.csv"
+        path.write_bytes(load_format("csv").write(found))
+        words = (
+            r"bridge\.csv:1: these are duties of a bridge, which switches its full current within every row, .*; only "
+            r"drives for a device driven by volts or amperes can be replayed, .* in the sidecar beside it"
+        )
+        with pytest.raises(DriveError, match=words):
+            read_drive(path, hold=True)
 
 
 def test_ngspice_plays_the_pwl_file(tool: Callable[[str], str], tmp_path: Path) -> None:
@@ -169,6 +189,16 @@ def test_without_nptdms_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         load_format("tdms").write(played("tdms")[0])
 
 
+def _slow(low_Hz: float, high_Hz: float) -> Device:
+    """A DC-coupled output with few updates a second."""
+    sound = Device.load("dc-coupled-audio")
+    records = [
+        replace(record, value=None, low=float(low_Hz), high=float(high_Hz)) if record.unit == "Hz" else record
+        for record in sound.records
+    ]
+    return replace(sound, name="slow", records=tuple(records))
+
+
 class TestWav:
     """Sound files."""
 
@@ -178,6 +208,35 @@ class TestWav:
             assert (sound.getnchannels(), sound.getsampwidth(), sound.getframerate()) == (1, 2, 48000)
             pcm = np.frombuffer(sound.readframes(sound.getnframes()), dtype="<i2")
         assert pcm / 32768 * 10.0 == pytest.approx(samples.command, abs=1e-12)
+
+    @pytest.mark.parametrize(
+        ("rate", "update", "frame_rate", "each"),
+        [
+            ((100, 100), 100, 48000, 480), ((1, 10000), 100, 8000, 80), ((1, 500), 62.5, 48000, 768),
+            ((1, 500), 315, 44100, 140), ((1, 500), 33.0, 176400, 0),
+        ],
+    )  # fmt: skip
+    def test_slow_updates_are_held_over_frames_that_sound_interfaces_play(
+        self, rate: tuple[float, float], update: float, frame_rate: int, each: int
+    ) -> None:
+        slow = _slow(*rate)
+        found = realise(ICON, RIG.with_(**{"driver.update_Hz": update}), slow)
+        if not each:
+            with pytest.raises(
+                FormatError, match=r"no rate that sound interfaces play \(8,000 to 192,000 frames a second"
+            ):
+                load_format("wav").write(found)
+            return
+        assert isinstance(found.played, Samples)
+        form = load_format("wav")
+        with wave.open(io.BytesIO(form.write(found))) as sound:
+            assert sound.getframerate() == frame_rate
+            pcm = np.frombuffer(sound.readframes(sound.getnframes()), dtype="<i2").reshape(-1, each)
+            assert sound.getnframes() / frame_rate == pytest.approx(len(found.played.codes) / found.played.rate_Hz)
+        assert (pcm == pcm[:, :1]).all(), "held, not resampled"
+        assert pcm[:, 0] / 32768 * 10.0 == pytest.approx(found.played.command, abs=1e-12)
+        assert form.facts is not None
+        assert form.facts(found) == {"frames_per_second": frame_rate, "frames_per_update": each}
 
     def test_an_output_that_is_not_dc_coupled_is_refused(self) -> None:
         found, _ = played("wav")
@@ -190,9 +249,13 @@ class TestWav:
         with pytest.raises(FormatError, match="wav has no levels of its own; keysight-33500b sets its levels by the"):
             load_format("wav").write(played("wav", "keysight-33500b")[0])
 
-    def test_a_broken_rate_is_refused(self) -> None:
-        found = realise(ICON, RIG.with_(**{"driver.update_Hz": 62.5}), Device.load("dac-16"))
-        with pytest.raises(FormatError, match=r"wav: 62\.5 Hz is no whole number of samples a second"):
+    def test_a_rate_that_fits_no_sound_interface_is_refused_with_the_cure(self) -> None:
+        found = realise(ICON, RIG.with_(**{"driver.update_Hz": 61.7}), _slow(1, 500))
+        words = (
+            r"wav: no rate that sound interfaces play .* is a whole multiple of the 61\.7 Hz of slow; set "
+            r"driver\.update_Hz to 100, or use dc-coupled-audio"
+        )
+        with pytest.raises(FormatError, match=words):
             load_format("wav").write(found)
 
 

@@ -6,6 +6,7 @@ import ast
 import configparser
 import csv
 import io
+import json
 import re
 import sys
 import types
@@ -148,6 +149,27 @@ class TestPsychopy:
         assert table["ramp_start_s"].tolist() == [lead, lead]
         assert table["target_reached_s"].tolist() == pytest.approx([1 + lead, 1 + lead])
         assert table["return_start_s"].tolist() == pytest.approx([6 + lead, 2 + lead])
+
+    @pytest.mark.parametrize("device", ["ni-analogue-output", "qst-tcs2"])
+    def test_every_event_of_the_sidecar_has_a_column(self, device: str) -> None:
+        files = self.packed(device)
+        rows = list(csv.DictReader(io.StringIO(files["conditions.csv"].decode())))
+        assert list(rows[0]) == [
+            "icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s",
+            "baseline_reached_s", "ramp_start_2_s", "target_reached_2_s", "return_start_2_s", "baseline_reached_2_s",
+        ]  # fmt: skip
+        warming, dips = rows
+        assert {warming[column] for column in rows[0] if "_2_" in column} == {""}
+        for row in (warming, dips):
+            events = json.loads(files[row["sidecar_file"]])["events"]
+            told = sorted(float(row[column]) for column in row if column.endswith("_s") and row[column])
+            assert told == pytest.approx(sorted(event["time_s"] for event in events))
+        lead = float(dips["ramp_start_s"])
+        second = [
+            event["time_s"] for event in json.loads(files["double-dip.json"])["events"] if event["name"] == "ramp start"
+        ]
+        assert float(dips["ramp_start_2_s"]) == pytest.approx(second[1])
+        assert float(dips["ramp_start_2_s"]) > lead + 1
 
     def test_the_player_puts_out_every_command(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         files = self.packed("ni-analogue-output")

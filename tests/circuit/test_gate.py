@@ -12,7 +12,10 @@ from thermicon.circuit.limits import WATCHED, checks_of
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
-SURE = {f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}
+SURE: dict[str, object] = {
+    **{f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")},
+    "uncertainty.reason": "a test that needs the rig as given",
+}
 STRONG = {"driver.current_limit_A": 8.0, "driver.voltage_limit_V": 60.0, "heat_sink.resistance_K_per_W": 0.02,
           "module.resistance_ohm": 1.5}  # fmt: skip
 HOT_SIDE = THENAR.with_(**SURE, **STRONG)
@@ -92,9 +95,9 @@ def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
     assert "≤ 60 °C hard" in told
     reason = gate(PULSE, PULSED).reason
     assert reason is not None
-    assert reason.startswith("rate of skin temperature reaches -11.")
+    assert reason.startswith("rate of skin temperature reaches −11.")
     assert "K/s at 1." in reason
-    assert "below the hard limit of -10 K/s" in reason
+    assert "below the hard limit of −10 K/s" in reason
 
 
 def test_the_worst_case_matters() -> None:

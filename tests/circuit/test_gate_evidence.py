@@ -63,6 +63,7 @@ def some_rig(rng: np.random.Generator) -> Rig:
         changes["uncertainty.contact_resistance_relative"] = between(rng, 0, 0.5)
         changes["uncertainty.ambient_K"] = between(rng, 0, 5)
         changes["uncertainty.gain_relative"] = between(rng, 0, 0.2)
+        changes["uncertainty.reason"] = "a rig made up by chance for a test"
     if rng.random() < 0.2:
         own = {"capacity_J_per_K": between(rng, 30, 200), "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 40.0}
         changes.update({f"heat_sink.{key}": value for key, value in own.items()})

@@ -87,7 +87,7 @@ def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be()
     step = load_library("six-icons")["cooling-step"]
     found = realise(step, RIG, Device.load("dac-16"))
     assert found.warnings == (
-        "dac-16: asks for -1 … 1 A at most, the driver would give -1.5 … 1.5 A; raise "
+        "dac-16: asks for −1 … 1 A at most, the driver would give −1.5 … 1.5 A; raise "
         "driver.transconductance_A_per_V to 0.15, if the current source can",
     )
     assert found.delivered.current_A.max() <= 1.0

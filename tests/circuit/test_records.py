@@ -61,7 +61,10 @@ def test_dumped_records_read_back_equal(tmp_path: Path) -> None:
         (('source = "Fowler et al. 1988"', 'source = " "'), r"record 1 .* has no source"),
         (('quantity = "velocity"\nvalue', "value"), r"record 1 \(no quantity\): the record has no quantity"),
         (("value = 0.5\nlow = 0.3\nhigh = 0.7", ""), r"record 1 .* has no number: add value, or low and high"),
-        (("low = 0.3", "low = 0.6"), r"low, value, high must be in this order, not 0.6, 0.5, 0.7"),
+        (
+            ("low = 0.3", "low = 0.6"),
+            r"low = 0\.6 and value = 0\.5 and high = 0\.7 are not in rising order: low comes first, high last",
+        ),
         (("value = 0.5", "value = nan"), r"must be finite numbers"),
         (("value = 0.5", 'value = "0.5"'), r"value = '0.5' must be a number without quotes or unit"),
         (('unit = "m/s"', "unit = 3", 1), r"unit = 3.0 must be a text in quotes"),

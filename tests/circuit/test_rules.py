@@ -33,9 +33,11 @@ def test_every_bound_has_a_source_and_lies_outside_the_limit() -> None:
 
 
 def test_limits_are_tightened_freely(tmp_path: Path) -> None:
-    rig = Rig.load(with_table(tmp_path, "[safety]\nskin_highest_C = 38\nskin_rate_K_per_s = 4"))
+    table = "[safety]\nskin_highest_C = 38\nskin_highest_soft_C = 37\nskin_rate_K_per_s = 4"
+    rig = Rig.load(with_table(tmp_path, table))
     assert rig.limits.changed == (
         "skin_highest_C 38 °C instead of 42 °C",
+        "skin_highest_soft_C 37 °C instead of 40 °C",
         "skin_rate_K_per_s 4 K/s instead of 10 K/s",
     )
     assert rig.limits.loosened == ()
@@ -123,11 +125,74 @@ def test_uncertainty_is_filled_from_records_and_checked() -> None:
     assert THENAR.uncertainty.contact_resistance_relative == 0.3
     assert THENAR.uncertainty.ambient_K == 3.0
     assert THENAR.uncertainty.gain_relative == 0.1
-    other = THENAR.with_(**{"uncertainty.gain_relative": 0.02})
-    assert (other.uncertainty.gain_relative, other.uncertainty.ambient_K) == (0.02, 3.0)
+    other = THENAR.with_(**{"uncertainty.gain_relative": 0.2})
+    assert (other.uncertainty.gain_relative, other.uncertainty.ambient_K) == (0.2, 3.0)
+    assert other.warnings == ()
     with pytest.raises(RigError, match=r"uncertainty\.ambient_K = -1 K: must be at least 0 K"):
         THENAR.with_(**{"uncertainty.ambient_K": -1})
     with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 2: must be at most 0\.9"):
         THENAR.with_(**{"uncertainty.gain_relative": 2})
     with pytest.raises(RigError, match=r"uncertainty\.gain_rel: unknown key; did you mean uncertainty\.gain_relative"):
         THENAR.with_(**{"uncertainty.gain_rel": 0.2})
+
+
+MEASURED = "gain measured against a shunt, 2026-05-12"
+
+
+@pytest.mark.parametrize("reason", ["", 'reason = "I know"'])
+def test_who_claims_to_be_surer_gives_a_reason(tmp_path: Path, reason: str) -> None:
+    path = with_table(tmp_path, f"[uncertainty]\ngain_relative = 0\nambient_K = 1.5\n{reason}")
+    with pytest.raises(RigError) as caught:
+        Rig.load(path)
+    first, second = str(caught.value).splitlines()
+    assert first.endswith(
+        "mine.toml: uncertainty.ambient_K = 1.5 K: is smaller than the shipped 3 K, which loosens the gate of safety; "
+        "give uncertainty.reason, at least 20 characters on how this is known "
+        "(--set 'uncertainty.reason=\"measured ...\"'), or use 3 K or more"
+    )
+    assert "uncertainty.gain_relative = 0: is smaller than the shipped 0.1, " in second
+
+
+def test_a_smaller_uncertainty_carries_its_reason_everywhere() -> None:
+    with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 0: is smaller than the shipped 0\.1"):
+        THENAR.with_set(["uncertainty.gain_relative=0"])
+    rig = THENAR.with_set(["uncertainty.gain_relative=0.02", f'uncertainty.reason="{MEASURED}"'])
+    assert rig.warnings == (
+        f"the worst case of safety is milder: gain ±2 % instead of ±10 %. Reason given: {MEASURED}",
+    )
+    found = gate(Drive([0, 1], [0.08, 0.08]), rig)
+    assert f"uncertainty SMALLER than shipped: gain ±2 % instead of ±10 %. Reason given: {MEASURED}" in found.text
+    said = found.to_dict()["uncertainty"]
+    assert isinstance(said, dict)
+    assert (said["reason"], said["smaller_than_shipped"]) == (MEASURED, ["gain ±2 % instead of ±10 %"])
+    assert "SMALLER" not in gate(Drive([0, 1], [0.08, 0.08]), THENAR).text
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"safety.skin_highest_C": 38},
+            "safety.skin_highest_C = 38 °C is hard and lies below the soft limit of 40 °C, so that nothing is amber "
+            "before it is red; set safety.skin_highest_soft_C below 38 °C too",
+        ),
+        (
+            {"safety.display_lowest_C": 12},
+            "safety.display_lowest_C = 12 °C is hard and lies above the soft limit of 10 °C, so that nothing is amber "
+            "before it is red; set safety.display_lowest_soft_C above 12 °C too",
+        ),
+        (
+            {"safety.skin_lowest_C": 35, "safety.skin_lowest_soft_C": 36},
+            "the resting skin of 32 °C (skin.rest_C) is itself below the hard limit safety.skin_lowest_C = 35 °C, so "
+            "that every icon that begins there is red from its start; change the limit or the baseline",
+        ),
+        (
+            {"safety.skin_highest_soft_C": 31},
+            "the resting skin of 32 °C (skin.rest_C) is itself above the soft limit safety.skin_highest_soft_C = 31 °C"
+            ", so that every icon that begins there is amber from its start; change the limit or the baseline",
+        ),
+    ],
+)
+def test_limits_that_make_no_sense_together_are_warned_of(changes: dict[str, object], words: str) -> None:
+    assert THENAR.with_(**changes).warnings == (words,)
+    assert THENAR.warnings == ()

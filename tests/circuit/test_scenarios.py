@@ -23,7 +23,10 @@ from thermicon.circuit.scenarios import ENDINGS
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
-SURE = {f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}
+WHY = {"uncertainty.reason": "a test that needs the rig as given"}
+SURE: dict[str, object] = {
+    **{f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}, **WHY,
+}  # fmt: skip
 OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
 CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
 WITHIN_K = 1e-3
@@ -39,7 +42,7 @@ def test_corners_are_those_of_the_box() -> None:
     assert corners[-1].rig.skin.rest_C == 32.0
     assert corners[-1].rig.blood_C == pytest.approx(THENAR.blood_C - 0.97, abs=0.01)
     assert [str(corner) for corner in corners_of(THENAR.with_(**SURE))] == ["the rig as given"]
-    assert len(corners_of(THENAR.with_(**{"uncertainty.ambient_K": 0}))) == 5
+    assert len(corners_of(THENAR.with_(**{"uncertainty.ambient_K": 0}, **WHY))) == 5
 
 
 @pytest.mark.parametrize("held", [True, False])

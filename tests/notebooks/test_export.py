@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import wave
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -41,7 +42,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     lines = said.stderr.splitlines()
     assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on keysight-33500b, receptors within ")
     assert lines[0].endswith("mK), safety green in 27 scenarios")
-    assert lines[1].startswith("warning: cool-step: keysight-33500b: asks for -1 … 1 A at most")
+    assert lines[1].startswith("warning: cool-step: keysight-33500b: asks for −1 … 1 A at most")
     assert (
         f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json" in said.stderr
     )
@@ -228,3 +229,91 @@ def test_devices_and_formats_are_listed(cli: Cli) -> None:
         assert word in said.stdout
     assert "None of them was ever played by thermicon." in said.stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
+
+
+class TestUncertainty:
+    """Being surer than what is shipped needs a reason, or the worst case would be milder without a word."""
+
+    HOT = (
+        "cue 1\nset s { control skin\n baseline 32 °C }\n"
+        "icon hot { warm by 9.2 °C at 2 °C/s; hold for 3 s; return at 2 °C/s }\n"
+    )
+    SURE = tuple(
+        word
+        for key in ("contact_resistance_relative", "ambient_K", "gain_relative")
+        for word in ("--set", f"uncertainty.{key}=0")
+    )
+
+    def export(self, cli: Cli, tmp_path: Path, *more: str) -> Any:
+        path = tmp_path / "hot.cue"
+        path.write_text(self.HOT, encoding="utf-8")
+        return cli("export", path, "--to", "csv", "-o", tmp_path / "out", *self.SURE, *more)
+
+    def test_without_a_reason_nothing_is_written(self, cli: Cli, tmp_path: Path) -> None:
+        said = self.export(cli, tmp_path)
+        assert said.exit_code == 1
+        assert "uncertainty.gain_relative = 0: is smaller than the shipped 0.1, which loosens the gate" in said.stderr
+        assert "(--set 'uncertainty.reason=\"measured ...\"'), or use 0.1 or more" in said.stderr
+        assert not (tmp_path / "out").exists()
+
+    def test_the_reason_stands_in_the_sidecar(self, cli: Cli, tmp_path: Path) -> None:
+        why = "measured on our bench, 2026-05-12"
+        said = self.export(cli, tmp_path, "--set", f'uncertainty.reason="{why}"')
+        assert said.exit_code == 0, said.stderr
+        assert (
+            "warning: the worst case of safety is milder: contact resistance ±0 % instead of ±30 %; amb" in said.stderr
+        )
+        told = json.loads((tmp_path / "out" / "hot.json").read_text())
+        assert told["safety"]["uncertainty"]["reason"] == why
+        assert len(told["safety"]["uncertainty"]["smaller_than_shipped"]) == 3
+
+
+def test_a_thermode_says_how_long_its_commands_last(cli: Cli, two: Path, tmp_path: Path) -> None:
+    said = cli("export", two, "--icon", "cool-step", "--to", "tcs2-serial", "-o", tmp_path / "out")
+    assert said.stderr.startswith("cool-step: 8 s in 3 segments on qst-tcs2, receptors within ")
+    told = json.loads((tmp_path / "out" / "cool-step.json").read_text())
+    assert told["played"]["duration_s"] == told["predicted"]["duration_s"] == 8.0
+
+
+def test_a_slow_device_gets_a_sound_file_that_plays(cli: Cli, two: Path, tmp_path: Path) -> None:
+    text = (Path(__file__).parents[2] / "circuit/devices/dc-coupled-audio.toml").read_text(encoding="utf-8")
+    (tmp_path / "slow.toml").write_text(text.replace("value = 48000", "value = 100"), encoding="utf-8")
+    said = cli("export", two, "--to", "wav", "--device", tmp_path / "slow.toml", "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    with wave.open(str(tmp_path / "out" / "cool-step.wav")) as sound:
+        assert (sound.getframerate(), sound.getnframes()) == (48000, 802 * 480)
+    told = json.loads((tmp_path / "out" / "cool-step.json").read_text())
+    assert told["update_rate_Hz"]["realised"] == 100.0
+    assert (told["format"]["frames_per_second"], told["format"]["frames_per_update"]) == (48000, 480)
+    said = cli("export", two, "--to", "wav", "--device", "dac-16", "-o", tmp_path / "other")
+    assert said.exit_code == 1
+    assert "wav: dac-16 is not said to be DC-coupled (dc_coupled = true)" in said.stderr
+    assert "use dc-coupled-audio, or another format" in said.stderr
+
+
+def test_the_duties_of_a_bridge_are_not_replayed_and_the_message_says_why(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert cli("export", two, "--to", "csv", "--device", "pwm-h-bridge-8", "-o", out, "--force").exit_code == 0
+    said = cli("simulate", "--current", out / "cool-step.csv", "--hold", "-o", tmp_path / "trace.csv")
+    assert said.exit_code == 1
+    assert "cool-step.csv:1: these are duties of a bridge, which switches its full current within" in said.stderr
+
+
+def test_names_that_differ_in_capitals_are_told_before_any_work(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "names.cue"
+    path.write_text(
+        "cue 1\nset s { control display }\nicon a-b { hold for 1 s }\nicon A-B { hold for 1 s }\n", encoding="utf-8"
+    )
+    said = cli("export", path, "--to", "csv", "-o", tmp_path / "out")
+    assert said.exit_code == 1
+    assert said.stderr.startswith(
+        "a-b and A-B: differ only in capitals, so that one's files would overwrite the other's"
+    )
+    assert not (tmp_path / "out").exists()
+    assert cli("export", path, "--icon", "A-B", "--to", "csv", "-o", tmp_path / "out").exit_code == 0
+
+
+def test_a_rest_outside_its_own_limit_is_told_at_once(cli: Cli, two: Path, tmp_path: Path) -> None:
+    said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--set", "safety.skin_lowest_C=35")
+    assert said.exit_code == 3
+    assert "warning: the resting skin of 32 °C (skin.rest_C) is itself below the hard limit" in said.stderr

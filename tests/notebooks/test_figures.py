@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from thermicon.circuit import Rig, simulate
@@ -9,6 +11,7 @@ from thermicon.circuit import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure, sweepfigure
 from thermicon.notebooks.overview import COOL, WARM, single_map
+from thermicon.notebooks.setfigures import write_figures
 from thermicon.perception import Percept, perceive, rank
 
 
@@ -62,3 +65,20 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     only = single_map(ranking, "distance")
     only.canvas.draw()
     assert [ax.get_ylabel() for ax in only.axes] == ["d′ between …"]
+
+
+def test_overviews_of_names_that_differ_in_capitals_do_not_overwrite_each_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    icons = parse(
+        "cue 1\nset s { control display }\nicon a-b { cool by 2 °C at 1 °C/s; hold for 1 s }\n"
+        "icon A-B { warm by 2 °C at 1 °C/s; hold for 1 s }\nicon a-b-2 { warm by 1 °C at 1 °C/s; hold for 1 s }"
+    )
+    rig = Rig.load("thenar")
+    write_figures(rank(icons, rig, people=1), icons, rig, tmp_path)
+    found = sorted(path.name for path in tmp_path.glob("overview-*.png"))
+    assert found == ["overview-A-B-3.png", "overview-a-b-2.png", "overview-a-b.png"]
+    assert (
+        "warning: the overview of A-B is overview-A-B-3.png, since some disks take A-B and a-b for the same name"
+        in capsys.readouterr().err
+    )
