@@ -166,7 +166,7 @@ class Designing:
             self.history = self.history.dragged(self.text, True)
         if end:
             self._drag = None
-        self._draw(notes=() if moved.refused is None else (moved.refused,))
+        self._draw(notes=() if moved.refused is None else (f"not moved: {moved.refused}",))
         return self.text
 
     def _step(self, history: History, kind: str) -> str:

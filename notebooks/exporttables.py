@@ -26,7 +26,12 @@ def delivered_html(ready: Ready) -> str:
     rows = "".join(_delivered(one, felt.get(one.realised.icon.name)) for one in ready.prepared)
     cells = "".join(f"<th>{name}</th>" for name in head)
     table = f'<table class="th"><thead><tr>{cells}</tr></thead><tbody>{rows}</tbody></table>'
-    warned = [line for one in ready.prepared for line in list(told_of(one))[1:]]
+    told: dict[str, list[str]] = {}  # what holds for many icons is said once
+    for one in ready.prepared:
+        name = one.realised.icon.name
+        for line in list(told_of(one))[1:]:
+            told.setdefault(line.removeprefix(f"warning: {name}: "), []).append(name)
+    warned = [f"{', '.join(names)}: {said}" for said, names in told.items()]
     notes = [line.removeprefix("warning: ") for line in (*ready.warnings, *warned)]
     against = "".join(
         f'<div class="th-note th-bad">{escape(name)}: {escape(str(refusal))}</div>' for name, refusal in ready.against

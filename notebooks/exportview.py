@@ -59,6 +59,7 @@ class ExportView:
         self.device.observe(lambda _: self._safely(self._device_chosen), "value")
         for control in (self.form, self.which):
             control.observe(lambda _: self._safely(self.renew), "value")
+        self.folder.observe(lambda _: self._safely(self._forget_result), "value")
         self.insist.observe(lambda _: self._safely(self._allow), "value")
         self.button.on_click(lambda _: self._safely(self.write))
         said = self.said
@@ -111,8 +112,15 @@ class ExportView:
             paths = write(self.ready, folder, self.overwrite.value, self.insist.value)
         except (OutputError, ValueError) as wrong:
             self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
+            self._say("")
             return
         self.said["written"].value = written_html(self.ready, paths)
+        self._say("")
+
+    def _forget_result(self) -> None:
+        """What was said of another folder is no news of this one."""
+        self.said["written"].value = ""
+        self._allow()
 
     def _wanted(self) -> Wanted:
         name = self.design.scene.icon if self.which.value == "shown" else None
@@ -133,7 +141,9 @@ class ExportView:
 
         made = prepare_icons(chosen, rest, rig, device, form, step)
         shown = self.design.scene.icon
-        place = next((k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown), 0)
+        red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
+        named = (k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown)
+        place = next(red, next(named, 0))  # what stops all of them is looked at first
         picture = export_svg(made, place)
         turn.tell(lambda: self._show(made, place, picture, want))
 
@@ -156,7 +166,9 @@ class ExportView:
         elif all(refusal.forcible for refusal in stops):
             self._say("refused: what is lossy or not reached is written only if you tick it", "th-caution")
         else:
-            self._say("refused: what is not safe is never written", "th-bad")
+            names = dict.fromkeys(name for name, refusal in self.ready.against if not refusal.forcible)
+            cure = "; take out what is red, or export the others one by one" if len(self.ready.prepared) > 1 else ""
+            self._say(f"refused: what is not safe is never written ({', '.join(names)}){cure}", "th-bad")
 
     def _failed(self, said: str) -> None:
         self._asked, self._done, self.ready = None, self._wanted(), None

@@ -20,6 +20,8 @@ from thermicon.notebooks.door import fail, interrupted, note, usage
 from thermicon.notebooks.outputs import check_folder, stopped_cleanly, write_together
 
 FOLDER = Path("thermicon-notebooks")
+FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
+"""Endings of files: who gives one wants something else than a folder of that name."""
 FIRST, PAGE = "01_first_icon.ipynb", "workbench.ipynb"
 STAMP = "thermicon"
 """The key of a copy's metadata that holds the fingerprint it was written with."""
@@ -76,6 +78,8 @@ def lab_command(
         raise usage("opens nothing, so there is no page to serve", "--files-only")
     if port is not None and not 1 <= port <= 65535:
         raise usage(f"{port} is outside 1 to 65535", "--port")
+    if folder.suffix.lower() in FILES:
+        raise usage(f"{str(folder)!r} is the name of a file, not of a folder; give one, such as {FOLDER}", "DIR")
     program = "voila" if page else "jupyterlab"
     if not files_only and find_spec(program) is None:
         extra = "thermicon[page]" if page else "jupyterlab"

@@ -121,7 +121,7 @@ def scene(
     said = [*notes, *moved]
     count, names = len(reading.icons), reading.names
     if count > MOST_NAMES:
-        said.append(f"{count:,} icons; the first {MOST_NAMES} are listed, any other can be named")
+        said.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
         names = names if chosen.name in names else (*names, chosen.name)
     try:
         drawing = draw(chosen, rig, person, reading)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.notebooks.cues import MOST_ICONS
 from thermicon.notebooks.frames import Frame, traces_of
 from thermicon.notebooks.mapdraw import distinct
 from thermicon.notebooks.reading import Reading, read_text
@@ -95,10 +96,9 @@ def why_not(reading: Reading) -> str | None:
     if len(reading.icons) == 0:
         return "there is no icon to rank: the set is empty"
     if len(reading.icons) > MOST_RANKED:
-        return (
-            f"{len(reading.icons):,} icons are too many to rank while you wait (at most {MOST_RANKED}); "
-            "Workbench.ranking or thermicon rank does it"
-        )
+        fits = len(reading.icons) <= MOST_ICONS
+        cure = "Workbench.ranking or thermicon rank does it" if fits else "narrow the family"
+        return f"{len(reading.icons):,} icons are too many to rank while you wait (at most {MOST_RANKED}); {cure}"
     return None
 
 

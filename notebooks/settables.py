@@ -66,6 +66,8 @@ def scores_html(ranking: Ranking) -> str:
     if draws is not None:
         correct.append(f"parameters {percent(draws.percent_correct[0])} to {percent(draws.percent_correct[1])}")
         bits.append(f"parameters {draws.information_bits[0]:.2f} to {draws.information_bits[1]:.2f}")
+    if ranking.chosen is not None:
+        correct.append("parameters: see the chosen")
     shown: tuple[tuple[str, list[str]], ...] = (
         (f"{percent(ranking.percent_correct)} correct", correct),
         (f"{ranking.information_bits:.2f} bits", bits),

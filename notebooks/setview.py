@@ -126,11 +126,12 @@ class SetView:
         if (why := why_not(read_text(want[0]))) is not None:
             self.worker.forget()
             self._asked = None
-            self._say(why + ("; the last good set is shown" if self.made is not None else ""), "th-caution")
+            kept = "" if self.made is None else f"; the last good set is shown, for {self.made.ranking.people} people"
+            self._say(why + kept, "th-caution")
             return
         self._asked = want
         quick = self.made is None or want[:2] != self._done_of()
-        self._say("ranking …")
+        self._say("ranking …" if quick or not want[2] else "choosing …")
         self.worker.ask(lambda turn: self._rank(turn, want, quick), after_s)
 
     def pick(self, a: str, b: str) -> None:
@@ -182,7 +183,8 @@ class SetView:
             share = SHARES * done // max(total, 1)
             if share > told[0]:
                 told[0] = share
-                said = f"refining with {WELL[0]} people … {100 * share // SHARES} %"
+                doing = "choosing" if choosing is not None and not quick else "refining"
+                said = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
                 turn.tell(lambda: self._say(said))
 
         well = rank_set(text, rig, *WELL, choosing, reference, progress)
@@ -279,7 +281,8 @@ class SetView:
         return None if self.made is None else (self.made.text, self.made.rig)
 
     def _mark(self, stale: bool) -> None:
-        (self.body.add_class if stale else self.body.remove_class)("thermicon-stale")
+        for part in (self.body, self.said["scores"]):
+            (part.add_class if stale else part.remove_class)("thermicon-stale")
 
     def _say(self, text: str, kind: str = "th-status") -> None:
         self.said["status"].value = f'<span class="{kind}">{escape(text)}</span>'

@@ -30,7 +30,7 @@ class Workbench:
     ``text`` is cue text, the path of a cue file, the name of a shipped set, an icon or a set (None: six-icons); ``rig``
     a name, the path of a rig file, or a rig; ``icon`` is shown first; ``folder`` is where drives are written.
     Cue text with errors is no error here: the page shows them. Raises CueErrors for a file or name that is not there,
-    RigError for such a rig.
+    RigError for such a rig, ValueError for such an icon.
 
     >>> bench = Workbench("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }")
     >>> bench
@@ -50,12 +50,23 @@ class Workbench:
 
         loaded = rig if isinstance(rig, Rig) else Rig.load(rig)
         self._design = Designing(text_of(text), loaded, icon)
+        self._check_icon(icon)
         self._folder = Path(folder)
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
+
+    def _check_icon(self, icon: str | None) -> None:
+        """A name that is asked for must be there; while people write, another icon may take its place."""
+        from thermicon.icons.words import nearest
+
+        scene = self._design.scene
+        if icon is not None and not scene.troubles and scene.icon != icon:
+            near = nearest(icon, scene.names)
+            has = f"did you mean {near}?" if near else f"there are {', '.join(scene.names[:20])}"
+            raise ValueError(f"no icon is called {icon!r}; {has}")
 
     @property
     def text(self) -> str:
@@ -102,9 +113,16 @@ class Workbench:
         return None if drawing is None else drawing.percept
 
     def ranking(self, people: int = 200) -> Ranking:
-        """Rank the set as it is written, for so many people; the last one is kept. Raises CueErrors for a bad text."""
+        """Rank the set as it is written, for so many people; the last one is kept.
+
+        Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
+        """
+        from thermicon.notebooks.cues import MOST_ICONS
         from thermicon.perception import rank
 
+        if len(self.icons) > MOST_ICONS:
+            many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"
+            raise ValueError(f"{many}: narrow the family")
         asked = (self.text, self.rig, people)
         if self._ranked is None or self._ranked[0] != asked:
             self._ranked = (asked, rank(self.icons, self.rig, people=people, edits="worst"))

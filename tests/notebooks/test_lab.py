@@ -146,6 +146,13 @@ def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple
     assert not (tmp_path / "mine").exists()
 
 
+def test_the_name_of_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
+    said = cli("lab", tmp_path / "alerts.cue", "--files-only")
+    assert said.exit_code == 2
+    assert "is the name of a file, not of a folder" in " ".join(said.stderr.replace("│", " ").split())
+    assert not (tmp_path / "alerts.cue").exists()
+
+
 def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     failing = [sys.executable, "-c", "raise SystemExit(4)"]
     monkeypatch.setattr(lab, "command_of", lambda *_: failing)

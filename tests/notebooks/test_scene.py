@@ -160,7 +160,7 @@ def test_members_of_families_can_be_chosen_and_their_list_is_short(rig: Rig) -> 
     made = scene(text, rig)
     assert made.icon == "dip_size=1"
     assert len(made.names) == MOST_NAMES
-    assert made.notes[0] == "501 icons; the first 200 are listed, any other can be named"
+    assert made.notes[0] == "501 icons; the first 200 are listed, Workbench(…, icon=NAME) shows any other"
     far = scene(text, rig, "dip_size=5.5")
     assert far.icon == "dip_size=5.5"
     assert far.names[-1] == "dip_size=5.5"

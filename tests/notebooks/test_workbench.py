@@ -69,6 +69,18 @@ def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
     return dict(bench.design_view.canvas._newest[0])
 
 
+def test_an_icon_that_is_not_there_is_an_error() -> None:
+    with pytest.raises(ValueError, match=r"no icon is called 'cooling-stap'; did you mean cooling-step\?"):
+        Workbench("six-icons", icon="cooling-stap")
+    assert Workbench("six-icons", icon="double-dip").icon.name == "double-dip"  # type: ignore[union-attr]
+
+
+def test_too_many_icons_are_not_ranked() -> None:
+    text = "cue 1; icon ramp(a in 1..6 step 0.01 °C, b in 1..3 step 0.2 °C/s) { cool by a at b; return at b }"
+    with pytest.raises(ValueError, match=r"icons are more than the 2,000 that are compared at once: narrow the family"):
+        Workbench(text).ranking()
+
+
 def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send) -> None:
     answer = send(type="text", text=DIP.replace("4 °C", "5 °C"))
     assert answer["text"] is None
