@@ -32,6 +32,7 @@ PARTS = (
     "highlight",
     "troubles",
     "editor",
+    "kept",
     "design",
     "heat",
     "main",

@@ -8,8 +8,10 @@ const BADGES = {
 };
 
 class DesignView {
-  constructor(root, flow, say) {
-    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {} });
+  /** `id` tells one model of the kernel from another. */
+  constructor(root, flow, say, id) {
+    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {}, onForget: () => {} });
+    this.kept = new Kept(id, (text) => this.takeBack(text), () => this.forget(), say);
     this.editor = new Editor({
       onText: (text) => this.edited(text),
       onUndo: () => flow.post({ type: "undo" }),
@@ -34,12 +36,28 @@ class DesignView {
     const picker = make("label", { class: "tm-pick" }, "Icon ", this.picker);
     const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
     const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, split, this.noteList);
+    return make("div", { class: "tm-design" }, bar, this.kept.element, split, this.noteList);
   }
 
   edited(text) {
     this.editSeq = this.flow.post({ type: "text", text });
+    this.kept.note(text);
     this.onLocalText(text);
+  }
+
+  /** Puts the text of an earlier bench into this one, as an edit that can be undone. */
+  takeBack(text) {
+    this.editor.replace(text);
+    this.edited(text);
+    this.editor.area.focus({ preventScroll: true });
+    this.say("Your text from before is back in the editor.");
+  }
+
+  forget() {
+    this.kept.forget();
+    this.onForget();
+    this.editor.area.focus({ preventScroll: true });
+    this.say("The text from before is forgotten.");
   }
 
   get textPending() {
@@ -48,7 +66,9 @@ class DesignView {
 
   /** Takes a text of the kernel or of another view of the same model, unless something newer was typed here. */
   takeText(text) {
-    if (text !== null && !this.textPending) this.editor.replace(text);
+    if (text === null || this.textPending) return;
+    this.editor.replace(text);
+    this.kept.note(text);
   }
 
   show(frame) {

@@ -7,7 +7,7 @@ const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowD
 class Handles {
   /** `post` sends a message and returns its seq; `redraw` asks for the overlay; `say` tells screen readers. */
   constructor(post, redraw, say) {
-    Object.assign(this, { post, redraw, say, list: [], chosen: -1, hovered: -1, pulled: null });
+    Object.assign(this, { post, redraw, say, list: [], chosen: -1, hovered: -1, pulled: null, hint: "" });
   }
 
   /** Takes the handles of a frame; a finished pull is let go once its answer is there. */
@@ -44,14 +44,14 @@ class Handles {
 
   hover(index) {
     if (index === this.hovered) return;
-    this.hovered = index;
+    Object.assign(this, { hovered: index, hint: "" });
     this.redraw();
   }
 
   /** Begins a pull by pointer; false if this handle cannot be moved. */
   grab(index, t, y) {
     const handle = this.list[index];
-    this.chosen = index;
+    Object.assign(this, { chosen: index, hint: "" });
     this.redraw();
     if (!movable(handle)) {
       this.say(handle.why ?? "This corner does not move.");
@@ -91,19 +91,25 @@ class Handles {
     const count = this.list.length;
     if (!count) return this.say("There is no corner to drag.");
     this.chosen = this.chosen < 0 ? (by > 0 ? 0 : count - 1) : (this.chosen + by + count) % count;
-    this.redraw();
+    this.byKeys("");
     this.say(this.described(this.chosen));
+  }
+
+  /** With keys the tip belongs to the chosen handle, wherever the pointer was left; `hint` says what a key cannot do. */
+  byKeys(hint) {
+    Object.assign(this, { hovered: -1, hint });
+    this.redraw();
+    if (hint) this.say(sentence(hint));
   }
 
   /** Moves the chosen handle by an arrow key; false if there is none chosen. */
   nudge(key, tenfold) {
     const handle = this.list[this.chosen];
     if (!handle || !ARROWS[key]) return false;
-    if (!movable(handle)) {
-      this.say(handle.why ?? "This corner does not move.");
-      return true;
-    }
     const [sideways, upwards] = ARROWS[key];
+    const refused = refusal(handle, sideways !== 0);
+    this.byKeys(refused);
+    if (refused) return true;
     const times = tenfold ? 10 : 1;
     const { t, y } = this.placeOf(this.chosen);
     this.pulled = { index: this.chosen, t, y, off: [0, 0], done: 0 };
@@ -132,7 +138,8 @@ class Handles {
     const handle = this.list[index];
     if (!handle) return null;
     const text = `line ${handle.line} · ${this.coordinates(index)}`;
-    return { index, text: movable(handle) ? text : `${text} · fixed: ${handle.why ?? "it does not move"}` };
+    if (!movable(handle)) return { index, text: `${text} · fixed: ${handle.why ?? "it does not move"}` };
+    return { index, text: this.hint && index === this.chosen ? `${text} · ${this.hint}` : text };
   }
 
   draw(context, panel, lay, palette) {
@@ -159,6 +166,17 @@ class Handles {
 
 function movable(handle) {
   return handle.moves_time || handle.moves_level;
+}
+
+/** Why a handle does not go along time (or along the level), or "" if it does. */
+function refusal(handle, inTime) {
+  if (inTime ? handle.moves_time : handle.moves_level) return "";
+  if (handle.why) return handle.why;
+  return movable(handle) ? `this corner moves in ${handle.moves_time ? "time" : "level"} only` : "this corner does not move";
+}
+
+function sentence(text) {
+  return text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? "" : ".");
 }
 
 function ring(context, across, down, radius, colour, width) {

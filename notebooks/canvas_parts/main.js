@@ -5,19 +5,21 @@ const VIEWS = {
   traces: { make: TracesView, read: tracesFrame },
   heat: { make: HeatView, read: heatFrame },
 };
-const LATE = "No answer from the kernel; run the cell again to go on";
+const LATE = "No answer from the kernel: run the cell again to go on";
 const siblings = new Map(); // the workbenches of one model on this page, which show one text
 
 class Workbench {
   constructor(model, el) {
     Object.assign(this, { model, view: null, kind: null, newest: null, raf: 0 });
-    this.banner = make("div", { class: "tm-banner", role: "alert", hidden: true });
+    this.lateText = make("span", { role: "alert" });
+    this.copy = make("button", { type: "button", class: "tm-button", onclick: () => this.copyText() }, "Copy text");
+    this.banner = make("div", { class: "tm-banner", hidden: true }, this.lateText, this.copy);
     this.live = make("div", { class: "tm-unseen tm-live-region", "aria-live": "polite" });
     this.place = make("div", { class: "tm-place" }, make("p", { class: "tm-waiting" }, "Waiting for the first drawing …"));
     this.root = make("div", { class: "tm-root" }, this.banner, this.place, this.live);
     this.say = whenQuiet((text) => setText(this.live, text), 600);
     this.flow = new Flow((message) => model.send(message), (late) => this.showLate(late));
-    this.key = model.get?.("key") || model;
+    this.key = model.get?.("key") || model.model_id || model;
     this.onMessage = (meta, buffers) => this.receive(meta, buffers);
     el.append(this.root);
     model.on("msg:custom", this.onMessage);
@@ -29,8 +31,18 @@ class Workbench {
   }
 
   showLate(late) {
+    const { kept } = this.view ?? {};
+    const text = kept?.place ? (kept.works ? "; your text is kept in this page" : "; copy your text before") : "";
     this.banner.hidden = !late;
-    setText(this.banner, late ? LATE : "");
+    this.copy.hidden = !text;
+    setText(this.copy, "Copy text");
+    setText(this.lateText, late ? LATE + text : "");
+  }
+
+  async copyText() {
+    const copied = await copyText(this.view.editor.area);
+    setText(this.copy, copied ? "Copied" : "Copy text");
+    this.say(copied ? "Text copied" : "The text is selected: copy it with Ctrl+C");
   }
 
   receive(meta, buffers) {
@@ -63,13 +75,14 @@ class Workbench {
     this.view?.stop();
     this.kind = kind;
     this.root.dataset.view = kind;
-    this.view = new VIEWS[kind].make(this.root, this.flow, this.say);
-    this.view.onLocalText = (text) => this.tellSiblings(text);
+    this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
+    this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
+    this.view.onForget = () => this.tellSiblings((view) => view.kept?.close());
   }
 
   /** Views of one model show one text: what is typed in one stands in the others at once. */
-  tellSiblings(text) {
-    for (const other of siblings.get(this.key)) if (other !== this) other.view?.takeText?.(text);
+  tellSiblings(tell) {
+    for (const other of siblings.get(this.key)) if (other !== this && other.view) tell(other.view);
   }
 
   /** A text whose answer got lost is sent again as soon as the kernel shows life. */

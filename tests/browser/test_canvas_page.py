@@ -221,6 +221,45 @@ def test_keys_move_cursor_and_corners(drawn: Bench) -> None:
     page.wait_for_function("document.querySelector('[aria-live]').textContent.startsWith('Corner 2 of 3, line 4')")
 
 
+@pytest.mark.parametrize(
+    ("free", "why", "said"),
+    [
+        ("moves_time", None, "this corner moves in time only"),
+        ("moves_level", None, "this corner moves in level only"),
+        ("moves_time", "the level is held", "the level is held"),
+    ],
+)
+def test_a_key_across_the_way_of_a_corner_says_why(drawn: Bench, free: str, why: str | None, said: str) -> None:
+    page = drawn.page
+    corner = {"t": 2.0, "y": 30.0, "panel": "temperature", "line": 4, "why": why}
+    drawn.frame(design(handles=[{**corner, "moves_time": False, "moves_level": False, free: True}]))
+    page.locator(".tm-stage").focus()
+    page.keyboard.press("]")
+    across, along = ("ArrowUp", "ArrowLeft") if free == "moves_time" else ("ArrowLeft", "ArrowUp")
+    page.keyboard.press(across)
+    tip = page.locator(".tm-tip", has_text=said)
+    tip.wait_for()
+    assert tip.inner_text() == f"line 4 · 2.00 s, 30.00 °C · {said}"
+    drawn.said(f"{said[0].upper()}{said[1:]}.")
+    assert drawn.sent("drag") == []
+    page.keyboard.press(along)
+    tip.wait_for(state="detached")
+    assert drawn.sent("drag") != []
+
+
+def test_the_tip_belongs_to_the_corner_chosen_by_keys(drawn: Bench) -> None:
+    page = drawn.page
+    page.mouse.move(*drawn.corner(4.0, 28.0))
+    page.locator(".tm-tip", has_text="4.00 s, 28.00 °C").wait_for()
+    page.locator(".tm-stage").focus()
+    page.keyboard.press("]")
+    page.locator(".tm-tip", has_text="2.00 s, 30.00 °C").wait_for()
+    page.keyboard.press("ArrowUp")
+    drawn.answer()
+    drawn.answer()
+    assert page.locator(".tm-tip").inner_text().startswith("line 4 · 2.00 s")
+
+
 def test_the_cursor_reads_every_series_with_its_unit(drawn: Bench) -> None:
     page = drawn.page
     x, y = drawn.corner(3.0, 27.0)
@@ -235,7 +274,8 @@ def test_without_an_answer_a_banner_says_so_and_the_text_is_sent_again(drawn: Be
     page.keyboard.type("#")
     assert page.locator(".tm-banner").is_hidden()
     page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
-    assert page.locator(".tm-banner").inner_text() == "No answer from the kernel; run the cell again to go on"
+    late = "No answer from the kernel: run the cell again to go on; your text is kept in this page"
+    assert page.locator(".tm-banner [role=alert]").inner_text() == late
     page.keyboard.type("x")
     assert page.locator(".tm-area").input_value() == TEXT + "#x"
     drawn.frame(design(seq=0))
