@@ -118,6 +118,7 @@ def test_two_views_of_one_model_show_one_text_and_leave_nothing_behind(page: Any
     assert page.evaluate("listeners.size") == 1
 
 
+@pytest.mark.benchmark
 def test_3000_points_times_10_series_are_drawn_in_8_ms(page: Any, made: Bench) -> None:
     made.show("traces")
     clock = numpy.arange(3_000) * 0.01
