@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -68,6 +67,7 @@ def rank_files(
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, the rest where it was asked for."""
     from thermicon.perception import NORMS, Task, rank
+    from thermicon.perception.rankfile import ranking_file
 
     if request.norm not in NORMS:
         raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
@@ -107,10 +107,9 @@ def rank_files(
             keep=keep,
             progress=progress,
         )
-    text = ranking.to_json()
     if json_out is not None and json_out != STDOUT:
         with complete_or_absent(json_out) as draft:
-            draft.write_text(text + "\n", encoding="utf-8")
+            draft.write_text(ranking.to_json() + "\n", encoding="utf-8")
         note(f"wrote {json_out}")
     if figures is not None:
         from thermicon.notebooks.setfigures import write_figures
@@ -126,9 +125,9 @@ def rank_files(
             draft.write_text(made, encoding="utf-8", newline="\n")
         note(f"wrote {report_out}")
     if json_out == STDOUT:
-        typer.echo(text)
+        typer.echo(ranking.to_json())
     else:
-        show_ranking(json.loads(text), [row["icon"] for row in ranking.rows()], icons.title, near)
+        show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:

@@ -35,7 +35,7 @@ FAR = 2.0
 LARGEST, FARTHEST = 4.0, 256.0
 """A number becomes at most four times larger or smaller; where that parts no pair, up to 256 times."""
 GRID = 6
-ROUNDS = 5
+ROUNDS = 4
 DEARER = 1.5
 REPEATS = (2, 3)
 MOST_LONGER_S = 30.0
@@ -232,13 +232,18 @@ class _Search:
             trial = [one for w, log in middle.items() for one in self._made(ways[w], w, 0, log)]
             done = {one.way[0] for one, ok in zip(trial, self._good(trial), strict=True) if ok}
             spans = {w: (low, middle[w]) if w in done else (middle[w], high) for w, (low, high) in spans.items()}
-        for digits in (2, 3):
-            last = [one for w, (_, high) in spans.items() for one in self._made(ways[w], w, 0, high, digits)]
-            short = [one for one, ok in zip(last, self._good(last), strict=True) if ok]
-            found += short
-            spans = {w: span for w, span in spans.items() if w not in {one.way[0] for one in short}}
+        last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in self._made(ways[w], w, d, high, d)]
+        found += self._shortest([one for one, ok in zip(last, self._good(last), strict=True) if ok])
         best = {(one.place, one.new): one for one in sorted(found, key=lambda one: -one.cost)}
         return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
+
+    @staticmethod
+    def _shortest(good: Sequence[_Tried]) -> list[_Tried]:
+        """Of each number the edit with the fewest digits; those come first."""
+        first: dict[int, _Tried] = {}
+        for one in good:
+            first.setdefault(one.way[0], one)
+        return list(first.values())
 
     def _made(self, way: tuple[int, Number, bool], w: int, g: int, log: float, digits: int = 4) -> list[_Tried]:
         """The icon with one number changed by a log ratio; nothing where the language or the whole icon forbids it."""

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from thermicon.perception.ranking import IconScore, PairScore, Ranking
 
 
-def ranking_file(ranking: Ranking) -> dict[str, Any]:
-    """The keys of the contract, in their order."""
+def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
+    """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
     model = ranking.by == "model"
     asked = ranking.parameter_intervals if model else None
     detected: tuple[Interval | None, ...] = asked.detected if asked else (None,) * len(ranking.icons)
@@ -49,7 +49,7 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             },
             "set": _set(ranking, model, asked),
             "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
-            "map": _map(ranking) if model and len(ranking.icons) > 1 else None,
+            "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
         }
     )
     return made
