@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,11 +25,12 @@ DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One pair of curves with a title, and how A and B went."""
+    """One pair of curves with a title, how A and B went, and what is said after the table."""
 
     title: str
     both: Aligned
     told: tuple[str, str] = ("", "")
+    after: str = ""
 
 
 def compare(first: str, second: str, request: Request, figure: Path | None) -> None:
@@ -48,9 +49,6 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
         if place:
             show("")
         show_comparison(each)
-    if kind == "set" and request.icon is None:
-        said = duel_of(first, second, load_rig(request.rig, request.changes))
-        show(*(["", said] if said else []))
     if figure is not None:
         note(f"wrote {figure}")
 
@@ -64,7 +62,8 @@ def show_comparison(made: Comparison) -> None:
         rows.add_row(quantity(row["column"]), written[0], f"{row['largest_s']:.2f} s", *written[1:])
     sides = zip("AB", (both.name_a, both.name_b), made.told, strict=True)
     heads = [f"{letter}  {name}{f': {told}' if told else ''}" for letter, name, told in sides]
-    show(*([made.title] if made.title else []), *heads, "", rows, "", both.said)
+    after = ["", made.after] if made.after else []
+    show(*([made.title] if made.title else []), *heads, "", rows, "", both.said, *after)
 
 
 def _rigs(first: str, second: str, request: Request) -> list[Comparison]:
@@ -100,7 +99,9 @@ def _sets(first: str, second: str, request: Request) -> list[Comparison]:
         note(f"only in one of the two: {', '.join(alone)}")
     rig = load_rig(request.rig, request.changes)
     pairs = [(pick(sets[0], name)[0], pick(sets[1], name)[0]) for name in common]
-    return [_played(pair[0].name, pair, (rig, rig), (first, second)) for pair in pairs]
+    made = [_played(pair[0].name, pair, (rig, rig), (first, second)) for pair in pairs]
+    said = duel_of(sets[0], sets[1], rig) if request.icon is None else None
+    return [*made[:-1], replace(made[-1], after=said or "")]
 
 
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:

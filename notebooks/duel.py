@@ -4,25 +4,24 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from thermicon.notebooks.cues import read_set
 from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
     from thermicon.perception import Duel
 
 MOST_IN_A_SET = 30
 """Larger sets are compared icon by icon alone; `thermicon.perception.beats` takes them."""
 
 
-def duel_of(first: str, second: str, rig: Rig) -> str | None:
-    """Return one sentence on which of two files' sets wins; None where one has a single icon, or very many."""
+def duel_of(first: IconSet, second: IconSet, rig: Rig) -> str | None:
+    """Return one sentence on which of two sets wins; None where one has a single icon, or very many."""
     from thermicon.perception import beats
 
-    sets = [read_set([name]) for name in (first, second)]
-    if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in sets):
+    if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
         return None
-    return duel_line(beats(sets[0], sets[1], rig))
+    return duel_line(beats(first, second, rig))
 
 
 def duel_line(found: Duel) -> str:

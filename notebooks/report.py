@@ -52,7 +52,9 @@ def report(
     ``icons`` and ``rig`` are those that were ranked; ``command`` is shown as what was asked, ``cures`` say by name how
     an icon that is not reached could be, and a ``date`` stands in the page only where it is given.
     """
-    result = ranking.to_dict()
+    from thermicon.perception.rankfile import ranking_file
+
+    result = ranking_file(ranking, mapped=False)  # the map is drawn, not told
     title = icons.title or "Thermal icons"
     parts = [
         *_head(result, ranking, title),

@@ -200,6 +200,8 @@ class SetView:
         self._done = want if well else None
         if well:
             self._asked = None
+        from thermicon.perception.rankfile import ranking_file
+
         ranking, said = made.ranking, self.said
         alone = len(made.icons) < 2
         self.body.layout.display = ""
@@ -214,7 +216,7 @@ class SetView:
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = ranking.to_dict()
+        result = ranking_file(ranking, mapped=False)  # the map is made already, beside the one before
         said["scores"].value = scores_html(ranking)
         said["table"].value = ranking_table(ranking, result)
         said["notes"].value = notes_html(result)

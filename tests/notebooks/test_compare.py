@@ -84,6 +84,8 @@ def test_the_better_of_two_sets_is_told(cli: Cli, two: Path, tmp_path: Path) -> 
     forth, back = (cli("compare", *sides).stdout.partition("predicted: ")[2] for sides in ((two, worse), (worse, two)))
     assert forth.startswith("A is told apart better than B in 100 %")
     assert back == forth.replace("A is told apart better than B", "B is told apart better than A")
+    warned = cli("compare", two, worse, "--set", "safety.skin_highest_C=38").stderr
+    assert warned.count("warning:") == len({line for line in warned.splitlines() if line.startswith("warning:")}) > 0
 
 
 def test_two_sets_without_a_common_name(cli: Cli, two: Path) -> None:
