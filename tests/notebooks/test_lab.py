@@ -179,6 +179,8 @@ def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: 
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        # A shell that runs tests in the background has them ignore Ctrl-C, and children inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
         wait_for(f"http://127.0.0.1:{port}{path}")
