@@ -1,40 +1,40 @@
 """thermicon.circuit: corner points and a rig → drive current → a trace of temperatures and heat flow."""
 
-from thermicon.circuit.door import InputError
+from thermicon.circuit.inputs import InputError
 from thermicon.circuit.records import Record, RecordError, Table, load_records
-from thermicon.circuit.module import Peltier
-from thermicon.circuit.datasheet import Datasheet, Extraction
-from thermicon.circuit.modules import load_module, module_names
-from thermicon.circuit.receptors import ReceptorDepths
-from thermicon.circuit.skin import Layer, Skin
-from thermicon.circuit.rules import Limits, Rule
-from thermicon.circuit.rigfile import RigError
-from thermicon.circuit.rig import Rig, rig_names
-from thermicon.circuit.drive import Drive, DriveError, read_drive
-from thermicon.circuit.steady import hold, steady_state
-from thermicon.circuit.inverse import Design, design, design_many
-from thermicon.circuit.static import check_static
-from thermicon.circuit.trace import Outcome, Trace, write_trace
-from thermicon.circuit.simulate import duration_s, simulate, simulate_all, simulate_current
-from thermicon.circuit.depths import Depths, Likeness, probe_depths, resembles
-from thermicon.circuit.meshstudy import Mesh, MeshStudy, mesh_study
-from thermicon.circuit.nearest import Nearest, nearest_reachable
-from thermicon.circuit.many import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
-from thermicon.circuit.exposure import cem43_min, henriques
-from thermicon.circuit.limits import Check, SafetyVerdict, judge_safety
-from thermicon.circuit.scenarios import Corner, Futures, corners_of, play_out
-from thermicon.circuit.gate import Gate, gate
-from thermicon.circuit.summary import Summary, summarise
-from thermicon.circuit.netlist import netlist
-from thermicon.circuit.devicefile import DeviceError
-from thermicon.circuit.device import Device, device_names
-from thermicon.circuit.samples import Samples
-from thermicon.circuit.setpoints import Setpoints
-from thermicon.circuit.realise import Realised, realise
-from thermicon.circuit.difference import Difference, difference
-from thermicon.circuit.events import Event, events_of
-from thermicon.circuit.worstcase import worst_case
-from thermicon.circuit.export import Prepared, Refusal, Verdict, pack, prepare
+from thermicon.circuit.rig.module import Peltier
+from thermicon.circuit.rig.datasheet import Datasheet, Extraction
+from thermicon.circuit.rig.modules import load_module, module_names
+from thermicon.circuit.rig.receptors import ReceptorDepths
+from thermicon.circuit.rig.skin import Layer, Skin
+from thermicon.circuit.rig.rules import Limits, Rule
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.rig import Rig, rig_names
+from thermicon.circuit.solver.drive import Drive, DriveError, read_drive
+from thermicon.circuit.solver.steady import hold, steady_state
+from thermicon.circuit.solver.inverse import Design, design, design_many
+from thermicon.circuit.solver.static import check_static
+from thermicon.circuit.solver.trace import Outcome, Trace, write_trace
+from thermicon.circuit.solver.simulate import duration_s, simulate, simulate_all, simulate_current
+from thermicon.circuit.solver.depths import Depths, Likeness, probe_depths, resembles
+from thermicon.circuit.studies.meshstudy import Mesh, MeshStudy, mesh_study
+from thermicon.circuit.solver.nearest import Nearest, nearest_reachable
+from thermicon.circuit.solver.batch import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
+from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.limits import Check, SafetyVerdict, judge_safety
+from thermicon.circuit.safety.scenarios import Corner, Futures, corners_of, play_out
+from thermicon.circuit.safety.gate import Gate, gate
+from thermicon.circuit.safety.summary import Summary, summarise
+from thermicon.circuit.delivery.netlist import netlist
+from thermicon.circuit.delivery.devicefile import DeviceError
+from thermicon.circuit.delivery.device import Device, device_names
+from thermicon.circuit.delivery.samples import Samples
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.realise import Realised, realise
+from thermicon.circuit.solver.difference import Difference, difference
+from thermicon.circuit.delivery.events import Event, events_of
+from thermicon.circuit.delivery.worstcase import worst_case
+from thermicon.circuit.delivery.export import Prepared, Refusal, Verdict, pack, prepare
 
 __all__ = [
     "InputError",

@@ -51,7 +51,7 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
 
     Raises LogError that says what is wrong and where.
     """
-    from thermicon.circuit.trace import COLUMNS
+    from thermicon.circuit.solver.trace import COLUMNS
 
     frame = _read(Path(path))
     frame.columns = [str(column).strip() for column in frame.columns]
@@ -79,7 +79,7 @@ def _read(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     from thermicon.circuit import InputError
-    from thermicon.circuit.door import read_text
+    from thermicon.circuit.inputs import read_text
 
     if path.suffix.lower() == ".parquet":
         try:
@@ -102,7 +102,7 @@ def _read(path: Path) -> pd.DataFrame:
 
 
 def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
-    from thermicon.circuit.door import nearest
+    from thermicon.circuit.inputs import nearest
     from thermicon.notebooks.door import usage
 
     names = [str(name) for name in frame["icon"].dropna().unique()] if "icon" in frame else []
@@ -118,8 +118,8 @@ def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
 
 
 def _check_columns(frame: pd.DataFrame, known: list[str], path: str) -> None:
-    from thermicon.circuit.door import nearest
-    from thermicon.circuit.trace import COLUMNS
+    from thermicon.circuit.inputs import nearest
+    from thermicon.circuit.solver.trace import COLUMNS
 
     found = ", ".join(str(name) for name in frame.columns[:8])
     if "time_s" not in frame:

@@ -16,8 +16,8 @@ from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Realised, Rig
-    from thermicon.circuit.export import Prepared, Refusal
-    from thermicon.circuit.formats import Format
+    from thermicon.circuit.delivery.export import Prepared, Refusal
+    from thermicon.circuit.delivery.formats import Format
     from thermicon.icons import Icon
     from thermicon.perception import FeltChange
 
@@ -38,8 +38,8 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit import Device
-    from thermicon.circuit.export import check_names, pack
-    from thermicon.circuit.formats import load_format
+    from thermicon.circuit.delivery.export import check_names, pack
+    from thermicon.circuit.delivery.formats import load_format
 
     form = load_format(to)
     played = Device.load(device or form.device)
@@ -73,7 +73,7 @@ def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
 
 def prepare_all(icons: Sequence[Icon], rig: Rig, device: Device, form: Format, tail_s: float) -> list[Prepared]:
     """Realise and judge every icon."""
-    from thermicon.circuit.export import prepare
+    from thermicon.circuit.delivery.export import prepare
 
     ready = []
     with progress_bar("realising") as progress:
@@ -93,8 +93,8 @@ def compare_felt(
     warn: Callable[[str], None] = note,
 ) -> tuple[FeltChange, ...]:
     """What the device changes of the exported icons for a nominal person, beside the others of the set."""
-    from thermicon.circuit.door import InputError
-    from thermicon.circuit.realise import realise, traces_until
+    from thermicon.circuit.delivery.realise import realise, traces_until
+    from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
 
     everyone = [one.realised for one in ready]
@@ -139,7 +139,7 @@ def told_of(one: Prepared) -> Iterator[str]:
 
 def refusals(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]]) -> list[tuple[str, Refusal]]:
     """Every reason against exporting, with the name of its icon; `losses` are what perception adds."""
-    from thermicon.circuit.export import Refusal
+    from thermicon.circuit.delivery.export import Refusal
 
     names = [one.realised.icon.name for one in ready]
     return [

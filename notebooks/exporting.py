@@ -11,7 +11,7 @@ from thermicon.notebooks.outputs import OutputError, check_folder, write_togethe
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Prepared, Refusal, Rig
-    from thermicon.circuit.formats import Format
+    from thermicon.circuit.delivery.formats import Format
     from thermicon.icons import Icon
     from thermicon.perception import FeltChange
 
@@ -48,7 +48,7 @@ def formats_for(device: Device) -> tuple[str, ...]:
     >>> formats_for(Device.load("qst-tcs2"))
     ('tcs2-serial', 'tcs2-protocol-ini', 'psychopy')
     """
-    from thermicon.circuit.formats import format_names, load_format
+    from thermicon.circuit.delivery.formats import format_names, load_format
 
     return tuple(name for name in format_names() if device.driven_by in load_format(name).takes)
 
@@ -73,7 +73,7 @@ def prepare_icons(
     Raises InputError where the device cannot play an icon, or not in this format.
     """
     from thermicon.circuit import Device, prepare
-    from thermicon.circuit.formats import load_format
+    from thermicon.circuit.delivery.formats import load_format
     from thermicon.notebooks.export import compare_felt
 
     made = load_format(form)

@@ -39,7 +39,7 @@ class ExportView:
 
     def _build(self, folder: Path) -> None:
         from thermicon.circuit import Device, device_names
-        from thermicon.circuit.formats import load_format
+        from thermicon.circuit.delivery.formats import load_format
 
         names = device_names()
         usual = load_format(FORMAT).device
@@ -188,7 +188,7 @@ class ExportView:
     @staticmethod
     def _forms(device: str) -> list[tuple[str, str]]:
         from thermicon.circuit import Device
-        from thermicon.circuit.formats import load_format
+        from thermicon.circuit.delivery.formats import load_format
 
         return [(f"{name}: {load_format(name).title}", name) for name in formats_for(Device.load(device))]
 

@@ -9,7 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from thermicon.circuit import Rig, RigError, hold, rig_names
-from thermicon.circuit.module import ZERO_C_IN_K
+from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.notebooks.wording import number, span
 from thermicon.perception import Observer, age_factor, load_thresholds
 from thermicon.perception.people import YOUNG_YEARS

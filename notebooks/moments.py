@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from thermicon.circuit.inverse import LIMITS, baseline_C, steps_at
-from thermicon.circuit.trace import CLOSE_K
+from thermicon.circuit.solver.inverse import LIMITS, baseline_C, steps_at
+from thermicon.circuit.solver.trace import CLOSE_K
 from thermicon.perception.features import HELD_SHARE, STILL_K, directions
 
 if TYPE_CHECKING:

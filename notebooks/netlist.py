@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path, record: str | None) -> None:
     """Write the circuit of a rig that plays an icon; with ``record``, ngspice writes all probes into that file."""
     from thermicon.circuit import netlist, simulate
-    from thermicon.circuit.inverse import design
+    from thermicon.circuit.solver.inverse import design
 
     check_output(output, NETLIST_SUFFIXES, "a netlist")
     icons = read_set([file])

@@ -138,7 +138,7 @@ def scene(
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
     from thermicon.circuit import duration_s, hold, judge_safety, simulate
-    from thermicon.circuit.inverse import baseline_C
+    from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.notebooks.justfelt import bands_of
     from thermicon.notebooks.moments import missed_spans, moments_of
     from thermicon.perception import perceive

@@ -45,7 +45,7 @@ def show_library() -> None:
 def show_devices() -> None:
     """Print the shipped devices with what drives them, range, steps and rate, then the formats and who takes them."""
     from thermicon.circuit import Device, device_names
-    from thermicon.circuit.formats import format_names, load_format
+    from thermicon.circuit.delivery.formats import format_names, load_format
 
     made = table("device", "driven by", "range", "steps", "rate")
     devices = [Device.load(name) for name in device_names()]

@@ -47,7 +47,7 @@ def kind_of(text: str, option: str) -> str:
         raise usage(f"{text} is the name of {both}; give the one you mean as a file", option)
     if Path(text).exists():
         raise usage(f"{text}: its name does not tell what it is; {HOW}", option)
-    from thermicon.circuit.door import nearest
+    from thermicon.circuit.inputs import nearest
 
     raise usage(f"{text} is nothing to compare; {nearest(text, (*rig_names(), *library_names()))} ({HOW})", option)
 

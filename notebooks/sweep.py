@@ -91,7 +91,7 @@ def sweep(
     import pandas as pd
 
     from thermicon.circuit import Summary
-    from thermicon.circuit.settings import put
+    from thermicon.circuit.rig.settings import put
 
     put(json.loads(rig.document), key, float(values[0]))
     played, rows = list(icons), []

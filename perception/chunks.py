@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -157,7 +158,7 @@ def locally(work: Work, numbers: list[int], workers: int | None = None) -> Itera
 
     No more than two chunks a worker are in memory.
     """
-    from thermicon.circuit.cores import cores
+    from thermicon.circuit.solver.cores import cores
 
     each = in_order(lambda number: run(work, number), numbers, workers or cores())
     yield from zip(numbers, each, strict=True)
@@ -165,7 +166,7 @@ def locally(work: Work, numbers: list[int], workers: int | None = None) -> Itera
 
 def time_s(work: Work, every: int) -> Array:
     """Clock of every k-th instant of the work."""
-    from thermicon.circuit.simulate import rows_until
+    from thermicon.circuit.solver.simulate import rows_until
 
     clock: Array = rows_until(work.end_s, RATE_HZ)[::every]
     return clock
@@ -181,14 +182,19 @@ def code_digest() -> str:
     """Hash of the version and of all that this version computes with: chunks of another are of no use to it."""
     digest = hashlib.sha256(own_version().encode("utf-8"))
     for package in ("thermicon.icons", "thermicon.circuit", "thermicon.perception"):
-        folders = [files(package), files(package).joinpath("data")]
-        for folder in folders:
-            if not folder.is_dir():
-                continue
-            for file in sorted(folder.iterdir(), key=lambda entry: entry.name):
-                if file.is_file() and file.name.endswith((".py", ".toml", ".csv", ".lark")):
-                    digest.update(file.name.encode("utf-8") + file.read_bytes())
+        for name, content in _sources(files(package), ""):
+            digest.update(name.encode("utf-8") + content)
     return digest.hexdigest()
+
+
+def _sources(folder: Traversable, within: str) -> Iterator[tuple[str, bytes]]:
+    """Name below a package and content of every file that decides what is computed, rooms and data included."""
+    for entry in sorted(folder.iterdir(), key=lambda one: one.name):
+        name = f"{within}/{entry.name}"
+        if entry.is_dir():
+            yield from _sources(entry, name)
+        elif entry.name.endswith((".py", ".toml", ".csv", ".lark")):
+            yield name, entry.read_bytes()
 
 
 def own_version() -> str:

@@ -87,7 +87,7 @@ def _quiet() -> Iterator[None]:
 
 def _run(work: Work, number: int) -> tuple[str, Found]:
     """Done on a worker: the chunk, with what code it was done by."""
-    from thermicon.circuit.cores import at_most
+    from thermicon.circuit.solver.cores import at_most
 
     with at_most(1):
         return code_digest(), run(work, number)

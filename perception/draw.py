@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING, Any
 
-from thermicon.circuit.draw import COOL, WARM, new_axes
+from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 from thermicon.perception.draw_heat import plot_confusion, plot_distance, plot_places
 from thermicon.perception.draw_map import plot_map
 from thermicon.perception.draw_table import plot_ranking

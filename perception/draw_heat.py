@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from thermicon.circuit.draw import COOL, new_axes
+from thermicon.circuit.solver.draw import COOL, new_axes
 from thermicon.perception.receptors import Array
 from thermicon.perception.rulescore import APART_DPRIME
 

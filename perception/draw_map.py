@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.draw import COOL, new_axes
+from thermicon.circuit.solver.draw import COOL, new_axes
 from thermicon.perception.draw_heat import short
 from thermicon.perception.receptors import Array
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.circuit.draw import COOL, WARM, new_axes
+from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 from thermicon.perception.draw_heat import short
 
 if TYPE_CHECKING:

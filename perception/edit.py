@@ -320,7 +320,7 @@ class _Search:
         return any(one.name == name for icon in self.icons for one in all_played(icon.statements))
 
     def _baseline(self, place: int) -> float:
-        from thermicon.circuit.inverse import baseline_C
+        from thermicon.circuit.solver.inverse import baseline_C
 
         return baseline_C(self.icons[place], self.rig)
 

@@ -11,8 +11,8 @@ from dataclasses import replace
 from functools import lru_cache
 
 from thermicon.circuit import Rig, hold
-from thermicon.circuit.network import network_of
 from thermicon.circuit.records import Record, Table
+from thermicon.circuit.solver.network import network_of
 from thermicon.perception.bench import Bench, Stimuli, ramp
 from thermicon.perception.channels import CHANNELS, Channel
 from thermicon.perception.observer import Observer, Receptor

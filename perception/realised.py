@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.difference import loss_limit
+from thermicon.circuit.solver.difference import loss_limit
 from thermicon.perception.distance import differences, identification_dprime
 from thermicon.perception.observer import Observer, check_norm
 from thermicon.perception.percept import Percept, perceive

@@ -114,7 +114,7 @@ def energy_J(trace: Trace, until_s: float) -> float:
 def shape_of(icon: Icon, rig: Rig) -> object:
     """What two icons share that play alike: control and corner points."""
     from thermicon.circuit import hold
-    from thermicon.circuit.inverse import baseline_C
+    from thermicon.circuit.solver.inverse import baseline_C
 
     base = baseline_C(icon, rig)
     start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base

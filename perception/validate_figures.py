@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.circuit.draw import COOL, WARM
+from thermicon.circuit.solver.draw import COOL, WARM
 from thermicon.perception.channels import CHANNELS
 from thermicon.perception.experiments import AREAS_CM2, RATES_K_PER_S
 from thermicon.perception.validate import Line, ValidationReport, variant_name

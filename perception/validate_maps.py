@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.draw import COOL, DISPLAY, SKIN, WARM
+from thermicon.circuit.solver.draw import COOL, DISPLAY, SKIN, WARM
 from thermicon.perception.channels import CHANNELS
 from thermicon.perception.rows import Array
 from thermicon.perception.tradeoffs import STRONG

@@ -13,10 +13,10 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from thermicon.circuit import Drive, Rig, netlist, simulate, simulate_current
-from thermicon.circuit.bank import Bank, cut, run_follow, run_forward
-from thermicon.circuit.inverse import design
-from thermicon.circuit.network import network_of
-from thermicon.circuit.steady import hold, steady_state
+from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
+from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import hold, steady_state
 from thermicon.icons import load_library
 
 pytestmark = pytest.mark.benchmark

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, simulate_current
-from thermicon.circuit.network import COLD, HOT, SKIN, network_of
-from thermicon.circuit.simulate import watch
+from thermicon.circuit.solver.network import COLD, HOT, SKIN, network_of
+from thermicon.circuit.solver.simulate import watch
 
 PERFUSED, PRINTED = Rig.load("thenar"), Rig.load("shani2021")
 RIGS = [PERFUSED, PRINTED]

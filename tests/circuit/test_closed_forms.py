@@ -15,11 +15,11 @@ import pytest
 from scipy.linalg import eigvalsh_tridiagonal
 
 from thermicon.circuit import Rig
-from thermicon.circuit.bank import Bank, cut, run_forward
-from thermicon.circuit.network import PROBES, SKIN, Network, network_of, network_on
-from thermicon.circuit.parts import Contact
-from thermicon.circuit.skin import CELL_GROWTH, FIRST_CELL_M, Column, Layer, Skin, column_of
-from thermicon.circuit.steady import steady_state
+from thermicon.circuit.rig.parts import Contact
+from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Column, Layer, Skin, column_of
+from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
+from thermicon.circuit.solver.network import PROBES, SKIN, Network, network_of, network_on
+from thermicon.circuit.solver.steady import steady_state
 
 REFERENCE = tomllib.loads((Path(__file__).parents[1] / "reference" / "closed_forms.toml").read_text(encoding="utf-8"))
 VALUES: list[dict[str, Any]] = REFERENCE["value"]

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from thermicon.circuit.datasheet import Datasheet, at_mean_C
-from thermicon.circuit.module import ZERO_C_IN_K
-from thermicon.circuit.modules import load_module, module_names, module_table
 from thermicon.circuit.records import RecordError
+from thermicon.circuit.rig.datasheet import Datasheet, at_mean_C
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.modules import load_module, module_names, module_table
 
 EVERY_SHEET = [(name, sheet) for name in module_names() for sheet in load_module(name)]
 IDS = [f"{name} at {sheet.t_hot_C:g}" for name, sheet in EVERY_SHEET]

@@ -3,7 +3,7 @@
 import pytest
 
 from thermicon.circuit import Drive, Rig, difference, events_of, simulate_current
-from thermicon.circuit.difference import Apart, Difference, loss_limit, loss_table
+from thermicon.circuit.solver.difference import Apart, Difference, loss_limit, loss_table
 from thermicon.icons import Corners, load_library
 
 

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 
 from thermicon.circuit import Device, Prepared, Realised, Rig, Verdict, gate, judge_safety, prepare, realise, worst_case
-from thermicon.circuit.export import Refusal, pack
-from thermicon.circuit.formats import FormatError, load_format
-from thermicon.circuit.sidecar import NO_CLEARANCE
+from thermicon.circuit.delivery.export import Refusal, pack
+from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")

@@ -25,17 +25,17 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Prepared, Rig, RigError, Setpoints, prepare, simulate_current, steady_state
-from thermicon.circuit.devicefile import DeviceError
-from thermicon.circuit.export import pack
-from thermicon.circuit.formats import FormatError, load_format
-from thermicon.circuit.limits import WATCHED
-from thermicon.circuit.netlist import netlist
-from thermicon.circuit.network import network_of
-from thermicon.circuit.pwm import steady_of
-from thermicon.circuit.realise import followed
-from thermicon.circuit.scenarios import corners_of
-from thermicon.circuit.skin import Array
-from thermicon.circuit.worstcase import regulated_corners
+from thermicon.circuit.delivery.devicefile import DeviceError
+from thermicon.circuit.delivery.export import pack
+from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.netlist import netlist
+from thermicon.circuit.delivery.realise import followed
+from thermicon.circuit.delivery.worstcase import regulated_corners
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.limits import WATCHED
+from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.pwm import steady_of
 from thermicon.icons import Icon, parse
 
 PARTS, PER_PART, NGSPICE_PER_PART = 8, 250, 25

@@ -16,8 +16,8 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Device, DriveError, Realised, Rig, Samples, read_drive, realise, simulate_current
-from thermicon.circuit.formats import FormatError, format_names, load_format
-from thermicon.circuit.formats.c_array import identifier
+from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
+from thermicon.circuit.delivery.formats.c_array import identifier
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")

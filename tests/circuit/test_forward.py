@@ -5,9 +5,9 @@ import pytest
 from scipy.linalg import expm
 
 from thermicon.circuit import Drive, Rig, simulate_current
-from thermicon.circuit.module import ZERO_C_IN_K
-from thermicon.circuit.network import PROBES, Network, network_of
-from thermicon.circuit.steady import steady_state
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.solver.network import PROBES, Network, network_of
+from thermicon.circuit.solver.steady import steady_state
 
 RIGS = [Rig.load("thenar"), Rig.load("shani2021")]
 

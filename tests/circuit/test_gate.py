@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, design, gate, hold, judge_safety, simulate, simulate_current
-from thermicon.circuit.gate import WHAT_IT_IS_NOT
-from thermicon.circuit.limits import WATCHED, checks_of
+from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
+from thermicon.circuit.safety.limits import WATCHED, checks_of
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigError, Trace, simulate
-from thermicon.circuit.steady import hold
+from thermicon.circuit.solver.steady import hold
 from thermicon.icons import Icon, parse
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, hold
-from thermicon.circuit.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
-from thermicon.circuit.paper import cooling_step
+from thermicon.circuit.studies.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
+from thermicon.circuit.studies.paper import cooling_step
 from thermicon.icons import parse
 
 THENAR, PAPER = Rig.load("thenar"), Rig.load("shani2021")

@@ -14,9 +14,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.circuit import Drive, InputError, Rig, RigError, Trace, netlist, simulate, simulate_current
-from thermicon.circuit.inverse import design
-from thermicon.circuit.netlist import EDGE_S
-from thermicon.circuit.network import PROBES
+from thermicon.circuit.delivery.netlist import EDGE_S
+from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.network import PROBES
 from thermicon.icons import load_library, parse
 
 Tool = Callable[[str], str]

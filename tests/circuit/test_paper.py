@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.account import account
-from thermicon.circuit.paper import controlled_cue, dermis_change, miss_by_limit, printed, thermistors
-from thermicon.circuit.studydraw import stacked_figure
+from thermicon.circuit.studies.account import account
+from thermicon.circuit.studies.paper import controlled_cue, dermis_change, miss_by_limit, printed, thermistors
+from thermicon.circuit.studies.studydraw import stacked_figure
 
 
 def test_whichever_is_controlled_is_the_clean_step() -> None:

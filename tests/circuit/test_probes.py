@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, Trace, simulate, simulate_current, write_trace
-from thermicon.circuit.passive import lagged
-from thermicon.circuit.probefile import insulation_records
-from thermicon.circuit.trace import COLUMNS
+from thermicon.circuit.rig.probefile import insulation_records
+from thermicon.circuit.solver.kernel_probes import lagged
+from thermicon.circuit.solver.trace import COLUMNS
 from thermicon.icons import load_library
 
 STEP = load_library("six-icons")["cooling-step"]

@@ -20,13 +20,13 @@ from thermicon.circuit import (
     simulate,
     simulate_current,
 )
-from thermicon.circuit.inverse import design
-from thermicon.circuit.network import network_of
-from thermicon.circuit.pwm import steady_of
-from thermicon.circuit.realise import traces_until
-from thermicon.circuit.samples import rate_of
-from thermicon.circuit.setpoints import setpoints_of
-from thermicon.circuit.steady import steady_state
+from thermicon.circuit.delivery.realise import traces_until
+from thermicon.circuit.delivery.samples import rate_of
+from thermicon.circuit.delivery.setpoints import setpoints_of
+from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.pwm import steady_of
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, load_library, parse
 
 RIG = Rig.load("thenar")

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit import Rig, RigError, rig_names
-from thermicon.circuit.rigfile import rig_keys
+from thermicon.circuit.rig.rigfile import rig_keys
 
 THENAR = Rig.load("thenar")
 

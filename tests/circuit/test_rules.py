@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, RigError, gate, judge_safety, simulate_current
-from thermicon.circuit.rigfile import SafetyTable
-from thermicon.circuit.rules import limit_table, safety_keys
+from thermicon.circuit.rig.rigfile import SafetyTable
+from thermicon.circuit.rig.rules import limit_table, safety_keys
 
 THENAR = Rig.load("thenar")
 REASON = "heat-pain study 12/2025, approved by the ethics board"

@@ -15,11 +15,11 @@ from thermicon.circuit import (
     simulate_current,
     steady_state,
 )
-from thermicon.circuit.limits import WATCHED
-from thermicon.circuit.network import network_of
-from thermicon.circuit.poweroff import sink_at_end_C
-from thermicon.circuit.pwm import steady_of, switched
-from thermicon.circuit.scenarios import ENDINGS
+from thermicon.circuit.safety.limits import WATCHED
+from thermicon.circuit.safety.scenarios import ENDINGS
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.poweroff import sink_at_end_C
+from thermicon.circuit.solver.pwm import steady_of, switched
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
@@ -119,8 +119,8 @@ def test_power_off_by_an_independent_solver() -> None:
 
 def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:
     """State at the end of CUE, read through all states one by one."""
-    from thermicon.circuit.scenarios import _everything
-    from thermicon.circuit.simulate import watch
+    from thermicon.circuit.safety.scenarios import _everything
+    from thermicon.circuit.solver.simulate import watch
 
     return watch(CUE, rig, _everything(len(start)))[1][:, -1]
 

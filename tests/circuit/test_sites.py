@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigError, rig_names, simulate, steady_state
-from thermicon.circuit.network import network_of
-from thermicon.circuit.skin import Layer, Skin, column_of
+from thermicon.circuit.rig.skin import Layer, Skin, column_of
+from thermicon.circuit.solver.network import network_of
 from thermicon.icons import load_library
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")

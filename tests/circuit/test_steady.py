@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigError, hold, steady_state
-from thermicon.circuit.module import ZERO_C_IN_K
-from thermicon.circuit.network import PROBES, network_of
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.solver.network import PROBES, network_of
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, check_static, nearest_reachable, simulate
-from thermicon.circuit.trace import judge
+from thermicon.circuit.solver.trace import judge
 from thermicon.icons import Icon, parse
 
 THENAR = Rig.load("thenar")

@@ -7,9 +7,9 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, Trace, judge_safety, simulate, simulate_current, write_trace
-from thermicon.circuit.draw import plot_current, plot_heat_flow
-from thermicon.circuit.rules import limit_table
-from thermicon.circuit.trace import judge
+from thermicon.circuit.rig.rules import limit_table
+from thermicon.circuit.solver.draw import plot_current, plot_heat_flow
+from thermicon.circuit.solver.trace import judge
 from thermicon.icons import load_library, parse
 
 THENAR = Rig.load("thenar")

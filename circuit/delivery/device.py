@@ -1,0 +1,134 @@
+"""A device: the hardware that plays a drive, as sourced numbers, read from a device file."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from thermicon.circuit.delivery.devicefile import DeviceError, DrivenBy, read_device_table, records_of
+from thermicon.circuit.inputs import nearest, read_text
+from thermicon.circuit.records import Record
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Whole codes to a physical command: `offset + step · code`, codes `lowest` … `highest`; `unit` is V, A or 1."""
+
+    offset: float
+    step: float
+    lowest: int
+    highest: int
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """What plays a drive, and how; all numbers come from `records`, each with its source.
+
+    `driven_by` is what it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, or
+    temperature set-points. `played`: whether thermicon ever drove one.
+
+    >>> Device.load("dac-16")
+    Device('dac-16', volts, never played)
+    >>> Device.load("dac-16").scale(7.0).step
+    0.00030517578125
+    """
+
+    name: str
+    title: str
+    driven_by: DrivenBy
+    codes: str
+    levels: str
+    duty_rule: str
+    streams: bool
+    dc_coupled: bool
+    played: bool
+    note: str
+    records: tuple[Record, ...]
+
+    def __repr__(self) -> str:
+        return f"Device({self.name!r}, {self.driven_by}, {'' if self.played else 'never '}played)"
+
+    @staticmethod
+    def load(source: str | Path) -> Device:
+        """Return a shipped device by name, or a device from a `.toml` file; raises DeviceError with every fault."""
+        path = Path(source)
+        if path.suffix == ".toml" or path.exists():
+            return _build(read_text(path, "device file", 1, DeviceError), str(path))
+        if str(source) not in device_names():
+            raise DeviceError(f"{source}: no such device; {nearest(str(source), device_names())}")
+        return _shipped(str(source))
+
+    def record(self, quantity: str) -> Record | None:
+        """Record of a quantity, as in `update rate`; None where the device does not state it."""
+        return next((record for record in self.records if record.quantity == quantity), None)
+
+    def interval(self, quantity: str) -> tuple[float, float]:
+        """Low and high end of a quantity that the device states; an end that is not given is infinite or 0."""
+        record = self.record(quantity)
+        if record is None:
+            return 0.0, math.inf
+        if record.low is None and record.high is None:
+            return record.central, record.central
+        return (0.0 if record.low is None else record.low), (math.inf if record.high is None else record.high)
+
+    def most(self, quantity: str) -> float:
+        """High end of a quantity, infinite where the device does not state it."""
+        return self.interval(quantity)[1]
+
+    @property
+    def unit(self) -> str:
+        """Unit of what it puts out: V, A, 1 (duty) or °C."""
+        return {"volts": "V", "amperes": "A", "duty": "1", "set-points": "°C"}[self.driven_by]
+
+    def scale(self, peak: float) -> Scale:
+        """Return its codes for a waveform whose largest command has size `peak`, in the device's unit.
+
+        Fixed levels do not hang on the waveform; others are set to its peak, rounded up to a thousandth.
+        """
+        record = self.record("resolution")
+        assert record is not None
+        bits = round(record.central)
+        low, high = self.interval("output range")
+        if self.driven_by == "duty":
+            low, high = -1.0, 1.0
+        if self.levels == "waveform":
+            reach = min(max(math.ceil(peak * 1e3 - 1e-9) / 1e3, 1e-3), high, -low)
+            low, high = -reach, reach
+        unit = self.unit
+        if self.codes == "symmetric":
+            most = 2 ** (bits - 1) - 1
+            return Scale(0.5 * (low + high), (high - low) / (2 * most), -most, most, unit)
+        if self.codes == "from zero":
+            return Scale(low, (high - low) / (2**bits - 1), 0, 2**bits - 1, unit)
+        return Scale(0.5 * (low + high), (high - low) / 2**bits, -(2 ** (bits - 1)), 2 ** (bits - 1) - 1, unit)
+
+
+def device_names() -> tuple[str, ...]:
+    """Names of the shipped devices.
+
+    >>> "qst-tcs2" in device_names()
+    True
+    """
+    return tuple(sorted(path.name.removesuffix(".toml") for path in _folder().iterdir() if path.name.endswith(".toml")))
+
+
+def _folder() -> Any:
+    return resources.files("thermicon.circuit") / "devices"
+
+
+@cache
+def _shipped(name: str) -> Device:
+    return _build((_folder() / f"{name}.toml").read_text("utf-8"), f"device {name}")
+
+
+def _build(text: str, where: str) -> Device:
+    table = read_device_table(text, where)
+    return Device(
+        table.name, table.title, table.driven_by, table.codes, table.levels, table.duty_rule, table.streams,
+        table.dc_coupled, table.played, table.note, records_of(table),
+    )  # fmt: skip

@@ -1,0 +1,201 @@
+"""The device file at the door: which keys there are, which records belong to which kind of device, in which units."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from thermicon.circuit.inputs import InputError, nearest, signed
+from thermicon.circuit.records import Record, RecordError
+
+
+class DeviceError(InputError):
+    """A device that cannot be, or that cannot do what is asked: what, where, value, limit, unit, cure."""
+
+
+DrivenBy = Literal["volts", "amperes", "duty", "set-points"]
+
+UNITS = {
+    "resolution": "bit",
+    "update rate": "Hz",
+    "buffer length": "samples",
+    "carrier frequency": "Hz",
+    "set-point range": "°C",
+    "set-point step": "K",
+    "tick": "s",
+    "segments": "segments",
+    "segment length": "ticks",
+    "baseline range": "°C",
+    "ramp rate": "K/s",
+}
+"""Quantities a device may state, each with its unit; those whose unit hangs on what drives it are below."""
+
+UNITS_BY_DRIVE: dict[str, dict[str, str]] = {
+    "output range": {"volts": "V", "amperes": "A", "duty": "A"},
+    "slew rate": {"volts": "V/s", "amperes": "A/s"},
+}
+"""Quantities that only some devices have, each with its unit by `driven_by`."""
+
+NEEDED: dict[str, tuple[str, ...]] = {
+    "volts": ("output range", "resolution", "update rate"),
+    "amperes": ("output range", "resolution", "update rate"),
+    "duty": ("output range", "resolution", "carrier frequency"),
+    "set-points": (
+        "set-point range", "set-point step", "tick", "segments", "segment length", "baseline range", "ramp rate",
+    ),
+}  # fmt: skip
+
+INTERVALS = ("output range", "set-point range", "baseline range", "segment length")
+"""Quantities that need a low and a high end."""
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class RecordTable(_Table):
+    """One sourced number of a device."""
+
+    quantity: str
+    unit: str
+    source: str
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+    conditions: str = ""
+    confidence: Literal["high", "medium", "low", ""] = ""
+
+
+class DeviceTable(_Table):
+    """A whole device file."""
+
+    format: Literal[1]
+    name: Annotated[str, Field(min_length=1)]
+    title: Annotated[str, Field(min_length=1)]
+    driven_by: DrivenBy
+    codes: Literal["two's complement", "symmetric", "from zero"] = "two's complement"
+    levels: Literal["fixed", "waveform"] = "fixed"
+    duty_rule: Literal["equal heat", "mean current"] = "equal heat"
+    streams: bool = False
+    dc_coupled: bool = False
+    played: bool = False
+    note: str = ""
+    record: Annotated[list[RecordTable], Field(min_length=1)]
+
+
+def read_device_table(text: str, where: str) -> DeviceTable:
+    """Return the checked table of a device file's text, or raise DeviceError with all its faults at once."""
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise DeviceError(f"{where}: not a valid TOML file: {problem}") from None
+    try:
+        table = DeviceTable.model_validate(document)
+    except ValidationError as problem:
+        findings = [_in_words(error, document) for error in problem.errors(include_url=False)]
+        raise DeviceError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+    faults = _faults(table)
+    if faults:
+        raise DeviceError("\n".join(f"{where}: {fault}" for fault in faults))
+    return table
+
+
+def records_of(table: DeviceTable) -> tuple[Record, ...]:
+    """Return the numbers of a checked table as records."""
+    return tuple(
+        Record(
+            record.quantity, record.unit, record.source, value=record.value, low=record.low, high=record.high,
+            conditions=record.conditions, confidence=record.confidence,
+        )
+        for record in table.record
+    )  # fmt: skip
+
+
+def _faults(table: DeviceTable) -> list[str]:
+    found, stated = [], {record.quantity: record for record in reversed(table.record)}
+    for place, record in enumerate(table.record):
+        where = f"record.{place} ({record.quantity})"
+        if record.quantity not in UNITS and record.quantity not in UNITS_BY_DRIVE:
+            found.append(f"{where}: no such quantity; {nearest(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
+            continue
+        if fault := _unit_fault(record, table.driven_by):
+            found.append(f"{where}: {fault}")
+        if stated[record.quantity] is not record:
+            found.append(f"{where}: is there twice; keep one")
+        if record.quantity in INTERVALS and (fault := _interval_fault(record)):
+            found.append(f"{where}: {fault}")
+            continue
+        try:
+            records_of(table.model_copy(update={"record": [record]}))
+        except RecordError as problem:
+            found.append(f"{where}: {problem}")
+            continue
+        if record.quantity not in INTERVALS and not all(
+            number > 0 for number in (record.value, record.low, record.high) if number is not None
+        ):
+            found.append(f"{where}: must be above 0")
+    missing = [quantity for quantity in NEEDED[table.driven_by] if quantity not in stated]
+    found += [
+        f"a device driven by {table.driven_by} needs a record of its {quantity}, in "
+        f"{_unit_of(quantity, table.driven_by)}"
+        for quantity in missing
+    ]
+    return found
+
+
+def _unit_of(quantity: str, driven_by: str) -> str | None:
+    """Unit of a quantity of such a device; None where it has none of that kind."""
+    return UNITS.get(quantity) or UNITS_BY_DRIVE[quantity].get(driven_by)
+
+
+def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
+    """What is wrong with the unit of a record, in a sentence with the cure."""
+    wanted, found = _unit_of(record.quantity, driven_by), record.unit
+    if wanted is None:
+        takers = " or ".join(UNITS_BY_DRIVE[record.quantity])
+        return f"says nothing of a device driven by {driven_by}, only of one driven by {takers}; remove it"
+    if found == wanted:
+        return None
+    others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == found]
+    if not others:
+        return f"unit = {found!r}: must be {wanted}; state it in {wanted}"
+    either = " or ".join(f'"{drive}"' for drive in others)
+    return (
+        f'unit = {found!r}: must be {wanted} for a device with driven_by = "{driven_by}"; state it in {wanted}, or set '
+        f"driven_by to {either} if {found} is what it puts out"
+    )
+
+
+def _interval_fault(record: RecordTable) -> str | None:
+    """What is wrong with the two ends of a record, in a sentence with the cure."""
+    low, high = record.low, record.high
+    if low is None or high is None:
+        return f"needs both low and high; {'low' if low is None else 'high'} is missing, add it in {record.unit}"
+    if low >= high:
+        return (
+            f"low = {signed(low)} {record.unit} is not below high = {signed(high)} {record.unit}; "
+            f"{'swap them' if low > high else 'leave some room between them'}"
+        )
+    return None
+
+
+def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
+    key = ".".join(str(part) for part in error["loc"])
+    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
+    said = f"{key} = {value!r}" if isinstance(value, (int, float, str, bool)) else key
+    if kind == "extra_forbidden":
+        table = RecordTable if error["loc"][0] == "record" else DeviceTable
+        return f"{key}: unknown key; {nearest(str(error['loc'][-1]), table.model_fields)}"
+    if kind == "missing":
+        return f"{key} is missing; add it"
+    if kind == "literal_error":
+        return f"{said}: must be {context.get('expected')}"
+    if kind in ("float_type", "finite_number"):
+        return f"{said}: must be a finite number without quotes or unit"
+    if kind == "bool_type":
+        return f"{said}: must be true or false"
+    return f"{said}: {error['msg'][:1].lower()}{error['msg'][1:]}"

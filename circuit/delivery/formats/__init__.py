@@ -1,0 +1,42 @@
+"""thermicon.circuit.delivery.formats: a realised drive → the bytes of a file; one writer a module, loaded on demand."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from thermicon.circuit.inputs import nearest
+from thermicon.circuit.delivery.formats.form import Format, FormatError
+
+MODULES = {
+    "csv": "csv_table",
+    "spice-pwl": "spice_pwl",
+    "keysight-arb": "keysight_arb",
+    "rigol-raf": "rigol_raf",
+    "tdms": "tdms",
+    "wav": "wav",
+    "c-array": "c_array",
+    "tcs2-serial": "tcs2_serial",
+    "tcs2-protocol-ini": "tcs2_protocol",
+    "psychopy": "psychopy",
+}
+"""Formats by name, each with the module that writes it."""
+
+
+def format_names() -> tuple[str, ...]:
+    """Names of the formats."""
+    return tuple(MODULES)
+
+
+def load_format(name: str) -> Format:
+    """Return a format by name; raises FormatError with the nearest.
+
+    >>> load_format("csv")
+    Format('csv', *.csv, for volts, amperes, duty)
+    """
+    if name not in MODULES:
+        raise FormatError(f"{name}: no such format; {nearest(name, MODULES, most=2)}")
+    found: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
+    return found
+
+
+__all__ = ["Format", "FormatError", "format_names", "load_format"]

@@ -1,0 +1,61 @@
+"""CSV: a row for each update, with the current that flows; `thermicon simulate --current FILE --hold` replays it."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+
+from thermicon.circuit.delivery.formats.form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
+from thermicon.circuit.delivery.realise import Realised
+
+FIRST = "rest"
+
+
+def columns(realised: Realised) -> tuple[Column, ...]:
+    """Time, current (not for a bridge, whose current switches), command, code, event."""
+    current = Column("current_A", "A", "current through the module, held until the next row; positive cools the skin")
+    return (
+        Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next"),
+        *(() if realised.device.driven_by == "duty" else (current,)),
+        command_column(realised),
+        Column("code", "", "the command as a whole number of the device's steps"),
+        Column("event", "", "what the icon prescribes from this row on; the last row marks the end"),
+    )
+
+
+def write(realised: Realised) -> bytes:
+    """Return the table; numbers are written so that they are read back exactly, each event in the first row of its own.
+
+    A device with more than 10,000 updates a second gets a row for each change of the command.
+    """
+    samples = samples_of(realised)
+    kept = samples.rows()
+    times, command, codes = samples.time_s[kept], samples.command[kept], samples.codes[kept]
+    current = None if realised.device.driven_by == "duty" else realised.delivered.at(times)
+    marks = {0: [FIRST]}
+    last = len(times) - 1
+    for event in events_in(realised):
+        row = last if event.name == "end" else min(int(np.searchsorted(times, event.time_s - 1e-8)), last)
+        marks.setdefault(row, []).append(event.name)
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(column.name for column in columns(realised))
+    for row in range(len(times)):
+        numbers = [times[row], *(() if current is None else (current[row],)), command[row]]
+        rows.writerow([*map(repr, map(float, numbers)), int(codes[row]), "; ".join(marks.get(row, ()))])
+    return text.getvalue().encode("utf-8")
+
+
+FORMAT = Format(
+    name="csv",
+    title="table with a row for each update",
+    suffix=".csv",
+    takes=PLAYS_SAMPLES,
+    device="dac-16",
+    source="thermicon's own columns, told in the sidecar",
+    how="put out each row's command at its time and hold it until the next",
+    write=write,
+    columns=columns,
+)

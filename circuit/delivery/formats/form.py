@@ -1,0 +1,101 @@
+"""What every format of a drive file says of itself, and what its writer gets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.events import Event, events_of
+from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.samples import Samples
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.inputs import InputError
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.steady import hold
+
+PLAYS_CURRENT = ("volts", "amperes")
+PLAYS_SAMPLES = ("volts", "amperes", "duty")
+PLAYS_SETPOINTS = ("set-points",)
+
+
+class FormatError(InputError):
+    """A drive that cannot be written in a format; the text says why and what to use instead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column, channel or list of numbers in a file: its name, its unit and what it means."""
+
+    name: str
+    unit: str
+    meaning: str
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """One kind of file: what it is called, which devices take it, where its layout is told, and how to write it.
+
+    `device` is taken where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
+    hangs on the device; `how` tells a person how to play it. `write` gives the bytes of one drive, `columns` what is in
+    them, `facts` what else the sidecar says of the file.
+    """
+
+    name: str
+    title: str
+    suffix: str
+    takes: tuple[str, ...]
+    device: str
+    source: str
+    how: str
+    write: Callable[[Realised], bytes]
+    columns: Callable[[Realised], tuple[Column, ...]]
+    stem: Callable[[str], str] = str
+    suffix_by: Callable[[Realised], str] | None = None
+    facts: Callable[[Realised], dict[str, object]] | None = None
+
+    def __repr__(self) -> str:
+        return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
+
+    def file_name(self, realised: Realised) -> str:
+        """Name of the file of a drive."""
+        suffix = self.suffix if self.suffix_by is None else self.suffix_by(realised)
+        return self.stem(realised.icon.name) + suffix
+
+    def check(self, device: Device) -> None:
+        """Raise FormatError where a device plays something else than this format holds."""
+        if device.driven_by not in self.takes:
+            raise FormatError(
+                f"{self.name} is for devices driven by {' or '.join(self.takes)}; {device.name} is driven by "
+                f"{device.driven_by}"
+            )
+
+
+def samples_of(realised: Realised) -> Samples:
+    """The samples of a drive whose device plays samples."""
+    assert isinstance(realised.played, Samples)
+    return realised.played
+
+
+def setpoints_in(realised: Realised) -> Setpoints:
+    """The set-points of a drive whose device follows set-points."""
+    assert isinstance(realised.played, Setpoints)
+    return realised.played
+
+
+def events_in(realised: Realised) -> tuple[Event, ...]:
+    """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
+    icon, rig = realised.icon, realised.rig
+    base = baseline_C(icon, rig)
+    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    return events_of(icon.lower(start), 0.0 if isinstance(realised.played, Setpoints) else realised.lead_s)
+
+
+def command_column(realised: Realised) -> Column:
+    """The column of commands of a device that plays samples."""
+    name, meaning = {
+        "volts": ("command_V", "voltage that the device puts out"),
+        "amperes": ("command_A", "current that the device puts out"),
+        "duty": ("duty", "share of a cycle that the bridge is on; negative: reversed"),
+    }[realised.device.driven_by]
+    return Column(name, realised.device.unit, f"{meaning}, held until the next row")

@@ -1,0 +1,52 @@
+"""Keysight .arb: a header in plain text, then one code a line; ±32767 are the two levels."""
+
+from __future__ import annotations
+
+from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
+from thermicon.circuit.delivery.realise import Realised
+
+FULL = 32767
+
+
+def columns(realised: Realised) -> tuple[Column, ...]:
+    """The list of codes."""
+    return (Column("Data", "", f"code; {FULL} is the high level in V, −{FULL} the low level"),)
+
+
+def write(realised: Realised) -> bytes:
+    """Return the file; its filter is off, since the drive is a staircase."""
+    samples = samples_of(realised)
+    scale = samples.scale
+    if scale.highest != FULL or scale.lowest != -FULL:
+        raise FormatError(
+            f"keysight-arb needs codes of ±{FULL} (16 bits, symmetric); {realised.device.name} has "
+            f"{scale.lowest} … {scale.highest}"
+        )
+    low, high = (scale.offset + scale.step * code for code in (-FULL, FULL))
+    header = [
+        "File Format:1.10",
+        "Checksum:0",
+        "Channel Count:1",
+        f"Sample Rate:{samples.rate_Hz:.6f}",
+        f"High Level:{high:.6f}",
+        f"Low Level:{low:.6f}",
+        "Marker Point:1",  # sync changes with the first sample of the icon
+        'Data Type:"short"',
+        'Filter:"OFF"',
+        f"Data Points:{len(samples.codes)}",
+        "Data:",
+    ]
+    return ("\r\n".join([*header, *map(str, samples.codes.tolist())]) + "\r\n").encode("ascii")
+
+
+FORMAT = Format(
+    name="keysight-arb",
+    title="waveform file of Keysight (Agilent) 33500 generators",
+    suffix=".arb",
+    takes=("volts",),
+    device="keysight-33500b",
+    source="public writers that agree: writeArbFile.m (Montana Tech, 2018), arbTo33500 (Agilent, N. Forcier)",
+    how="load it by MMEMory:LOAD:DATA or from a stick, output load high impedance, one cycle on a trigger",
+    write=write,
+    columns=columns,
+)

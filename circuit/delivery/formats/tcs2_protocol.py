@@ -1,0 +1,103 @@
+"""TCS II protocol file: baseline, trigger, and one stimulation that ramps, holds and returns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError
+from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.icons import Corners
+
+ZONES = (1, 2, 3, 4, 5)
+TRIGGER_CODE, TRIGGER_S = 255, 0.3
+"""Trigger out with the stimulation, as pytcsii has it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stimulus:
+    """Baseline and target in °C, rates of the ramp and of the return in K/s, both positive, ramp and plateau in s.
+
+    The duration counts the ramp and the plateau, not the return, for cooling as for warming.
+    """
+
+    baseline_C: float
+    target_C: float
+    rise_K_per_s: float
+    return_K_per_s: float
+    duration_s: float
+
+
+def stimulus_of(corners: Corners, fastest_K_per_s: float) -> Stimulus:
+    """Return a cue as ramp, plateau and return; raises FormatError for any other shape.
+
+    >>> stimulus_of(Corners((0, 2, 4, 6), (30, 24, 24, 30), "temperature_C"), 300.0)
+    Stimulus(baseline_C=30.0, target_C=24.0, rise_K_per_s=3.0, return_K_per_s=3.0, duration_s=4.0)
+    """
+    points = list(zip(corners.time_s, corners.value, strict=True))
+    if len(points) > 3 and points[-1][1] == points[-2][1]:
+        points.pop()  # a rest at the end
+    levels = [level for _, level in points]
+    there_and_back = len(points) in (3, 4) and levels[0] == levels[-1] != levels[1]
+    plain = there_and_back and levels[1] == levels[-2]
+    if not plain:
+        raise FormatError(
+            "tcs2-protocol-ini holds one ramp, one plateau and one return to baseline; this icon has another shape: "
+            "use tcs2-serial"
+        )
+    (begin, base), (top, target), (back, _), (end, _) = points[0], points[1], points[-2], points[-1]
+    size = abs(target - base)
+    rates = [min(size / (until - start), fastest_K_per_s) for start, until in ((begin, top), (back, end))]
+    return Stimulus(base, target, rates[0], rates[1], back)
+
+
+def columns(realised: Realised) -> tuple[Column, ...]:
+    """Keys of a zone."""
+    return (
+        Column("temperature", "°C", "target"),
+        Column("speed", "K/s", "rate of the ramp, positive for cooling too"),
+        Column("return", "K/s", "rate of the return, positive"),
+        Column("duration", "s", "ramp and plateau together"),
+        Column("baseline", "°C", "baseline"),
+    )
+
+
+def write(realised: Realised) -> bytes:
+    """Return the protocol; raises FormatError for a cue that is no ramp, plateau and return of the display."""
+    icon = realised.icon
+    if icon.frame.control != "display":
+        raise FormatError(
+            f"tcs2-protocol-ini needs an icon that prescribes the display; {icon.name} prescribes the "
+            f"{icon.frame.control}: use tcs2-serial"
+        )
+    stimulus = stimulus_of(icon.lower(baseline_C(icon, realised.rig)), realised.device.most("ramp rate"))
+    return ("\n".join(_lines(stimulus)) + "\n").encode("ascii")
+
+
+def _lines(stimulus: Stimulus) -> Iterator[str]:
+    yield from ("[protocol]", "stepsNumber=3", "recordTemperatures=1", "")
+    yield from ("[step1]", "stepType=6", "stepTypeText=BASELINE")
+    yield from (f"baseline={stimulus.baseline_C:.3f}", "adjustToSkin=0", "")
+    yield from ("[step2]", "stepType=2", "stepTypeText=WAIT", "typeWait=3", "typeWaitText=WAIT_TRIGGER", "number=1", "")
+    yield from ("[step3]", "stepType=0", "stepTypeText=STIMULATE", "")
+    yield from ("[step3_stimulation]", f"baseline={stimulus.baseline_C:.3f}")
+    yield from (f"triggerVal={TRIGGER_CODE}", f"triggerDur={TRIGGER_S:.3f}", "")
+    for zone in ZONES:
+        yield from (f"[step3_zone{zone}]", "enabled=1", f"duration={stimulus.duration_s:.3f}", "wait=0.000")
+        yield from (f"temperature={stimulus.target_C:.3f}", f"speed={stimulus.rise_K_per_s:.3f}")
+        yield f"return={stimulus.return_K_per_s:.3f}"
+        yield from ("pointToPointEnabled=0", "nbrPts=1", "sec1=1.000", f"deg1={stimulus.baseline_C:.3f}", "")
+
+
+FORMAT = Format(
+    name="tcs2-protocol-ini",
+    title="protocol file of a QST.Lab TCS II",
+    suffix=".protocol.ini",
+    takes=PLAYS_SETPOINTS,
+    device="qst-tcs2",
+    source="pytcsii (mpcoll), tcsii_protocol_generator",
+    how="copy it to the instrument on a stick; it waits for a trigger",
+    write=write,
+    columns=columns,
+)

@@ -1,0 +1,56 @@
+"""NI TDMS: the commands as a waveform channel, written by npTDMS."""
+
+from __future__ import annotations
+
+import io
+from importlib.metadata import version
+
+from thermicon.circuit.delivery.formats.form import (
+    PLAYS_SAMPLES,
+    Column,
+    Format,
+    FormatError,
+    command_column,
+    samples_of,
+)
+from thermicon.circuit.delivery.realise import Realised
+
+GROUP = "thermicon"
+
+
+def columns(realised: Realised) -> tuple[Column, ...]:
+    """Channels of the group `thermicon`."""
+    return (command_column(realised), Column("code", "", "the command as a whole number of the device's steps"))
+
+
+def write(realised: Realised) -> bytes:
+    """Return the file; raises FormatError where npTDMS is not installed."""
+    try:
+        from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
+    except ImportError:
+        raise FormatError('tdms needs npTDMS, which is not installed: pip install "thermicon[hardware]"') from None
+    samples, command = samples_of(realised), command_column(realised)
+    clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
+    root = RootObject({"name": realised.icon.name, "author": f"thermicon {version('thermicon')}"})
+    group = GroupObject(GROUP, {"device": realised.device.name, "rig": realised.rig.name})
+    channels = [
+        ChannelObject(GROUP, command.name, samples.command, {"unit_string": command.unit, **clock}),
+        ChannelObject(GROUP, "code", samples.codes.astype("<i4"), {"unit_string": "", **clock}),
+    ]
+    file = io.BytesIO()
+    with TdmsWriter(file) as writer:
+        writer.write_segment([root, group, *channels])
+    return file.getvalue()
+
+
+FORMAT = Format(
+    name="tdms",
+    title="National Instruments TDMS",
+    suffix=".tdms",
+    takes=PLAYS_SAMPLES,
+    device="ni-analogue-output",
+    source="written and read by npTDMS; properties of waveform channels as in its documentation",
+    how="play channel command_V at 1/wf_increment, samps_per_chan = wf_samples, finite",
+    write=write,
+    columns=columns,
+)

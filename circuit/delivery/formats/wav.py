@@ -1,0 +1,86 @@
+"""WAV: 16-bit PCM at a rate that sound interfaces play, for outputs that are DC-coupled; others lose every held level.
+
+A drive has far fewer updates than a sound has frames: each is repeated a whole number of times, which is what holding
+it means. Nothing is resampled.
+"""
+
+from __future__ import annotations
+
+import io
+import wave
+
+import numpy as np
+
+from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
+from thermicon.circuit.delivery.realise import Realised
+
+FULL = 32768
+
+FRAME_RATES_HZ = (48_000, 44_100, 96_000, 88_200, 192_000, 176_400, 32_000, 24_000, 22_050, 16_000, 11_025, 8_000)
+"""Frames a second that sound interfaces play, the likeliest first."""
+
+
+def columns(realised: Realised) -> tuple[Column, ...]:
+    """The one channel."""
+    scale = samples_of(realised).scale
+    return (Column("channel 1", "", f"16-bit PCM; full scale (±{FULL}) is ±{-scale.step * scale.lowest:g} V"),)
+
+
+def frames(realised: Realised) -> tuple[int, int]:
+    """Return frames a second and how many of them each update gets; FormatError where no rate is a multiple.
+
+    A rate within what the device states is taken before others.
+    """
+    rate = samples_of(realised).rate_Hz
+    low, high = realised.device.interval("update rate")
+    for frame_rate in sorted(FRAME_RATES_HZ, key=lambda one: not low <= one <= high):
+        each = round(frame_rate / rate)
+        if each >= 1 and abs(each * rate - frame_rate) < 1e-9 * frame_rate:
+            return frame_rate, each
+    raise FormatError(
+        f"wav: no rate that sound interfaces play ({min(FRAME_RATES_HZ):,} to {max(FRAME_RATES_HZ):,} frames a second) "
+        f"is a whole multiple of the {rate:g} Hz of {realised.device.name}; set driver.update_Hz to 100, or use "
+        f"dc-coupled-audio"
+    )
+
+
+def facts(realised: Realised) -> dict[str, object]:
+    """What the sidecar says of the file."""
+    frame_rate, each = frames(realised)
+    return {"frames_per_second": frame_rate, "frames_per_update": each}
+
+
+def write(realised: Realised) -> bytes:
+    """Return the file; raises FormatError for a device that is not DC-coupled, or a rate that cannot be reached."""
+    device, samples = realised.device, samples_of(realised)
+    if device.levels != "fixed" or samples.scale.offset != 0:
+        raise FormatError(f"wav has no levels of its own; {device.name} sets its levels by the waveform: use another")
+    if not device.dc_coupled:
+        raise FormatError(
+            f"wav: {device.name} is not said to be DC-coupled (dc_coupled = true); an output that is not loses every "
+            f"held level; use dc-coupled-audio, or another format"
+        )
+    frame_rate, each = frames(realised)
+    full = -samples.scale.lowest * samples.scale.step
+    pcm = np.clip(np.rint(samples.command / full * FULL), -FULL, FULL - 1).astype("<i2")
+    file = io.BytesIO()
+    with wave.open(file, "wb") as sound:
+        sound.setnchannels(1)
+        sound.setsampwidth(2)
+        sound.setframerate(frame_rate)
+        sound.writeframes(np.repeat(pcm, each).tobytes())
+    return file.getvalue()
+
+
+FORMAT = Format(
+    name="wav",
+    title="sound file for a DC-coupled output",
+    suffix=".wav",
+    takes=("volts",),
+    device="dc-coupled-audio",
+    source="RIFF WAVE, PCM; written and read by Python's wave module",
+    how="play it at full volume without resampling, effects or fades, on an output that is DC-coupled",
+    write=write,
+    columns=columns,
+    facts=facts,
+)

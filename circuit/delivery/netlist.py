@@ -1,0 +1,235 @@
+"""The same circuit as text that both LTspice and ngspice read: driver, module and skin.
+
+After Fig. 2b of Shani & Lineykin 2021: electrical side in V and A; thermal side 1 V is 1 °C and 1 A is 1 W.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Iterator
+from importlib.metadata import version
+
+from thermicon.circuit.inputs import InputError
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.network import HOT, PROBES, Network, network_of
+from thermicon.circuit.solver.steady import steady_state
+
+EDGE_S = 1e-6
+"""Width of the flank that stands for a jump of a held current; less where rows are closer than four of these."""
+
+LONGEST_STEP_S = 2.5e-3
+"""Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
+
+LEAST_PERFUSION_W_PER_K = 1e-12
+"""Perfusion below this has no resistor: it would be larger than either program reads."""
+
+RECORDED = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in PROBES))
+"""What the control section has ngspice write beside the time: current, voltage at the module, and PROBES."""
+
+
+def netlist(
+    rig: Rig,
+    drive: Drive,
+    *,
+    rest_A: float | None = None,
+    title: str = "drive",
+    rows_Hz: float = 100.0,
+    out_file: str | None = None,
+    reltol: float = 1e-6,
+) -> str:
+    """Return a netlist of a rig and a drive that LTspice and ngspice both read.
+
+    Its run starts from the steady state of `rest_A`, the current that has been held for ever (`Design.rest_A`); the
+    drive's first current follows 1 µs later. None: from the steady state of the drive's first current. With
+    `out_file`, a control section (ngspice only) has `ngspice -b` write RECORDED there, a row for each time in s.
+
+    >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
+    >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
+    ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
+    """
+    net = network_of(rig)
+    names, skin = _skin(rig, net)
+    end, step = float(drive.time_s[-1]), 1.0 / rows_Hz
+    lines = [
+        *_header(rig, names, title),
+        *_electrical(rig, drive, rest_A),
+        *_module(rig),
+        *_sink(rig, net, float(drive.current_A[0]) if rest_A is None else rest_A),
+        *skin,
+        *_probes(net, names),
+        "*",
+        f".options reltol={reltol!r} abstol=1e-12 vntol=1e-9",
+        f".tran {step!r} {end!r} 0 {min(step, LONGEST_STEP_S)!r}",
+    ]
+    if out_file is not None:
+        lines += [".control", "set wr_singlescale", "set wr_vecnames", "set numdgt=15", "run"]
+        lines += [f"wrdata {_quoted(out_file)} {' '.join(RECORDED)}", "quit 0", ".endc"]
+    return "\n".join([*lines, ".end", ""])
+
+
+def _quoted(name: str) -> str:
+    """The name of a file as ngspice's control language takes it; InputError for one that it cannot take."""
+    if not re.fullmatch(r"[\w./\\:+ -]+", name):
+        raise InputError(
+            f"{name!r}: ngspice cannot write to a file of this name; use letters, digits, blanks and . / : + - _"
+        )
+    return f"'{name}'" if " " in name else name
+
+
+def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
+    driver = rig.driver
+    yield from _comment(f"{title} on rig {rig.name}, written by thermicon {version('thermicon')}")
+    if rig.title:
+        yield from _comment(rig.title)
+    nodes = {
+        "command": f"what the driver is told, in V; it gives {driver.transconductance_A_per_V!r} A for each V",
+        "plus": "+ terminal of the module (- is ground): V(plus) is the voltage that the driver must supply. Its "
+        f"compliance is {driver.voltage_limit_V!r} V; nothing here limits it",
+        "ohmic": "behind the ammeter Vsense: I(Vsense) is the drive current in A, positive where it cools the skin",
+        "seebeck": "behind the module's resistance: the Seebeck voltage alpha*(Th - Tc)",
+        "hot, cold": "the module's plates; the cold plate is the display",
+        "sink": "heat sink",
+        "skin": "face of the skin, behind the contact resistance",
+        f"{names[2] if names[2] != 'skin' else names[3]} ... {names[-2]}": "into the skin, depths given below",
+        "deep, blood": "deep tissue at the last layer's end, and the blood that perfuses",
+    }
+    probes = {
+        ", ".join(probe for probe in PROBES if probe.endswith("_C")): "temperatures, 1 V is 1 degC",
+        ", ".join(probe for probe in PROBES if not probe.endswith("_C")): "heat flow into the skin, 1 V is 1 W/m2",
+    }
+    yield "*"
+    yield "* Electrical nodes in V and A; thermal nodes: 1 V is 1 degC above a ground of 0 degC, 1 A is 1 W."
+    for node, meaning in nodes.items():
+        yield from _comment(f"  {node}: {meaning}")
+    yield "* Probes, named as the columns of a trace:"
+    for node, meaning in probes.items():
+        yield from _comment(f"  {node}: {meaning}")
+    if rig.probes:
+        left_out = ", ".join(probe.name for probe in rig.probes)
+        yield from _comment(f"Not in this file: the rig's own probes with their lags ({left_out}).")
+    yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
+    yield from _comment("LTspice stores fewer points than it computes; .options plotwinsize=0 makes it keep them all.")
+
+
+def _electrical(rig: Rig, drive: Drive, rest_A: float | None) -> Iterator[str]:
+    gain, module = rig.driver.transconductance_A_per_V, rig.module
+    yield from _section("driver: a voltage-controlled current source")
+    yield "Vcommand command 0 PWL("
+    yield from (f"+ {time!r} {current / gain!r}" for time, current in points(drive, rest_A))
+    yield "+ )"
+    yield f"Gdriver 0 plus command 0 {gain!r}"
+    yield from _section("the module's electrical port")
+    yield "Vsense plus ohmic 0"
+    yield f"Rmodule ohmic seebeck {module.resistance_ohm!r}"
+    yield f"Bseebeck seebeck 0 V={module.seebeck_V_per_K!r}*(V(hot)-V(cold))"
+
+
+def _module(rig: Rig) -> Iterator[str]:
+    module = rig.module
+    alpha, joule = module.seebeck_V_per_K, f"{module.resistance_ohm / 2!r}*I(Vsense)*I(Vsense)"
+    yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
+    yield f"Bcold cold 0 I={alpha!r}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense)-{joule}"
+    yield f"Bhot 0 hot I={alpha!r}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense)+{joule}"
+    yield f"Rtheta hot cold {module.thermal_resistance_K_per_W!r}"
+    yield f"Chot hot 0 {module.hot_plate_J_per_K!r}"
+    yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
+
+
+def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
+    """The heat sink: ideal, or a body under its own PI control, whose power at rest is what balances `start_A`."""
+    sink, own = rig.heat_sink, rig.heat_sink.controller
+    yield from _section("heat sink")
+    yield f"Rsink sink hot {sink.resistance_K_per_W!r}"
+    if own is None:
+        yield f"Vsink sink 0 {sink.temperature_C!r}"
+        return
+    rest_W = (sink.temperature_C - float(steady_state(net, start_A)[HOT])) / sink.resistance_K_per_W
+    yield f"Csink sink 0 {own.capacity_J_per_K!r}"
+    yield f"Bmiss miss 0 V={sink.temperature_C!r}-V(sink)"
+    integral = f"+{own.ki_W_per_Ks!r}*V(integral)" if own.ki_W_per_Ks else ""
+    yield f"Bwanted wanted 0 V={rest_W!r}+{own.kp_W_per_K!r}*V(miss){integral}"
+    yield f"Bsink 0 sink I=min(max(V(wanted),-{own.power_limit_W!r}),{own.power_limit_W!r})"
+    if integral:
+        yield "* the integral waits while the power is at its limit"
+        yield f"Bintegral 0 integral I=V(miss)*(1-u(V(wanted)*V(miss))*u(abs(V(wanted))-{own.power_limit_W!r}))"
+        yield "Cintegral integral 0 1"
+
+
+def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
+    """Names of the nodes of the state vector, and the lines from the display down to the deep node."""
+    count = len(net.capacity_J_per_K)
+    names = ["hot", "cold", *(f"s{i + 1}" for i in range(count)), "deep"]
+    resistance = [1 / float(conductance) for conductance in net.conductance_W_per_K]
+    contact = rig.contact.resistance_m2K_per_W / rig.contact.area_m2
+    lines = list(_section("contact"))
+    lines.append(f"Rcontact cold skin {contact!r}")
+    if resistance[0] - contact < 1e-9 * resistance[0]:
+        names[2] = "skin"  # the first lump lies in the face
+    else:
+        lines.append(f"Rface skin {names[2]} {resistance[0] - contact!r}")
+    lines += _section("skin")
+    ends, layer = _layer_ends_m(rig), -1
+    for i in range(count):
+        depth = float(rig.column.depth_m[i])
+        while layer + 1 < len(ends) and (layer < 0 or depth >= ends[layer] - 1e-9):
+            layer += 1
+            lines += _comment(f"{rig.skin.layers[layer].name}, down to {ends[layer] * 1e3:.4g} mm")
+        name, below = names[2 + i], names[3 + i]
+        lines.append(f"* {name}: {depth * 1e3:.4g} mm")
+        lines.append(f"C{name} {name} 0 {float(net.capacity_J_per_K[i])!r}")
+        if net.perfusion_W_per_K[i] > LEAST_PERFUSION_W_PER_K:
+            lines.append(f"Rblood_{name} {name} blood {1 / float(net.perfusion_W_per_K[i])!r}")
+        lines.append(f"R{name}_{below} {name} {below} {resistance[i + 1]!r}")
+    return names, [*lines, f"Vdeep deep 0 {net.deep_C!r}", f"Vblood blood 0 {net.deep_C!r}"]
+
+
+def _layer_ends_m(rig: Rig) -> list[float]:
+    ends, depth = [], 0.0
+    for layer in rig.skin.layers:
+        depth += layer.thickness_m
+        ends.append(depth)
+    return ends
+
+
+def _probes(net: Network, names: list[str]) -> Iterator[str]:
+    yield from _section("probes")
+    for row, probe in enumerate(PROBES):
+        start = int(net.probe_start[row])
+        terms = [f"{float(weight)!r}*V({names[start + k]})" for k, weight in enumerate(net.probe_weight[row]) if weight]
+        yield f"B{probe} {probe} 0 V={'+'.join(terms).replace('+-', '-')}"
+
+
+def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
+    """Corners of a drive's current: (time s, A), a flank of 1 µs for each jump."""
+    times, currents = drive.time_s.tolist(), drive.current_A.tolist()
+    start: list[tuple[float, float]] = [(0.0, currents[0])]
+    if rest_A is not None and rest_A != currents[0]:
+        edge = min(EDGE_S, times[1] / 4)
+        slope = 0.0 if drive.held else (currents[1] - currents[0]) / times[1]
+        start = [(0.0, float(rest_A)), (edge, currents[0] + slope * edge)]
+    if not drive.held:
+        return [*start, *zip(times[1:], currents[1:], strict=True)]
+    points, before = start, currents[0]
+    for k in range(1, len(times) - 1):
+        if currents[k] != before:
+            half = min(EDGE_S / 2, (times[k] - times[k - 1]) / 4, (times[k + 1] - times[k]) / 4)
+            points += [(times[k] - half, before), (times[k] + half, currents[k])]
+            before = currents[k]
+    return [*points, (times[-1], before)]
+
+
+def _section(what: str) -> Iterator[str]:
+    yield "*"
+    yield from _comment(f"--- {what} ---")
+
+
+def _comment(text: str) -> list[str]:
+    """Comment lines; only ASCII, since LTspice takes other letters for those of its own code page."""
+    indent = " " * (len(text) - len(text.lstrip()))
+    for sign, plain in (("°", "deg"), ("µ", "u"), ("²", "2"), ("–", "-"), ("×", "x")):
+        text = text.replace(sign, plain)
+    plain = " ".join(text.encode("ascii", "replace").decode("ascii").split())
+    return textwrap.wrap(plain, 110, initial_indent=f"* {indent}", subsequent_indent=f"* {indent}  ")

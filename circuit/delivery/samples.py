@@ -1,0 +1,169 @@
+"""Samples: a designed drive as the codes of a device at its update rate, and back to the current that flows."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from thermicon.circuit.delivery.device import Device, Scale
+from thermicon.circuit.delivery.devicefile import DeviceError
+from thermicon.circuit.inputs import signed
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.pwm import duty_of, switched
+
+DENSEST_HZ = 10_000.0
+"""From here on a drive has a row for each change and not for each sample; the sum is the same."""
+
+Codes = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Samples:
+    """Codes (n + 1,) at `k / rate_Hz` seconds; the first is the rest, the last marks the end and is the rest again."""
+
+    rate_Hz: float
+    codes: Codes
+    scale: Scale
+
+    @property
+    def time_s(self) -> Array:
+        """Times in s of the samples."""
+        return np.arange(len(self.codes)) / self.rate_Hz
+
+    @property
+    def command(self) -> Array:
+        """Commands (n + 1,) in the unit of the scale: V, A, or duty (signed, −1 … 1)."""
+        return self.scale.offset + self.scale.step * self.codes.astype(np.float64)
+
+    def rows(self) -> npt.NDArray[np.intp]:
+        """Places of the samples that get a row in a drive: all, or at a dense rate those that change and the last."""
+        if self.rate_Hz <= DENSEST_HZ:
+            return np.arange(len(self.codes))
+        kept = np.append(True, np.diff(self.codes) != 0)
+        kept[-1] = True
+        return np.flatnonzero(kept)
+
+    def until(self, end_s: float) -> Samples:
+        """The same, with the last code held until a time in s."""
+        more = max(0, math.ceil(end_s * self.rate_Hz - 1e-9) + 1 - len(self.codes))
+        return replace(self, codes=np.append(self.codes, np.repeat(self.codes[-1], more)))
+
+
+def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
+    """Return the rate in Hz nearest to the one asked for at which a device can play a drive of a length in s.
+
+    A slower device gets every k-th update, a faster one repeats each; a bridge a whole number of its cycles. One that
+    cannot hold so many samples gets fewer. Raises DeviceError where it then falls below its slowest rate.
+    """
+    if device.driven_by == "duty":
+        carrier = device.most("carrier frequency")
+        rate, low = carrier / math.ceil(carrier / requested_Hz - 1e-9), 0.0
+    else:
+        low, high = device.interval("update rate")
+        rate = requested_Hz
+        if low == high:
+            rate = high
+        elif requested_Hz > high:
+            rate = requested_Hz / math.ceil(requested_Hz / high - 1e-9)
+        elif requested_Hz < low:
+            rate = requested_Hz * math.ceil(low / requested_Hz - 1e-9)
+    most = math.inf if device.streams else device.most("buffer length")
+    needed = math.ceil(length_s * rate) + 2
+    if needed > most:
+        rate /= math.ceil(needed / most)
+    if rate < low * (1 - 1e-9) or (most < math.inf and rate * length_s < 4):
+        raise DeviceError(
+            f"{device.name}: {length_s:g} s at {requested_Hz:g} Hz are {needed} samples, it holds {most:g} and plays "
+            f"{low:g} Hz at the slowest; shorten the icon or use another device"
+        )
+    return rate
+
+
+def sample(
+    device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates_C: tuple[Array, Array]
+) -> tuple[Samples, tuple[str, ...]]:
+    """Return the codes that stand for a designed drive, and sentences on what the device cannot give.
+
+    Each sample is the mean of the designed current over its period, so that no charge is lost, limited by the device's
+    slew rate and range, rounded to the nearest code. `plates_C`: times in s and display temperature of the design, for
+    a bridge.
+    """
+    buffer = device.record("buffer length")
+    least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
+    count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
+    edges = np.arange(count + 1) / rate_Hz
+    current = np.append(_means(designed, edges), designed.current_A[0])
+    wanted = _command(device, rig, current, edges, plates_C)
+    told = []
+    limit = device.most("slew rate")
+    limited = _slewed(wanted, limit / rate_Hz)
+    if np.abs(limited - wanted).max() > 1e-12:
+        told.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s holds the command back")
+    scale = device.scale(float(np.abs(limited).max()))
+    codes = np.rint((limited - scale.offset) / scale.step).astype(np.int64)
+    clipped = np.clip(codes, scale.lowest, scale.highest)
+    beyond = int(np.argmax(np.abs(codes - clipped)))
+    if abs(codes[beyond] - clipped[beyond]) > 1:
+        low, high = (signed(scale.offset + scale.step * code, ".4g") for code in (scale.lowest, scale.highest))
+        told.append(
+            f"{device.name}: {signed(limited[beyond], '.4g')} {device.unit} are needed at {edges[beyond]:.2f} s, it "
+            f"gives {low} … {high}; "
+            f"the command is clipped"
+        )
+    return Samples(rate_Hz, clipped, scale), tuple(told)
+
+
+def within(device: Device, rig: Rig) -> Rig:
+    """Return the rig with its driver held to the currents in A that a device can ask for; itself where it is wider."""
+    low, high = device.interval("output range")
+    gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
+    low, high = max(low * gain, rig.driver.current_min_A), min(high * gain, rig.driver.current_max_A)
+    if (low, high) == (rig.driver.current_min_A, rig.driver.current_max_A):
+        return rig
+    return rig.with_(**{"driver.current_min_A": low, "driver.current_limit_A": high})
+
+
+def current_of(device: Device, rig: Rig, samples: Samples) -> Drive:
+    """Return the current in A that flows when a device plays its samples, held from row to row."""
+    command, times = samples.command, samples.time_s
+    if device.driven_by == "duty":
+        low, high = device.interval("output range")
+        return switched(command, samples.rate_Hz, device.most("carrier frequency"), min(-low, high))
+    gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
+    rows = samples.rows()
+    return Drive(times[rows], command[rows] * gain, held=True)
+
+
+def _means(drive: Drive, edges: Array) -> Array:
+    """Mean current in A between neighbouring edges in s; exact for held and linear drives."""
+    if drive.held and len(edges) == len(drive.time_s) and np.abs(edges - drive.time_s).max() < 1e-9:
+        return drive.current_A[:-1].copy()
+    times = np.union1d(edges, drive.time_s)
+    widths = np.diff(times)
+    begins = drive.at(times[:-1])
+    ends = begins if drive.held else drive.at(times[1:])
+    charge = np.concatenate([[0.0], np.cumsum(0.5 * (begins + ends) * widths)])
+    means: Array = np.diff(np.interp(edges, times, charge)) / np.diff(edges)
+    return means
+
+
+def _command(device: Device, rig: Rig, current: Array, times: Array, plates_C: tuple[Array, Array]) -> Array:
+    if device.driven_by == "duty":
+        low, high = device.interval("output range")
+        cold = np.interp(times, plates_C[0], plates_C[1])
+        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold)
+    return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
+
+
+def _slewed(wanted: Array, most: float) -> Array:
+    if np.abs(np.diff(wanted)).max() <= most:
+        return wanted
+    reached = wanted.tolist()
+    for k in range(1, len(reached)):
+        reached[k] = min(max(reached[k], reached[k - 1] - most), reached[k - 1] + most)
+    return np.array(reached)

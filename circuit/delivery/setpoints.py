@@ -1,0 +1,108 @@
+"""Set-points: the display temperature of a design as straight segments, for a device that closes its own loop."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.devicefile import DeviceError
+from thermicon.circuit.rig.skin import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Setpoints:
+    """Segments after a baseline: how long each lasts in ticks, and the level at its end in steps of temperature.
+
+    One meaning of time: a segment ends when its ticks are over, warming or cooling alike.
+    """
+
+    tick_s: float
+    step_K: float
+    baseline: int
+    segments: tuple[tuple[int, int], ...]
+
+    @property
+    def time_s(self) -> Array:
+        """Corners' times in s, from 0."""
+        return np.concatenate([[0], np.cumsum([ticks for ticks, _ in self.segments])]) * self.tick_s
+
+    @property
+    def level_C(self) -> Array:
+        """Corners' temperatures in °C, the baseline first."""
+        return np.array([self.baseline, *(level for _, level in self.segments)]) * self.step_K
+
+    def at(self, time_s: Array) -> Array:
+        """Set-point in °C at times in s; before and after, the ends."""
+        return np.asarray(np.interp(time_s, self.time_s, self.level_C), dtype=np.float64)
+
+
+def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> Setpoints:
+    """Return the segments by which a device follows a line through corners: times in s, levels in °C.
+
+    A `curve` (many corners, not exact) is first drawn with as few as keep within half a step of temperature, or more
+    where these are too many. Raises DeviceError where baseline, level or number of segments is beyond the device.
+    """
+    step, tick = device.most("set-point step"), device.most("tick")
+    _check("baseline", float(level_C[0]), device.interval("baseline range"), device)
+    for level in (float(level_C.min()), float(level_C.max())):
+        _check("set-point", level, device.interval("set-point range"), device)
+    most, tolerance = int(device.most("segments")), 0.5 * step
+    while True:
+        kept = _thinned(time_s, level_C, tolerance) if curve else range(len(time_s))
+        segments = _segments(device, [float(time_s[k]) for k in kept], [float(level_C[k]) for k in kept])
+        if len(segments) <= most:
+            return Setpoints(tick, step, round(float(level_C[0]) / step), segments)
+        if not curve:
+            raise DeviceError(
+                f"{device.name}: {len(segments)} segments are needed, it takes {most}; shorten the icon, or use fewer "
+                f"repeats or a coarser wave"
+            )
+        tolerance *= 2
+
+
+def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[tuple[int, int], ...]:
+    step, tick = device.most("set-point step"), device.most("tick")
+    fastest, longest = device.most("ramp rate"), int(device.most("segment length"))
+    begin, before, found = 0, round(levels[0] / step), []
+    for (_, _), (time, level) in pairwise(zip(times, levels, strict=True)):
+        goal = round(level / step)
+        least = max(1, math.ceil(abs(goal - before) * step / fastest / tick - 1e-9))
+        until = max(round(time / tick), begin + least)  # what a ramp is late, the next segment makes up for
+        count = -(-(until - begin) // longest)
+        ends = [begin + (until - begin) * (k + 1) // count for k in range(count)]
+        for end in ends:
+            share = (end - begin) / (until - begin)
+            found.append((end, round(before + (goal - before) * share)))
+        begin, before = until, goal
+    ticks = [end - start for start, end in pairwise([0, *(end for end, _ in found)])]
+    return tuple((length, level) for length, (_, level) in zip(ticks, found, strict=True))
+
+
+def _check(what: str, level: float, limits: tuple[float, float], device: Device) -> None:
+    if not limits[0] - 1e-9 <= level <= limits[1] + 1e-9:
+        raise DeviceError(
+            f"{device.name}: a {what} of {level:.4g} °C is beyond {limits[0]:g} … {limits[1]:g} °C; change the icon, "
+            f"or use another device"
+        )
+
+
+def _thinned(time_s: Array, level_C: Array, tolerance: float) -> Sequence[int]:
+    """Corners that keep a line within a tolerance in K of all: Douglas & Peucker's way, without recursion."""
+    kept, open_ = {0, len(time_s) - 1}, [(0, len(time_s) - 1)]
+    while open_:
+        first, last = open_.pop()
+        if last - first < 2:
+            continue
+        inner = slice(first + 1, last)
+        chord = np.interp(time_s[inner], time_s[[first, last]], level_C[[first, last]])
+        apart = np.abs(level_C[inner] - chord)
+        worst = first + 1 + int(np.argmax(apart))
+        if apart.max() > tolerance:
+            kept.add(worst)
+            open_ += [(first, worst), (worst, last)]
+    return sorted(kept)

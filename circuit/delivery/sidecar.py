@@ -1,0 +1,160 @@
+"""The sidecar of an exported drive: what it is, what made it, what it will do, what is known against it, as JSON."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import Any
+
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.formats.form import Format, events_in
+from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.samples import Samples
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.records import Record
+from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.solver.difference import Difference, loss_table
+
+NO_CLEARANCE = (
+    "Limits were held against a simulation. This is no medical or ethical clearance. Hardware that touches people "
+    "needs a temperature cut-off of its own that works without any software."
+)
+
+
+def sidecar(
+    realised: Realised,
+    form: Format,
+    apart: Difference,
+    safety: Mapping[str, object],
+    felt: Mapping[str, object] | None,
+    forced: Sequence[str],
+) -> dict[str, Any]:
+    """Return all there is to know of one exported drive; units are in the names.
+
+    `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
+    that was not.
+    """
+    icon, rig, outcome = realised.icon, realised.rig, realised.outcome
+    text, told = str(icon), [*rig.warnings, *realised.told]
+    if not realised.device.played:
+        told.append(f"{realised.device.name}: no such device was ever driven by thermicon")
+    return {
+        "thermicon": version("thermicon"),
+        "what_it_is_not": NO_CLEARANCE,
+        "format": {
+            **{"name": form.name, "source": form.source, "how_to_play": form.how},
+            **(form.facts(realised) if form.facts else {}),
+        },
+        "file": form.file_name(realised),
+        "columns": [asdict(column) for column in form.columns(realised)],
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "rig": {
+            "name": rig.name,
+            "content_hash": hashlib.sha256(rig.document.encode("utf-8")).hexdigest(),
+            "changes": list(rig.changes),
+            "document": json.loads(rig.document),
+        },
+        "device": _device(realised.device),
+        "update_rate_Hz": {"requested": realised.requested_Hz, "realised": realised.rate_Hz},
+        "played": _played(realised),
+        "events": [_event(event, icon.frame.control) for event in events_in(realised)],
+        "reached": None if outcome is None else outcome.reached,
+        "reason": None if outcome is None else outcome.reason,
+        "predicted": _predicted(realised),
+        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "perception": None if felt is None else dict(felt),
+        "stated_losses": [_record(record) for record in loss_table()],
+        "safety": dict(safety),
+        "warnings": told,
+        "forced": bool(forced),
+        "forced_over": list(forced),
+        "seed": None,
+    }
+
+
+def sidecar_text(content: Mapping[str, Any]) -> bytes:
+    """Return a sidecar as JSON; what does not exist is null, never NaN.
+
+    >>> sidecar_text({"a": float("nan")})
+    b'{\\n  "a": null\\n}\\n'
+    """
+    return (json.dumps(_plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
+
+
+def _plain(content: Any) -> Any:
+    if isinstance(content, Mapping):
+        return {str(key): _plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [_plain(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
+def _event(event: Any, control: str) -> dict[str, object]:
+    unit = "level_A" if control == "current" else "level_C"
+    return {"name": event.name, "time_s": event.time_s, unit: event.level}
+
+
+def _played(realised: Realised) -> dict[str, object]:
+    played = realised.played
+    if isinstance(played, Setpoints):
+        return {
+            "segments": len(played.segments),
+            "tick_s": played.tick_s,
+            "step_K": played.step_K,
+            "baseline_C": float(played.level_C[0]),
+            "icon_begins_at_s": 0.0,
+            "duration_s": realised.file_s,
+            "clock": (
+                f"times of events count from the start command; those under safety count from {realised.lead_s:g} s "
+                f"before it, since the simulation begins with one update of baseline"
+            ),
+        }
+    return _samples(played, realised.lead_s)
+
+
+_NOT_ITS_OWN = ("current_", "voltage_", "energy_", "hot_plate_")
+"""What a device that gets set-points does not have: these would be those of the rig's own module."""
+
+
+def _predicted(realised: Realised) -> dict[str, object]:
+    found: dict[str, object] = dict(summarise(realised.trace).to_dict())
+    if not isinstance(realised.played, Setpoints):
+        return found
+    told = {key: None if key.startswith(_NOT_ITS_OWN) else value for key, value in found.items()}
+    return {**told, "duration_s": realised.file_s}
+
+
+def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
+    scale = samples.scale
+    unit = "duty" if scale.unit == "1" else scale.unit
+    ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
+    return {
+        "samples": len(samples.codes),
+        "icon_begins_at_s": lead_s,
+        "duration_s": float(samples.time_s[-1]),
+        f"offset_{unit}": scale.offset,
+        f"step_{unit}": scale.step,
+        "lowest_code": scale.lowest,
+        "highest_code": scale.highest,
+        f"low_level_{unit}": ends[0],
+        f"high_level_{unit}": ends[1],
+        f"rest_{unit}": float(samples.command[0]),
+    }
+
+
+def _device(device: Device) -> dict[str, object]:
+    named = {key: getattr(device, key) for key in ("name", "title", "driven_by", "played", "note")}
+    return {**named, "records": [_record(record) for record in device.records]}
+
+
+def _record(record: Record) -> dict[str, object]:
+    known = {key: getattr(record, key) for key in ("quantity", "unit", "value", "low", "high", "source", "confidence")}
+    return {key: value for key, value in known.items() if value not in (None, "")}
+
+
+def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
+    return {name: value for name, value in content.items() if name != key}

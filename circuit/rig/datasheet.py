@@ -1,0 +1,146 @@
+"""What a module's data sheet says, and the Seebeck coefficient, resistance and thermal resistance that follow.
+
+Equations: Lineykin & Ben-Yaakov, IEEE Trans. Ind. Appl. 43 (2007) 505, and their four-figure form, exact in Qmax.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
+
+Method = Literal["three", "four"]
+
+
+@dataclass(frozen=True, slots=True)
+class Extraction:
+    """The parameters of a module as its data sheet gives them, and what they do to the printed Qmax.
+
+    `seebeck_V_per_K` α, `resistance_ohm` R, `thermal_resistance_K_per_W` Θ; `mean_C` the module temperature they stand
+    for. The residual is the heat that they absorb at Imax without a difference, less the printed Qmax: in W, and
+    relative to it; None where the sheet prints no Qmax.
+    """
+
+    method: Method
+    seebeck_V_per_K: float
+    resistance_ohm: float
+    thermal_resistance_K_per_W: float
+    mean_C: float
+    residual_W: float | None
+    residual_relative: float | None
+
+    def __repr__(self) -> str:
+        miss = "" if self.residual_relative is None else f", Qmax {100 * self.residual_relative:+.1f} %"
+        return (
+            f"Extraction({self.method} figures: {self.seebeck_V_per_K:.4g} V/K, {self.resistance_ohm:.4g} Ω, "
+            f"{self.thermal_resistance_K_per_W:.4g} K/W at {self.mean_C:.1f} °C{miss})"
+        )
+
+    def peltier(self, hot_plate_J_per_K: float, cold_plate_J_per_K: float) -> Peltier:
+        """The module with its two plates, capacities in J/K."""
+        return Peltier(
+            self.seebeck_V_per_K,
+            self.resistance_ohm,
+            self.thermal_resistance_K_per_W,
+            hot_plate_J_per_K,
+            cold_plate_J_per_K,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Datasheet:
+    """The figures a maker prints for one hot-side temperature `t_hot_C`.
+
+    `i_max_A` and `v_max_V` at the greatest difference `dt_max_K`; `q_max_W` the heat absorbed at `i_max_A` without a
+    difference, None where it is not printed.
+
+    >>> sheet = Datasheet(6.4, 14.4, 66, 25, q_max_W=50)
+    >>> sheet.three_figures()
+    Extraction(three figures: 0.0483 V/K, 1.752 Ω, 1.839 K/W at 8.5 °C, Qmax +12.6 %)
+    >>> sheet.four_figures()
+    Extraction(four figures: 0.04533 V/K, 1.782 Ω, 2.139 K/W at 8.5 °C, Qmax +0.0 %)
+    """
+
+    i_max_A: float
+    v_max_V: float
+    dt_max_K: float
+    t_hot_C: float
+    q_max_W: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, unit in (("i_max_A", "A"), ("v_max_V", "V"), ("dt_max_K", "K"), ("q_max_W", "W")):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                raise ValueError(f"{name} = {value:g} {unit}: must be a positive number in {unit}")
+        if not math.isfinite(self.t_hot_C):
+            raise ValueError(f"t_hot_C = {self.t_hot_C:g} °C: must be a finite number in °C")
+        hot_K = self.t_hot_C + ZERO_C_IN_K
+        if self.dt_max_K >= hot_K:
+            raise ValueError(
+                f"dt_max_K = {self.dt_max_K:g} K: must be below the {hot_K:g} K of the hot side above absolute zero; "
+                f"a single-stage module has 60 to 80 K"
+            )
+
+    @property
+    def mean_C(self) -> float:
+        """Module temperature in °C that the figures stand for: the mean of Th and Tc, with Tc halfway to Th − ΔTmax.
+
+        The figures span differences from 0 (Qmax) to ΔTmax, so the cold side is taken at Th − ΔTmax/2.
+        """
+        return self.t_hot_C - self.dt_max_K / 4
+
+    def three_figures(self, *, zero_C_in_K: float = ZERO_C_IN_K) -> Extraction:
+        """Parameters from Imax, Vmax and ΔTmax, which they reproduce; a printed Qmax they may miss.
+
+        `zero_C_in_K` is 0 °C in kelvin, for reproducing tables that round it to 273 K.
+        """
+        hot, i, v = self.t_hot_C + zero_C_in_K, self.i_max_A, self.v_max_V
+        cold = hot - self.dt_max_K
+        return self._made("three", hot, v / hot, v / i * cold / hot, self.dt_max_K / (i * v) * 2 * hot / cold)
+
+    def four_figures(self, *, zero_C_in_K: float = ZERO_C_IN_K) -> Extraction:
+        """Parameters from Imax, Vmax, ΔTmax and Qmax: exact in Qmax, Vmax and no heat at ΔTmax and Imax.
+
+        They pay elsewhere: cooling is greatest a little below the printed Imax (8 % below on a TEC1-12706).
+        `zero_C_in_K` is 0 °C in kelvin, for reproducing tables that round it to 273 K.
+        """
+        q, i, v, span = self.q_max_W, self.i_max_A, self.v_max_V, self.dt_max_K
+        if q is None:
+            raise ValueError('q_max_W is missing; four figures need it: add it, in W, or use extraction = "three"')
+        hot = self.t_hot_C + zero_C_in_K
+        low, high = v * i * span / (2 * hot - span), v * i * hot / span
+        if not low < q < high:
+            raise ValueError(
+                f"q_max_W = {q:g} W: must lie between {low:.3g} and {high:.3g} W for a module of these i_max_A, "
+                f'v_max_V and dt_max_K; check the sheet, or use extraction = "three"'
+            )
+        seebeck = (v * i + 2 * q) / ((2 * hot + span) * i)
+        return self._made("four", hot, seebeck, 2 * (seebeck * hot * i - q) / i**2, span / (q - seebeck * span * i))
+
+    def _made(self, method: Method, hot_K: float, seebeck: float, ohm: float, theta: float) -> Extraction:
+        absorbed = seebeck * hot_K * self.i_max_A - self.i_max_A**2 * ohm / 2
+        miss = None if self.q_max_W is None else absorbed - self.q_max_W
+        relative = None if miss is None or self.q_max_W is None else miss / self.q_max_W
+        return Extraction(method, seebeck, ohm, theta, self.mean_C, miss, relative)
+
+
+def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
+    """α V/K, R Ω and Θ K/W at a mean module temperature, linear between two extractions; one is taken as it is.
+
+    Outside the two the nearer one holds: parameters that no sheet supports are not made up. Callers say so.
+
+    >>> cool, warm = Datasheet(6.4, 14.4, 66, 25).three_figures(), Datasheet(6.4, 16.4, 75, 50).three_figures()
+    >>> [round(value, 4) for value in at_mean_C((cool, warm), (cool.mean_C + warm.mean_C) / 2)]
+    [0.0495, 1.8598, 1.8503]
+    """
+    first, last = min(found, key=lambda one: one.mean_C), max(found, key=lambda one: one.mean_C)
+    span = last.mean_C - first.mean_C
+    share = min(max((mean_C - first.mean_C) / span, 0.0), 1.0) if span > 0 else 0.0
+    return (
+        (1 - share) * first.seebeck_V_per_K + share * last.seebeck_V_per_K,
+        (1 - share) * first.resistance_ohm + share * last.resistance_ohm,
+        (1 - share) * first.thermal_resistance_K_per_W + share * last.thermal_resistance_K_per_W,
+    )

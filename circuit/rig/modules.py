@@ -1,0 +1,174 @@
+"""Shipped modules by name, and the module of a rig however the rig gives it: parameters, data sheets or a name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING
+
+from thermicon.circuit.inputs import nearest
+from thermicon.circuit.records import Record, RecordError, Table, load_records
+from thermicon.circuit.rig.datasheet import Datasheet, Extraction, at_mean_C
+from thermicon.circuit.rig.module import Peltier
+
+if TYPE_CHECKING:
+    from thermicon.circuit.rig.rigfile import ModuleTable
+
+COLUMNS = ("module", "origin", "couples", "footprint_mm", "t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")
+PARAMETERS = {"seebeck_V_per_K": "V/K", "resistance_ohm": "Ω", "thermal_resistance_K_per_W": "K/W"}
+"""The three parameters of a module in a rig file, with their units."""
+MOST_RESIDUAL = 0.10
+"""Three figures that miss the printed Qmax by more than this share are told of."""
+LEAST_APART_K = 1.0
+"""Two sheets closer than this in mean module temperature say nothing about its influence."""
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleOrigin:
+    """Where the parameters of a rig's module come from: one sentence, and what is unusual about them."""
+
+    sentence: str
+    warnings: tuple[str, ...] = ()
+
+
+@cache
+def module_table() -> Table:
+    """The shipped modules as sourced records, one for each data sheet."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "modules.toml", extra=COLUMNS)
+
+
+def module_names() -> tuple[str, ...]:
+    """Names of the shipped modules, in alphabetical order."""
+    return tuple(sorted({str(record.get("module")) for record in module_table()}))
+
+
+def load_module(name: str) -> tuple[Datasheet, ...]:
+    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name.
+
+    >>> load_module("TEC1-12706")[0]
+    Datasheet(i_max_A=6.4, v_max_V=14.4, dt_max_K=66.0, t_hot_C=25.0, q_max_W=50.0)
+    >>> [sheet.t_hot_C for sheet in load_module("TEC1-12706")]
+    [25.0, 50.0]
+    """
+    sheets = [_sheet(record) for record in _records(name)]
+    return tuple(sorted(sheets, key=lambda sheet: sheet.t_hot_C))
+
+
+def _records(name: str) -> list[Record]:
+    if name not in module_names():
+        raise RecordError(f"{name}: no such module; {nearest(name, module_names())}")
+    return [record for record in module_table() if record.get("module") == name]
+
+
+def _sheet(record: Record) -> Datasheet:
+    current, voltage, span, hot, heat = (
+        float(record.get(key)) for key in ("i_max_A", "v_max_V", "dt_max_K", "t_hot_C", "q_max_W")
+    )
+    return Datasheet(current, voltage, span, hot, heat)
+
+
+def module_faults(table: ModuleTable) -> str:
+    """Return what is wrong with the way a rig file gives its module, a line each; empty where nothing is."""
+    given = [key for key in PARAMETERS if getattr(table, key) is not None]
+    ways = [*given[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
+    sheets = table.datasheet
+    if not ways:
+        return (
+            f"module: nothing says which module; give {', '.join(PARAMETERS)}, "
+            f"or one or two [[module.datasheet]], or the name of a shipped module"
+        )
+    if len(ways) > 1:
+        return f"module: {' and '.join(ways)} are two ways of giving it; keep one and remove the other"
+    if given:
+        missing = [f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in PARAMETERS if key not in given]
+        if table.extraction is not None:
+            missing.append("module.extraction: only for a data sheet or a name; remove the key")
+        return "\n".join(missing)
+    if sheets is not None and len(sheets) not in (1, 2):
+        return f"module.datasheet: {len(sheets)} tables; give one, or two for two hot-side temperatures"
+    return ""
+
+
+def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
+    """Return the module of a rig file and where it comes from; ValueError where its figures cannot be.
+
+    `mean_C` is the mean module temperature, where two sheets are interpolated: that of heat sink and resting skin.
+    `source` is what the rig's own `[source]` says of its module.
+    """
+    plates = (table.hot_plate_J_per_K, table.cold_plate_J_per_K)
+    if table.name is None and table.datasheet is None:
+        alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)
+        return Peltier(alpha, ohm, theta, *plates), ModuleOrigin(f"parameters given: {source or 'no source stated'}")
+    what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", []
+    if table.name is not None:
+        try:
+            sheets = load_module(table.name)
+        except RecordError as problem:
+            raise ValueError(f"module.name = {problem}") from None
+        origin = _records(table.name)[0]
+        what = f"{table.name}, {origin.source} (confidence {origin.confidence})"
+        if origin.get("origin") != "datasheet":
+            warnings.append(f"module {table.name}: its figures are {origin.source}; expect them within 10 %")
+    else:
+        sheets = tuple(
+            Datasheet(one.i_max_A, one.v_max_V, one.dt_max_K, one.t_hot_C, one.q_max_W) for one in table.datasheet or ()
+        )
+    found = _extract(sheets, table.extraction)
+    warnings += _misses(found)
+    sentence = f"{what}: {_figures(found, sheets)}"
+    if len(found) == 2:
+        low, high = sorted(one.mean_C for one in found)
+        sentence += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
+        if not low <= mean_C <= high:
+            side, end = ("below", low) if mean_C < low else ("above", high)
+            warnings.append(
+                f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … "
+                f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used"
+            )
+    return Peltier(*at_mean_C(found, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
+
+
+def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:
+    """Four figures where every sheet prints Qmax, else three, unless the rig says which."""
+    if method is None:
+        method = "three" if any(sheet.q_max_W is None for sheet in sheets) else "four"
+    found = []
+    for place, sheet in enumerate(sheets):
+        try:
+            found.append(sheet.four_figures() if method == "four" else sheet.three_figures())
+        except ValueError as problem:
+            raise ValueError(f"module.datasheet.{place}.{problem}") from None
+    if len(found) == 2 and abs(found[1].mean_C - found[0].mean_C) < LEAST_APART_K:
+        raise ValueError(
+            f"module.datasheet: both stand for {found[0].mean_C:.1f} °C (t_hot_C less a quarter of dt_max_K); "
+            f"two must differ by at least {LEAST_APART_K:g} K, so leave one out"
+        )
+    return tuple(found)
+
+
+def _figures(found: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
+    """In words: which figures, at which hot sides, and how far they miss the printed Qmax."""
+    hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
+    misses = [one for one in found if one.residual_relative is not None]
+    if found[0].method == "four":
+        missed = "Qmax reproduced"
+    elif misses:
+        missed = "Qmax missed by " + " and ".join(_miss(one) for one in misses)
+    else:
+        missed = "no Qmax to hold them against"
+    return f"{found[0].method} figures with the hot side at {hot} °C, {missed}"
+
+
+def _miss(one: Extraction) -> str:
+    return f"{100 * (one.residual_relative or 0):+.1f} % ({one.residual_W or 0:+.3g} W)"
+
+
+def _misses(found: Sequence[Extraction]) -> list[str]:
+    return [
+        f"module: three figures of its data sheet miss the printed Qmax by {_miss(one)}, more than "
+        f'{100 * MOST_RESIDUAL:g} %; extraction = "four" reproduces it'
+        for one in found
+        if one.residual_relative is not None and abs(one.residual_relative) > MOST_RESIDUAL
+    ]

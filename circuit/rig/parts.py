@@ -1,0 +1,119 @@
+"""The parts of a rig beside module and skin: heat sink, driver, contact, air."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SinkController:
+    """A heat sink that is a body under its own PI control: J/K, W/K, W/(K·s), and the most it heats or cools, W."""
+
+    capacity_J_per_K: float
+    kp_W_per_K: float
+    ki_W_per_Ks: float
+    power_limit_W: float
+
+
+@dataclass(frozen=True, slots=True)
+class HeatSink:
+    """What the hot plate sits on: temperature °C, resistance from the hot plate K/W.
+
+    Ideal (it never changes), unless it has a capacity and a controller of its own.
+    """
+
+    temperature_C: float
+    resistance_K_per_W: float
+    controller: SinkController | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """The current source: gain A/V, current limits A, compliance voltage V, update rate Hz."""
+
+    transconductance_A_per_V: float
+    current_min_A: float
+    current_max_A: float
+    voltage_limit_V: float
+    update_Hz: float
+
+    def __post_init__(self) -> None:
+        if not self.current_min_A <= 0 < self.current_max_A:
+            raise ValueError(
+                f"driver.current_min_A = {self.current_min_A:g} A: must be 0 (a drive that only cools) or below, "
+                f"and current_limit_A ({self.current_max_A:g} A) above 0"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Where display and skin meet: area m², resistance m²·K/W."""
+
+    area_m2: float
+    resistance_m2K_per_W: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ambient:
+    """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
+
+    temperature_C: float
+    film_W_per_m2K: float
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertainty:
+    """How far a rig may be from its file: contact resistance and gain as shares, ambient K, each to either side.
+
+    `reason` says how it is known that one is smaller than what is shipped.
+    """
+
+    contact_resistance_relative: float
+    ambient_K: float
+    gain_relative: float
+    reason: str = ""
+
+
+PLACES = ("display", "interface", "skin", "insulated skin")
+"""Where a probe may sit; what each means is told in `thermicon.circuit.solver.probes`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Probe:
+    """A thermistor or a point to look at: depth in the skin m, lag s (first order).
+
+    The last three are for insulated skin: distance to the skin in contact m, width of the patch m, insulation m²·K/W.
+    """
+
+    name: str
+    place: str
+    depth_m: float
+    lag_s: float
+    lateral_m: float
+    width_m: float
+    insulation_m2K_per_W: float
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"[A-Za-z0-9_-]+", self.name):
+            raise ValueError(
+                f"probe.name = {self.name!r}: becomes part of a column's name; use letters, digits, _ and - only"
+            )
+        if self.depth_m and "skin" not in self.place:
+            raise ValueError(
+                f"probe {self.name}: depth_mm = {self.depth_m * 1e3:g} mm: a probe at the {self.place} has no depth; "
+                f"remove it or set place to skin"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Controller:
+    """A PID loop on a display thermistor, sampled at the driver's update rate; positive current cools.
+
+    Thermistor lag s, gains A/K, A/(K·s), A·s/K; the derivative acts on the measured temperature.
+    """
+
+    lag_s: float
+    kp_A_per_K: float
+    ki_A_per_Ks: float
+    kd_As_per_K: float

@@ -1,0 +1,273 @@
+"""A rig: module, heat sink, driver, contact, air and skin, as one frozen object read from a rig file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from thermicon.circuit.inputs import nearest, read_text
+from thermicon.circuit.rig.about import about
+from thermicon.circuit.rig.module import Peltier
+from thermicon.circuit.rig.modules import ModuleOrigin, module_of
+from thermicon.circuit.rig.parts import (
+    Ambient,
+    Contact,
+    Controller,
+    Driver,
+    HeatSink,
+    Probe,
+    SinkController,
+    Uncertainty,
+)
+from thermicon.circuit.rig.probefile import probes_of
+from thermicon.circuit.rig.receptors import HORNY_LAYER, ReceptorDepths
+from thermicon.circuit.rig.rigfile import RigError, RigTable, parse_toml, read_table
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.settings import put_all, read_settings
+from thermicon.circuit.rig.skin import Column, Layer, Skin, column_of
+from thermicon.circuit.rig.uncertainty import surer, uncertainty_of
+
+LIVING_C = (28.0, 38.5)
+"""Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
+
+HIGH_RESTING_FLUX_W_PER_M2 = 150.0
+"""Bare skin in still air loses 40 to 120 W/m²; a rig that rests above this is told so."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rig:
+    """Everything between the drive current and the receptors.
+
+    >>> rig = Rig.load("thenar")
+    >>> rig
+    Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.58 °C, driver -1.5 … 1.5 A)
+    >>> round(rig.resting_flux_W_per_m2, 1)
+    -80.0
+    >>> rig.with_(**{"contact.area_cm2": 4}).contact.area_m2
+    0.0004
+    """
+
+    name: str
+    title: str
+    notes: tuple[str, ...]
+    module: Peltier
+    module_origin: ModuleOrigin
+    heat_sink: HeatSink
+    driver: Driver
+    contact: Contact
+    ambient: Ambient
+    skin: Skin
+    column: Column
+    deep_C: float
+    document: str
+    uncertainty: Uncertainty
+    limits: Limits
+    probes: tuple[Probe, ...] = ()
+    controller: Controller | None = None
+    changes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return (
+            f"Rig({self.name!r}, {self.skin.site}, {self.contact.area_m2 * 1e4:g} cm², "
+            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, "
+            f"driver {self.driver.current_min_A:g} … {self.driver.current_max_A:g} A)"
+        )
+
+    def __hash__(self) -> int:
+        return hash(self.document)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Rig) and self.document == other.document
+
+    @staticmethod
+    def load(source: str | Path) -> Rig:
+        """Return a shipped rig by name, or a rig from a `.toml` file; raises RigError with every fault."""
+        path = Path(source)
+        if path.suffix == ".toml" or path.exists():
+            text = read_text(path, "rig file", 1, RigError)
+            return _build(parse_toml(text, str(path)), str(path))
+        if str(source) not in rig_names():
+            raise RigError(f"{source}: no such rig; {nearest(str(source), rig_names())}")
+        return _shipped(str(source))
+
+    @property
+    def site(self) -> str:
+        """Skin site, as in `thenar`."""
+        return self.skin.site
+
+    @property
+    def blood_C(self) -> float:
+        """Temperature of deep tissue and blood in °C, solved from the rest unless the rig fixes it."""
+        return self.deep_C
+
+    @property
+    def resting_flux_W_per_m2(self) -> float:
+        """Heat flow into bare skin at rest, W/m²; negative, since skin loses heat."""
+        return _resting_flux(self)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is unusual about this rig, a sentence each."""
+        found = []
+        flux = -self.resting_flux_W_per_m2
+        if flux > HIGH_RESTING_FLUX_W_PER_M2:
+            found.append(
+                f"skin at rest loses {flux:.0f} W/m², over the {HIGH_RESTING_FLUX_W_PER_M2:g} W/m² "
+                f"that bare skin in room air can lose"
+            )
+        if self.deep_C < self.skin.rest_C:
+            found.append(f"blood at {self.deep_C:.2f} °C is colder than the resting surface at {self.skin.rest_C:g} °C")
+        if not LIVING_C[0] <= self.deep_C <= LIVING_C[1]:
+            found.append(
+                f"blood at {self.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
+                f"check skin.rest_C and the ambient"
+            )
+        if loosened := self.limits.loosened:
+            found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
+        if claims := surer(self.uncertainty):
+            found.append(
+                f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {self.uncertainty.reason}"
+            )
+        found += self.limits.hidden
+        if resting := self.limits.passed_at_rest(self.skin.rest_C):
+            found.append(resting)
+        return (*found, *self.module_origin.warnings)
+
+    @property
+    def module_source(self) -> str:
+        """Where the module's parameters come from, and how far they miss a printed Qmax; one sentence."""
+        return self.module_origin.sentence
+
+    def receptor_depths(self) -> ReceptorDepths:
+        """Depths of the receptors in mm, in both conventions.
+
+        >>> print(Rig.load("shani2021").receptor_depths())
+        cold 0.15 mm, warm 0.3 mm below the surface
+        """
+        return self.skin.receptor_depths()
+
+    def about(self) -> str:
+        """What there is to know of this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
+
+        >>> print(Rig.load("thenar").about().splitlines()[2])
+          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
+        """
+        return about(self)
+
+    def with_(self, **changes: object) -> Rig:
+        """Return a new rig with dotted keys of the rig file changed; a layer is named by its place or its name.
+
+        Keys are those of the rig file, in its units: `rig.with_(**{"skin.layer.0.thickness_mm": 0.2})`.
+        """
+        document = json.loads(self.document)
+        put_all(document, changes)
+        said = {text.partition("=")[0]: text for text in self.changes}
+        said.update({key: f"{key}={value}" for key, value in changes.items()})
+        return replace(_build(document, f"rig {self.name}"), changes=tuple(said.values()))
+
+    def with_set(self, settings: Iterable[str]) -> Rig:
+        """Return a new rig changed by texts of the form `key=value`, as given on the command line."""
+        changes = read_settings(settings)
+        return self.with_(**changes) if changes else self
+
+
+@lru_cache(maxsize=512)
+def _resting_flux(rig: Rig) -> float:
+    return (rig.skin.rest_C - rig.deep_C) / rig.column.steady_drop_K(1.0)
+
+
+def rig_names() -> tuple[str, ...]:
+    """Names of the shipped rigs, the default first."""
+    names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
+    return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
+
+
+def _rig_folder() -> Any:
+    return resources.files("thermicon.circuit") / "rigs"
+
+
+@cache
+def _shipped(name: str) -> Rig:
+    return _build(parse_toml((_rig_folder() / f"{name}.toml").read_text("utf-8"), f"rig {name}"), f"rig {name}")
+
+
+def _build(document: Mapping[str, Any], where: str) -> Rig:
+    table = read_table(document, where)
+    try:
+        return _assemble(table, json.dumps(document, sort_keys=True, ensure_ascii=False))
+    except ValueError as problem:
+        raise RigError(f"{where}: {problem}") from None
+
+
+def _heat_sink(table: RigTable) -> HeatSink:
+    sink = table.heat_sink
+    own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
+    missing = [name for name, value in own.items() if value is None]
+    if not missing:
+        return HeatSink(sink.temperature_C, sink.resistance_K_per_W, SinkController(**own))
+    if len(missing) < len(own):
+        raise ValueError(
+            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(own)}; "
+            f"without all four it is ideal"
+        )
+    return HeatSink(sink.temperature_C, sink.resistance_K_per_W)
+
+
+def _assemble(table: RigTable, document: str) -> Rig:
+    driver, contact, skin = table.driver, table.contact, table.skin
+    layers = tuple(
+        Layer(
+            layer.name,
+            layer.thickness_mm * 1e-3,
+            layer.conductivity_W_per_mK,
+            layer.density_kg_per_m3,
+            layer.heat_capacity_J_per_kgK,
+            layer.perfusion_per_s,
+        )
+        for layer in skin.layer
+    )
+    if skin.depth_from == HORNY_LAYER and layers[0].name != HORNY_LAYER:
+        raise ValueError(
+            f'skin.depth_from = "{HORNY_LAYER}": needs a first layer of that name, not "{layers[0].name}"; '
+            f'rename the layer or use "surface"'
+        )
+    above = skin.layer[0].thickness_mm if skin.depth_from == HORNY_LAYER else 0.0
+    body = Skin(
+        skin.site,
+        skin.rest_C,
+        (above + skin.cold_receptor_mm) * 1e-3,
+        (above + skin.warm_receptor_mm) * 1e-3,
+        layers,
+        skin.deep_C,
+        None if skin.elements is None else tuple(skin.elements),
+        skin.depth_from,
+    )
+    column = column_of(body, table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK)
+    loss = table.ambient.film_W_per_m2K * (skin.rest_C - table.ambient.temperature_C)
+    deep = skin.deep_C if skin.deep_C is not None else skin.rest_C - column.steady_drop_K(-loss)
+    lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
+    return Rig(
+        table.name,
+        table.title,
+        tuple(table.notes),
+        *module_of(table.module, (table.heat_sink.temperature_C + skin.rest_C) / 2, table.source.get("module")),
+        _heat_sink(table),
+        Driver(
+            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
+        ),
+        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W),
+        Ambient(**table.ambient.model_dump()),
+        body,
+        column,
+        float(deep),
+        document,
+        uncertainty_of(table.uncertainty.given, table.uncertainty.reason),
+        Limits.of(table.safety.changes, table.safety.reason),
+        probes_of(table.probe, body.thickness_m),
+        None if table.controller is None else Controller(**table.controller.model_dump()),
+    )

@@ -1,0 +1,349 @@
+"""The rig file at the door: which keys there are, in which units, within which limits."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic_core import ErrorDetails
+
+from thermicon.circuit.inputs import InputError, nearest
+from thermicon.circuit.rig.modules import module_faults
+from thermicon.circuit.rig.rules import faults_of
+from thermicon.circuit.rig.uncertainty import uncertainty_faults
+
+
+class RigError(InputError):
+    """A rig that cannot be: every finding on a line of its own, with key, value, limit, unit and cure."""
+
+
+Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
+Celsius = Annotated[float, Field(ge=-20, le=120)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class DatasheetTable(_Table):
+    """What a module's maker prints for one hot-side temperature."""
+
+    i_max_A: Positive
+    v_max_V: Positive
+    dt_max_K: Annotated[float, Field(gt=0, le=150)]
+    t_hot_C: Celsius
+    q_max_W: Positive | None = None
+
+
+class ModuleTable(_Table):
+    """The Peltier module, given by three parameters, data sheets or a shipped name, and its two plates."""
+
+    seebeck_V_per_K: Positive | None = None
+    resistance_ohm: Positive | None = None
+    thermal_resistance_K_per_W: Positive | None = None
+    datasheet: list[DatasheetTable] | None = None
+    name: Annotated[str, Field(min_length=1)] | None = None
+    extraction: Literal["three", "four"] | None = None
+    hot_plate_J_per_K: Positive
+    cold_plate_J_per_K: Positive
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ModuleTable:
+        if faults := module_faults(self):
+            raise ValueError(faults)
+        return self
+
+
+class HeatSinkTable(_Table):
+    """What the hot plate sits on."""
+
+    temperature_C: Celsius
+    resistance_K_per_W: Positive
+    capacity_J_per_K: Positive | None = None
+    kp_W_per_K: NotNegative | None = None
+    ki_W_per_Ks: NotNegative | None = None
+    power_limit_W: Positive | None = None
+
+
+class DriverTable(_Table):
+    """The current source and its limits."""
+
+    transconductance_A_per_V: Positive = 0.1
+    current_limit_A: Positive
+    current_min_A: float | None = None
+    voltage_limit_V: Positive
+    update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
+
+
+class ContactTable(_Table):
+    """Where display and skin meet."""
+
+    area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
+    resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
+
+
+class ControllerTable(_Table):
+    """A closed loop on a display thermistor."""
+
+    lag_s: NotNegative = 0.0
+    kp_A_per_K: NotNegative
+    ki_A_per_Ks: NotNegative = 0.0
+    kd_As_per_K: NotNegative = 0.0
+
+
+class AmbientTable(_Table):
+    """The air that bare skin rests in."""
+
+    temperature_C: Celsius
+    film_W_per_m2K: Positive
+
+
+class LayerTable(_Table):
+    """One layer of tissue."""
+
+    name: Annotated[str, Field(min_length=1)]
+    thickness_mm: Annotated[float, Field(gt=0, le=200)]
+    conductivity_W_per_mK: Positive
+    density_kg_per_m3: Positive
+    heat_capacity_J_per_kgK: Positive
+    perfusion_per_s: NotNegative = 0.0
+
+
+class SkinTable(_Table):
+    """The skin under the display, surface first."""
+
+    site: str
+    rest_C: Annotated[float, Field(ge=10, le=45)]
+    cold_receptor_mm: Positive
+    warm_receptor_mm: Positive
+    depth_from: Literal["surface", "stratum corneum"] = "surface"
+    deep_C: Celsius | None = None
+    elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
+    layer: Annotated[list[LayerTable], Field(min_length=1)]
+
+
+class BloodTable(_Table):
+    """Blood that perfuses the layers."""
+
+    density_kg_per_m3: Positive
+    heat_capacity_J_per_kgK: Positive
+
+
+class ProbeTable(_Table):
+    """A point whose temperature is recorded; what an insulated probe leaves out is filled from records."""
+
+    name: str
+    place: Literal["display", "interface", "skin", "insulated skin"]
+    depth_mm: NotNegative = 0.0
+    lag_s: NotNegative = 0.0
+    lateral_mm: Positive | None = None
+    width_mm: Positive | None = None
+    insulation_m2K_per_W: Positive | None = None
+
+
+class UncertaintyTable(_Table):
+    """What safety and robustness vary; what is left out is filled from records, what is smaller needs a reason."""
+
+    contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
+    gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    reason: str = ""
+
+    @property
+    def given(self) -> dict[str, float]:
+        """The uncertainties that are given, by key."""
+        given = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _reasoned(self) -> UncertaintyTable:
+        if faults := uncertainty_faults(self.given, self.reason):
+            raise ValueError("\n".join(faults))
+        return self
+
+
+class SafetyTable(_Table):
+    """Limits in the place of the shipped ones; looser ones only with a reason."""
+
+    skin_lowest_C: Celsius | None = None
+    skin_highest_C: Celsius | None = None
+    skin_lowest_soft_C: Celsius | None = None
+    skin_highest_soft_C: Celsius | None = None
+    skin_change_soft_K: Positive | None = None
+    receptor_lowest_C: Celsius | None = None
+    receptor_highest_C: Celsius | None = None
+    display_lowest_C: Celsius | None = None
+    display_highest_C: Celsius | None = None
+    display_lowest_soft_C: Celsius | None = None
+    display_highest_soft_C: Celsius | None = None
+    skin_rate_K_per_s: Positive | None = None
+    hot_plate_highest_C: Celsius | None = None
+    thermal_dose_min_CEM43: Positive | None = None
+    henriques_integral: Positive | None = None
+    reason: str = ""
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """The limits that are given, by key."""
+        given = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in given.items() if value is not None}
+
+    @model_validator(mode="after")
+    def _reasoned(self) -> SafetyTable:
+        if faults := faults_of(self.changes, self.reason):
+            raise ValueError("\n".join(faults))
+        return self
+
+
+class RigTable(_Table):
+    """A whole rig file."""
+
+    format: Literal[1]
+    name: Annotated[str, Field(min_length=1)]
+    title: str = ""
+    notes: list[str] = Field(default_factory=list)
+    module: ModuleTable
+    heat_sink: HeatSinkTable
+    driver: DriverTable
+    controller: ControllerTable | None = None
+    contact: ContactTable
+    ambient: AmbientTable
+    skin: SkinTable
+    blood: BloodTable
+    probe: list[ProbeTable] = Field(default_factory=list)
+    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
+    safety: SafetyTable = Field(default_factory=SafetyTable)
+    source: dict[str, str] = Field(default_factory=dict)
+
+
+_UNITS = (
+    "V_per_K",
+    "A_per_V",
+    "A_per_Ks",
+    "As_per_K",
+    "A_per_K",
+    "W_per_Ks",
+    "W_per_K",
+    "K_per_W",
+    "m2K_per_W",
+    "W_per_m2K",
+    "W_per_mK",
+    "kg_per_m3",
+    "J_per_kgK",
+    "J_per_K",
+    "K_per_s",
+)
+_UNITS_SHORT = {
+    "C": "°C",
+    "ohm": "Ω",
+    "per_s": "1/s",
+    "cm2": "cm²",
+    "mm": "mm",
+    "A": "A",
+    "V": "V",
+    "K": "K",
+    "W": "W",
+    "Hz": "Hz",
+    "s": "s",
+    "min_CEM43": "min CEM43",
+}
+
+
+def unit_of(key: str) -> str:
+    """Return the unit that ends a key's name, written as people write it.
+
+    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("contact.area_cm2"), unit_of("skin.site")
+    ('m²·K/W', 'cm²', '')
+    """
+    for unit in sorted(_UNITS, key=len, reverse=True):
+        if key.endswith("_" + unit):
+            over, under = unit.split("_per_")
+            pretty = [part.replace("m2K", "m²·K").replace("mK", "m·K").replace("kgK", "kg·K") for part in (over, under)]
+            top, bottom = (part.replace("m3", "m³").replace("m2", "m²") for part in pretty)
+            return f"{top}/({bottom})" if "·" in bottom else f"{top}/{bottom}"
+    for unit, written in _UNITS_SHORT.items():
+        if key.endswith("_" + unit) and not key.endswith("_per_" + unit):
+            return written
+    return ""
+
+
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """Return the TOML text as a dictionary, or raise RigError that says which line is wrong."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise RigError(f"{where}: not a valid TOML file: {problem}") from None
+
+
+def read_table(document: Mapping[str, Any], where: str) -> RigTable:
+    """Return the checked table of a rig document, or raise RigError with all its faults at once."""
+    try:
+        return RigTable.model_validate(dict(document))
+    except ValidationError as problem:
+        findings = [
+            line for error in problem.errors(include_url=False) for line in _in_words(error, document).splitlines()
+        ]
+        raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+
+
+def rig_keys() -> tuple[str, ...]:
+    """All dotted keys of a rig file; those of a layer carry a 0 for its place."""
+    return tuple(_keys(RigTable, ""))
+
+
+def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
+    for name, field in table.model_fields.items():
+        if name == "layer":
+            yield from _keys(LayerTable, f"{prefix}layer.0.")
+        elif name == "datasheet":
+            yield prefix + name
+            yield from _keys(DatasheetTable, f"{prefix}datasheet.0.")
+        elif name == "probe":
+            yield "probe"
+            yield from _keys(ProbeTable, "probe.0.")
+        elif name == "controller":
+            yield from _keys(ControllerTable, "controller.")
+        elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
+            yield from _keys(field.annotation, f"{prefix}{name}.")
+        elif name != "source":
+            yield prefix + name
+
+
+def unknown_key(key: str) -> str:
+    """Return what to say of a key that no rig has."""
+    known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
+    place, dot, name = key.rpartition(".")
+    beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
+    close = difflib.get_close_matches(name, beside, n=2, cutoff=0.6)
+    if close:
+        return f"{key}: unknown key; did you mean {' or '.join(place + dot + other for other in close)}?"
+    return f"{key}: unknown key; {nearest(key, known if dot and place not in known else beside)}"
+
+
+def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
+    key = ".".join(str(part) for part in error["loc"])
+    unit = unit_of(key)
+    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
+    said = f"{key} = {value!r}" if isinstance(value, (int, float, str, bool)) else key
+    if kind == "extra_forbidden":
+        plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
+        return unknown_key(plain).replace(plain + ":", key + ":", 1)
+    if kind == "value_error":  # said by a table itself, in whole sentences
+        return str(context["error"])
+    if kind == "missing":
+        return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
+    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
+        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
+        words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
+        return f"{said}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
+    if kind == "finite_number":
+        return f"{said}: must be a finite number{f' in {unit}' if unit else ''}"
+    if kind in ("float_type", "int_type", "float_parsing"):
+        return f"{said}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
+    if kind == "literal_error":
+        return f"{said}: must be {context.get('expected')}"
+    return f"{said}: {error['msg'][:1].lower()}{error['msg'][1:]}"

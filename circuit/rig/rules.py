@@ -1,0 +1,241 @@
+"""The rules of safety: sourced limits, tightened freely by a rig file, loosened only with a written reason."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+
+from thermicon.circuit.inputs import signed
+from thermicon.circuit.records import Record, Table, load_records
+
+SHORTEST_REASON = 20
+"""Fewest characters of a reason for a loosened limit: a sentence, not a word."""
+
+_EXTRA = (
+    *("severity", "above_C", "low_key", "high_key"),
+    *("low_bound", "high_bound", "low_bound_source", "high_bound_source"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One side of one limit: what may not go above (`upper`) or below `limit`, in `unit`.
+
+    `severity` is hard or soft. `key` names it in a rig file's [safety] table, empty where it is fixed; `bound` is the
+    published figure that it cannot be loosened beyond, None where none is on record. With `above_C` it limits the time
+    in s that the display is warmer. A limit in K counts from where a run began. `shipped` is the limit unchanged.
+    """
+
+    quantity: str
+    severity: str
+    upper: bool
+    limit: float
+    unit: str
+    source: str
+    key: str
+    bound: float | None
+    bound_source: str
+    shipped: float
+    above_C: float | None = None
+
+    @property
+    def relative(self) -> bool:
+        """Whether the limit counts from where a run began."""
+        return self.unit == "K"
+
+    @property
+    def loosened(self) -> bool:
+        """Whether it lets more pass than the shipped limit."""
+        return self.limit > self.shipped if self.upper else self.limit < self.shipped
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """All rules that a run is held against, and the reason for those that are loosened.
+
+    >>> Limits.shipped()
+    Limits(22 rules, as shipped)
+    >>> Limits.of({"skin_highest_C": 39.0})
+    Limits(22 rules, skin_highest_C 39 °C instead of 42 °C)
+    """
+
+    rules: tuple[Rule, ...]
+    reason: str = ""
+
+    def __repr__(self) -> str:
+        return f"Limits({len(self.rules)} rules, {'; '.join(self.changed) or 'as shipped'})"
+
+    @staticmethod
+    def shipped() -> Limits:
+        """Return the shipped limits."""
+        return _shipped()
+
+    @staticmethod
+    def of(changes: Mapping[str, float], reason: str = "") -> Limits:
+        """Return the shipped limits with some changed by key; raises ValueError with every fault, a line each."""
+        if faults := faults_of(changes, reason):
+            raise ValueError("\n".join(faults))
+        return _changed(changes, reason.strip())
+
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """A few words for each limit that is not the shipped one, in the order of the rules."""
+        return _told(rule for rule in self.rules if rule.limit != rule.shipped)
+
+    @property
+    def loosened(self) -> tuple[str, ...]:
+        """A few words for each limit that lets more pass than the shipped one."""
+        return _told(rule for rule in self.rules if rule.loosened)
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """A sentence for each soft limit that a hard one makes void, since nothing is amber before it is red."""
+        found = []
+        for hard, soft in _pairs(self.rules):
+            if hard.limit < soft.limit if hard.upper else hard.limit > soft.limit:
+                side = "below" if hard.upper else "above"
+                found.append(
+                    f"safety.{hard.key} = {signed(hard.limit)} {hard.unit} is hard and lies {side} the soft limit of "
+                    f"{signed(soft.limit)} {soft.unit}, so that nothing is amber before it is red; set "
+                    f"safety.{soft.key} {side} {signed(hard.limit)} {hard.unit} too"
+                )
+        return tuple(found)
+
+    def passed_at_rest(self, rest_C: float) -> str | None:
+        """A sentence where skin at its rest in °C is outside a limit already, a hard one first; otherwise None."""
+        own = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]
+        for rule in sorted(own, key=lambda one: one.severity != "hard"):
+            if rest_C > rule.limit if rule.upper else rest_C < rule.limit:
+                side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
+                return (
+                    f"the resting skin of {rest_C:g} °C (skin.rest_C) is itself {side} the {rule.severity} limit "
+                    f"safety.{rule.key} = {signed(rule.limit)} °C, so that every icon that begins there is {colour} "
+                    f"from its start; change the limit or the baseline"
+                )
+        return None
+
+    def to_dict(self) -> dict[str, object]:
+        """What is changed, what is loosened and why, as a sidecar holds it."""
+        return {"changed": list(self.changed), "loosened": list(self.loosened), "reason": self.reason or None}
+
+
+@cache
+def limit_table() -> Table:
+    """The shipped limits, each with its source."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "limits.toml", extra=_EXTRA)
+
+
+def safety_keys() -> tuple[str, ...]:
+    """Keys of a rig file's [safety] table that change a limit, in the order of the table of limits."""
+    return tuple(dict.fromkeys(rule.key for rule in _shipped().rules if rule.key))
+
+
+def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
+    """Return what is wrong with changes of limits, a sentence each; keys are those of [safety]."""
+    if not changes:
+        return []
+    unknown = [key for key in changes if key not in safety_keys()]
+    faults = [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
+    told = {key for key in changes if key in unknown}
+    for rule in _changed(changes, reason).rules:
+        if rule.key not in changes or rule.key in told:
+            continue
+        value, unit = changes[rule.key], f" {rule.unit}" if rule.unit != "1" else ""
+        said = f"safety.{rule.key} = {value:g}{unit}"
+        if beyond(rule):
+            told.add(rule.key)
+            faults.append(
+                f"{said}: cannot be loosened beyond {rule.bound:g}{unit} ({rule.bound_source}); use "
+                f"{'at most' if rule.upper else 'at least'} {rule.bound:g}{unit}"
+            )
+        elif rule.loosened and len(reason.strip()) < SHORTEST_REASON:
+            told.add(rule.key)
+            faults.append(
+                f"{said}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, at "
+                f"least {SHORTEST_REASON} characters on why this is justified, or use {abs(rule.shipped):g}{unit}"
+            )
+    return faults + _crossed(changes, reason)
+
+
+def beyond(rule: Rule) -> bool:
+    """Whether a rule's limit lets more pass than what is published."""
+    return rule.bound is not None and (rule.limit > rule.bound if rule.upper else rule.limit < rule.bound)
+
+
+def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
+    """Sentences for changed limits between which nothing is left."""
+    rules, found = _changed(changes, reason).rules, []
+    for low in rules:
+        for high in rules:
+            pair = not low.upper and high.upper and low.key != high.key
+            same = (low.quantity, low.severity, low.relative) == (high.quantity, high.severity, high.relative)
+            if pair and same and low.limit >= high.limit:
+                found.append(
+                    f"safety.{low.key} = {low.limit:g} {low.unit}: is not below safety.{high.key} = {high.limit:g} "
+                    f"{high.unit}; leave some room between them"
+                )
+    return found
+
+
+def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
+    """Hard and soft rules of one quantity and side."""
+    plain = [rule for rule in rules if rule.key and not rule.relative]
+    return [
+        (hard, soft)
+        for hard in plain
+        for soft in plain
+        if (hard.severity, soft.severity) == ("hard", "soft")
+        and (hard.quantity, hard.upper) == (soft.quantity, soft.upper)
+    ]
+
+
+def _told(rules: Iterable[Rule]) -> tuple[str, ...]:
+    said = {}
+    for rule in rules:
+        unit = f" {rule.unit}" if rule.unit != "1" else ""
+        said[rule.key] = f"{rule.key} {abs(rule.limit):g}{unit} instead of {abs(rule.shipped):g}{unit}"
+    return tuple(said.values())
+
+
+@cache
+def _shipped() -> Limits:
+    return Limits(tuple(rule for record in limit_table() for rule in _rules(record)))
+
+
+def _changed(changes: Mapping[str, float], reason: str) -> Limits:
+    rules = []
+    for rule in _shipped().rules:
+        if rule.key in changes:
+            value = abs(changes[rule.key]) * (1.0 if rule.upper else -1.0) if _symmetric(rule) else changes[rule.key]
+            if value != rule.limit:
+                source = f"the rig's [safety]; shipped {rule.shipped:g}, {rule.source}"
+                rule = replace(rule, limit=float(value), source=source)
+        rules.append(rule)
+    return Limits(tuple(rules), reason)
+
+
+def _symmetric(rule: Rule) -> bool:
+    return rule.relative or rule.unit == "K/s"
+
+
+def _rules(record: Record) -> list[Rule]:
+    """Both sides of a record; what has but one figure for either direction gets it twice."""
+    extra = dict(record.extra)
+    ends = [(True, record.high, "high"), (False, record.low, "low")]
+    if record.unit in ("K", "K/s") and record.high is not None:
+        ends[1] = (False, -record.high, "high")
+    rules = []
+    for upper, limit, end in ends:
+        if limit is None:
+            continue
+        bound, above = extra.get(f"{end}_bound"), extra.get("above_C")
+        rules.append(
+            Rule(
+                record.quantity, str(extra["severity"]), upper, limit, record.unit, record.source,
+                str(extra.get(f"{end}_key", "")), bound if isinstance(bound, float) else None,
+                str(extra.get(f"{end}_bound_source", "")), limit, above if isinstance(above, float) else None,
+            )
+        )  # fmt: skip
+    return rules

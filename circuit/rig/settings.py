@@ -1,0 +1,79 @@
+"""Changing one number of a rig: dotted keys of the rig file, and texts of the form `key=value`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from thermicon.circuit.rig.modules import PARAMETERS
+from thermicon.circuit.rig.rigfile import RigError, parse_toml, rig_keys, unknown_key
+
+_OPTIONAL = ("controller", "uncertainty", "safety")
+"""Tables that a rig need not have; the first key that is set makes one."""
+
+
+def read_settings(settings: Iterable[str]) -> dict[str, object]:
+    """Return dotted keys with values from texts such as `contact.area_cm2=4`; a value is TOML, or else plain text.
+
+    >>> read_settings(["contact.area_cm2=4", "skin.site=forearm"])
+    {'contact.area_cm2': 4, 'skin.site': 'forearm'}
+    """
+    changes: dict[str, object] = {}
+    for setting in settings:
+        key, equals, value = setting.partition("=")
+        if not equals or not key.strip() or not value.strip():
+            raise RigError(f"{setting!r}: a setting has the form KEY=VALUE, such as contact.area_cm2=4")
+        try:
+            changes[key.strip()] = parse_toml(f"value = {value.strip()}", key)["value"]
+        except RigError:
+            changes[key.strip()] = value.strip()
+    return changes
+
+
+def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
+    """Set dotted keys in the document; a module that changes drops its source and the way it was given before."""
+    for key, value in changes.items():
+        if key in ("module.datasheet", "module.name") and value is not None:
+            for way in (*PARAMETERS, "datasheet", "name"):
+                document["module"].pop(way, None)
+    for key, value in changes.items():
+        put(document, key, value)
+
+
+def put(document: dict[str, Any], key: str, value: object) -> None:
+    """Set a dotted key in the document; an unknown key or layer is an error with the nearest."""
+    parts, place, plain = key.split("."), document, []
+    for position, part in enumerate(parts[:-1]):
+        if isinstance(place, list):
+            index = _item(place, part, key)
+            place, part_of_key = place[index], "0"
+        else:
+            if part in _OPTIONAL and position == 0 and any(key == known for known in rig_keys()):
+                place.setdefault(part, {})
+            if part == "datasheet" and part not in place:
+                raise RigError(f"{key}: this rig's module has no data sheet; set module.datasheet, a list of them")
+            if not isinstance(place.get(part), (dict, list)):
+                if part == "probe":
+                    raise RigError(f"{key}: this rig has no probe; add a [[probe]] with name and place to its file")
+                raise RigError(unknown_key(key))
+            place, part_of_key = place[part], part
+        plain.append(part_of_key)
+        if position == 0 and part == "source":
+            raise RigError(f"{key}: a source cannot be changed here")
+    if (".".join([*plain, parts[-1]]) not in rig_keys() and key != "skin.layer") or isinstance(place, list):
+        raise RigError(
+            unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
+        )
+    if parts[0] == "module" and not key.endswith("plate_J_per_K") and place.get(parts[-1]) != value:
+        document.get("source", {}).pop("module", None)
+    place[parts[-1]] = value
+
+
+def _item(items: list[dict[str, Any]], part: str, key: str) -> int:
+    names = [str(item.get("name", f"hot side at {item.get('t_hot_C')} °C")) for item in items]
+    if part.isdigit() and int(part) < len(items):
+        return int(part)
+    if part in names:
+        return names.index(part)
+    kind = "probe" if key.startswith("probe.") else "data sheet" if key.startswith("module.") else "layer"
+    raise RigError(f"{key}: no such {kind}; there are {', '.join(f'{i} ({name})' for i, name in enumerate(names))}")

@@ -1,0 +1,74 @@
+"""How sure one is of a rig: what is assumed where a rig does not say, and what it takes to claim to be surer.
+
+A smaller uncertainty makes the worst case milder, so it loosens the gate of safety as a looser limit does: it needs a
+reason in writing, which goes wherever the verdict goes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+
+from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.rig.rules import SHORTEST_REASON
+
+_WORDS = {
+    "contact_resistance_relative": ("contact resistance", 100.0, "%"),
+    "ambient_K": ("ambient", 1.0, "K"),
+    "gain_relative": ("gain", 100.0, "%"),
+}
+
+
+@cache
+def uncertainty_table() -> Table:
+    """The shipped uncertainties, each with its source."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
+
+
+def uncertainty_of(given: Mapping[str, float], reason: str = "") -> Uncertainty:
+    """Return the uncertainty of a rig; what is not given is as shipped.
+
+    >>> uncertainty_of({"ambient_K": 5.0})
+    Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, reason='')
+    """
+    return Uncertainty(**{**_shipped(), **given}, reason=reason.strip())
+
+
+def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str]:
+    """Return what is wrong with a claim to be surer than what is shipped, a sentence each.
+
+    >>> uncertainty_faults({"gain_relative": 0.02}, "gain measured against a shunt, 2026-05-12")
+    []
+    """
+    if len(reason.strip()) >= SHORTEST_REASON:
+        return []
+    found = []
+    for key, shipped in _shipped().items():
+        value, unit = given.get(key, shipped), " K" if key.endswith("_K") else ""
+        if value < shipped:
+            found.append(
+                f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
+                f"the gate of safety; give uncertainty.reason, at least {SHORTEST_REASON} characters on how this is "
+                f"known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
+            )
+    return found
+
+
+def surer(one: Uncertainty) -> tuple[str, ...]:
+    """A few words for each uncertainty that is smaller than the shipped one.
+
+    >>> surer(uncertainty_of({"gain_relative": 0.02}))
+    ('gain ±2 % instead of ±10 %',)
+    """
+    return tuple(
+        f"{words} ±{scale * getattr(one, key):g} {unit} instead of ±{scale * _shipped()[key]:g} {unit}"
+        for key, (words, scale, unit) in _WORDS.items()
+        if getattr(one, key) < _shipped()[key]
+    )
+
+
+@cache
+def _shipped() -> dict[str, float]:
+    return {record.quantity: record.central for record in uncertainty_table()}

@@ -1,0 +1,99 @@
+"""A trace in a few numbers: whether it was reached, extremes, electrical energy, safety."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.solver.trace import Trace
+
+HELD = ("skin", "display")
+"""Controls whose current is held from row to row; others are taken as linear between rows."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One trace; units are in the names, times count from its start, heat flow is positive into the skin.
+
+    `reached` and the misses are None for a run without a target temperature; the miss is signed (above: positive).
+    `energy_J` is what the driver puts into the module, ∫V·I dt. `reason` says why it was missed or is not safe.
+    """
+
+    duration_s: float
+    reached: bool | None
+    largest_miss_K: float | None
+    largest_miss_s: float | None
+    rms_miss_K: float | None
+    current_min_A: float
+    current_max_A: float
+    voltage_min_V: float
+    voltage_max_V: float
+    energy_J: float
+    hot_plate_min_C: float
+    hot_plate_max_C: float
+    display_min_C: float
+    display_max_C: float
+    skin_min_C: float
+    skin_max_C: float
+    cold_receptor_min_C: float
+    cold_receptor_max_C: float
+    warm_receptor_min_C: float
+    warm_receptor_max_C: float
+    heat_flow_skin_min_W_per_m2: float
+    heat_flow_skin_max_W_per_m2: float
+    heat_flow_cold_receptor_min_W_per_m2: float
+    heat_flow_cold_receptor_max_W_per_m2: float
+    heat_flow_warm_receptor_min_W_per_m2: float
+    heat_flow_warm_receptor_max_W_per_m2: float
+    safe: bool
+    safety: str
+    reason: str | None
+
+    def __repr__(self) -> str:
+        said = {None: "", True: "reached, ", False: "NOT reached, "}[self.reached]
+        return (
+            f"Summary({said}{self.duration_s:g} s, skin {self.skin_min_C:.2f} … {self.skin_max_C:.2f} °C, "
+            f"{self.current_min_A:.2f} … {self.current_max_A:.2f} A, {self.energy_J:.1f} J, safety {self.safety})"
+        )
+
+    def to_dict(self) -> dict[str, float | bool | str | None]:
+        """Return the numbers by name, in the order of the fields."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+def summarise(trace: Trace) -> Summary:
+    """Return the numbers of a trace that people compare rigs and icons by.
+
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> summarise(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar")))
+    Summary(reached, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A, 16.3 J, safety green)
+    """
+    outcome, verdict = trace.outcome, judge_safety(trace)
+    reasons = [reason for reason in (None if outcome is None else outcome.reason, verdict.reason) if reason]
+    extremes: dict[str, float] = {}
+    for field in fields(Summary):
+        for side, extreme in (("_min_", np.min), ("_max_", np.max)):
+            if side in field.name:
+                extremes[field.name] = float(extreme(getattr(trace, field.name.replace(side, "_"))))
+    return Summary(
+        duration_s=float(trace.time_s[-1]),
+        reached=None if outcome is None else outcome.reached,
+        largest_miss_K=None if outcome is None else outcome.largest_miss_K,
+        largest_miss_s=None if outcome is None else outcome.largest_miss_s,
+        rms_miss_K=None if outcome is None else outcome.rms_miss_K,
+        energy_J=energy_J(trace),
+        safe=verdict.safe,
+        safety=verdict.colour,
+        reason="; ".join(reasons) or None,
+        **extremes,
+    )
+
+
+def energy_J(trace: Trace) -> float:
+    """Electrical energy into the module in J: a held current's power counts until the next row, others linearly."""
+    power, steps = trace.voltage_V * trace.current_A, np.diff(trace.time_s)
+    mean = power[:-1] if trace.control in HELD else 0.5 * (power[:-1] + power[1:])
+    return float(mean @ steps)

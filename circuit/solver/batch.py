@@ -1,0 +1,212 @@
+"""Many cues on many rigs in one go: what each virtual person's skin goes through."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.batch_inputs import Bank, Index, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.solver.inverse import baseline_C, design, design_many, gains_of, periods, target_at
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.simulate import rows_until, simulate
+from thermicon.circuit.solver.steady import hold, steady_state
+from thermicon.icons import Icon
+
+TRACKINGS = ("replay", "display", "ideal")
+"""What each rig is played: the nominal current open loop, the nominal display trajectory, or its own solution."""
+
+USUAL = ("skin_C", "cold_receptor_C", "warm_receptor_C")
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Traces of many cues on many rigs: `time_s` (rows,), `values` (probes, rigs, icons, rows)."""
+
+    time_s: Array
+    probes: tuple[str, ...]
+    values: Array
+
+    def __getitem__(self, probe: str) -> Array:
+        """Values of one probe, (rigs, icons, rows)."""
+        return np.asarray(self.values[self.probes.index(probe)])
+
+    @property
+    def cold_C(self) -> Array:
+        """Temperature at cold-receptor depth in °C, (rigs, icons, rows)."""
+        return self["cold_receptor_C"]
+
+    @property
+    def warm_C(self) -> Array:
+        """Temperature at warm-receptor depth in °C, (rigs, icons, rows)."""
+        return self["warm_receptor_C"]
+
+
+def usual_tracking(icon: Icon) -> str:
+    """Tracking that suits what a cue prescribes: `display` for display control, else `replay`."""
+    return "display" if icon.frame.control == "display" else "replay"
+
+
+def simulate_many(
+    icons: Sequence[Icon],
+    rigs: Sequence[Rig],
+    *,
+    nominal: Rig,
+    end_s: float,
+    rate_Hz: float = 100.0,
+    tracking: str | None = None,
+    probes: Sequence[str] = USUAL,
+) -> Batch:
+    """Play every cue on every rig until `end_s`; the result does not depend on the number of cores.
+
+    `tracking` is one of TRACKINGS, or None for what suits each cue: `replay` plays the current designed on `nominal`
+    open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits, `ideal`
+    solves anew for each rig. Rigs with a PID loop run it. Raises RigError when a rig cannot hold a baseline.
+    """
+    if tracking is not None and tracking not in TRACKINGS:
+        raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
+    if not rigs or not icons:
+        raise RigError("a batch needs at least one cue and one rig")
+    if not 0 < end_s < np.inf:
+        raise RigError(f"a batch cannot end at {end_s:g} s; it must be above 0")
+    if len({rig.controller is None for rig in (*rigs, nominal)}) > 1:
+        raise RigError("rigs of one batch must all have a controller, or none")
+    if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
+        raise RigError("rigs of one batch must share driver.update_Hz")
+    rows = rows_until(end_s, rate_Hz)
+    values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
+    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
+    groups: dict[tuple[str, str], list[int]] = {}
+    for place, icon in enumerate(icons):
+        groups.setdefault((icon.frame.control, tracking or usual_tracking(icon)), []).append(place)
+    for (control, way), places in groups.items():
+        cues = [icons[place] for place in places]
+        if control == "current":
+            for place, cue in zip(places, cues, strict=True):
+                values[:, :, place] = stage.play_corners(cue)
+        elif way == "replay":
+            values[:, :, places] = stage.replay(cues)
+        else:
+            values[:, :, places] = stage.track(cues, control, way)
+    values.setflags(write=False)
+    return Batch(rows, tuple(probes), values)
+
+
+def simulate_stream(
+    icons: Iterable[Icon],
+    rig: Rig,
+    *,
+    end_s: float,
+    rate_Hz: float = 100.0,
+    probes: Sequence[str] = USUAL,
+    at_once: int = 256,
+) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
+    """Play any number of cues on one rig, `at_once` of them in memory: yields (cues, their batch) in their order.
+
+    >>> from thermicon.icons import load_library
+    >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
+    >>> [(len(cues), batch.values.shape) for cues, batch in parts]
+    [(4, (3, 1, 4, 901)), (2, (3, 1, 2, 901))]
+    """
+    if at_once < 1:
+        raise RigError(f"at_once = {at_once}: at least one cue must be in memory at a time")
+    waiting = iter(icons)
+    while cues := tuple(itertools.islice(waiting, at_once)):
+        yield (
+            cues,
+            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, probes=probes),
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Stage:
+    """Where a batch is played: the rigs, the rig that cues are designed for, and what is written."""
+
+    rigs: tuple[Rig, ...]
+    nominal: Rig
+    end_s: float
+    rows: Array
+    probes: tuple[str, ...]
+
+    def play_corners(self, icon: Icon) -> Array:
+        """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
+        plan = design(icon, self.nominal, self.end_s)
+        states = [steady_state(network_of(rig), plan.rest_A) for rig in self.rigs]
+        every = np.arange(len(self.rigs), dtype=np.int64)
+        intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
+        bank = Bank.of([network_of(rig) for rig in self.rigs])
+        return run_forward(bank, every, np.zeros_like(every), intervals, bank.states(states), self.probes)
+
+    def replay(self, icons: Sequence[Icon]) -> Array:
+        """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
+        plans = design_many(icons, self.nominal, self.end_s)
+        currents = np.array([plan.drive.current_A[:-1] for plan in plans])
+        states = {
+            (r, amperes): steady_state(network_of(rig), amperes)
+            for r, rig in enumerate(self.rigs)
+            for amperes in {plan.rest_A for plan in plans}
+        }
+        return self._play(currents, icons, [states[r, plan.rest_A] for r in range(len(self.rigs)) for plan in plans])
+
+    def track(self, icons: Sequence[Icon], control: str, way: str) -> Array:
+        """Each rig's own current for the nominal display trajectory, or for the cue itself: as `replay`."""
+        bases = [baseline_C(icon, self.nominal) for icon in icons]
+        ends = periods(self.nominal, self.end_s)
+        if way == "display" and control == "skin":
+            rate = self.nominal.driver.update_Hz
+            shown = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
+            targets, control = np.array([display[1 : len(ends) + 1] for display in shown]), "display"
+            bases = [float(display[0]) for display in shown]
+        else:
+            targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
+        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
+        states = [state for _, state in lanes]
+        if self.nominal.controller is None:
+            currents = self._follow(control, targets, states)
+        else:
+            currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
+        return self._play(currents, icons, states)
+
+    def _lanes(self, cues: int) -> tuple[Index, Index]:
+        """Rig and cue of every lane, all cues of a rig together."""
+        rig_of, cue_of = (place.ravel() for place in np.indices((len(self.rigs), cues)))
+        return rig_of, cue_of
+
+    def _follow(self, control: str, targets: Array, states: Sequence[Array]) -> Array:
+        """Currents (rigs · cues, periods) that make each rig follow each target from its state."""
+        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = self._lanes(len(targets))
+        return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", bank.states(states))[0]
+
+    def _loop(
+        self, control: str, targets: Array, bases: Sequence[float], bias_A: Array, states: Sequence[Array]
+    ) -> Array:
+        """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point of its own."""
+        if control == "skin":
+            raise RigError(
+                "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
+                "use tracking display, or rigs without [controller]"
+            )
+        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        rig_of, cue_of = self._lanes(len(targets))
+        setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
+        gains = np.array([gains_of(rig) for rig in self.rigs])
+        return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, bank.states(states))[0]
+
+    def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
+        """Run held currents, a row a cue or a row a lane, on every rig and cue from given states."""
+        times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
+        held = np.concatenate([currents, currents[:, -1:]], axis=1)
+        bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
+        rig_of, cue_of = self._lanes(len(icons))
+        if len(currents) == len(rig_of):
+            cue_of = np.arange(len(rig_of))
+        intervals = cut(self.rows, times, held, held=True)
+        out = run_forward(bank, rig_of, cue_of, intervals, bank.states(states), self.probes)
+        return out.reshape(len(self.probes), *shape, len(self.rows))

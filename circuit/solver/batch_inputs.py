@@ -1,0 +1,197 @@
+"""Rigs stacked for the kernel, and the kernel run over many lanes (a lane is one cue on one rig) on all cores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.cores import cores
+from thermicon.circuit.solver.network import PROBES, Network, network_of
+
+Index = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Bank:
+    """Networks of r rigs, padded to the most lumps n: `count` (r,), the rest (r, …) as in Network."""
+
+    count: Index
+    plates: Array
+    capacity: Array
+    conductance: Array
+    perfusion: Array
+    probe_start: Index
+    probe_weight: Array
+    face_share: Array
+
+    @staticmethod
+    def of(networks: Sequence[Network]) -> Bank:
+        """Stack networks."""
+        count = np.array([len(network.capacity_J_per_K) for network in networks], dtype=np.int64)
+        most = int(count.max())
+
+        def padded(name: str, extra: int) -> Array:
+            rows = np.ones((len(networks), most + extra))
+            for row, network in zip(rows, networks, strict=True):
+                values = getattr(network, name)
+                row[: len(values)] = values
+            return rows
+
+        return Bank(
+            count,
+            np.array([network.plates for network in networks]),
+            padded("capacity_J_per_K", 0),
+            padded("conductance_W_per_K", 1),
+            padded("perfusion_W_per_K", 0),
+            np.array([network.probe_start for network in networks]),
+            np.array([network.probe_weight for network in networks]),
+            np.array([network.face_share for network in networks]),
+        )
+
+    def states(self, states: Sequence[Array]) -> Array:
+        """Stack starting states, one a lane, padded to (lanes, n + 3)."""
+        rows = np.zeros((len(states), self.capacity.shape[1] + 3))
+        for row, state in zip(rows, states, strict=True):
+            row[: len(state)] = state
+        return rows
+
+
+@lru_cache(maxsize=64)
+def bank_of(rig: Rig) -> Bank:
+    """A bank of one rig."""
+    return Bank.of([network_of(rig)])
+
+
+@dataclass(frozen=True, slots=True)
+class Intervals:
+    """Time cut at every instant where a current changes or a row is written.
+
+    `edges_s` (e,); `row_of` (e,): the row written at an edge, or −1; `start_A`, `end_A` (e − 1, cues), so that the
+    lanes of a block lie side by side.
+    """
+
+    edges_s: Array
+    row_of: Index
+    start_A: Array
+    end_A: Array
+
+
+def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Intervals:
+    """Cut time for currents (cues, k) given at times (k,), held or linear between, ending at the last row."""
+    beside = np.searchsorted(rows_s, times_s)
+    after, before = np.minimum(beside, len(rows_s) - 1), np.maximum(beside - 1, 0)
+    near = np.minimum(np.abs(rows_s[after] - times_s), np.abs(times_s - rows_s[before]))
+    own = (near > 1e-9) & (times_s < rows_s[-1])  # a row and a change a rounding error apart are one
+    edges = np.insert(rows_s, beside[own], times_s[own])
+    row_of = np.insert(np.arange(len(rows_s)), beside[own], -1)
+    if held:
+        now = np.clip(np.searchsorted(times_s, edges[:-1] + 1e-9, side="right") - 1, 0, len(times_s) - 1)
+        start = end_ = currents_A[:, now]
+    else:
+        at = np.array([np.interp(edges, times_s, row) for row in currents_A])
+        start, end_ = at[:, :-1], at[:, 1:]
+    return Intervals(edges, row_of, np.ascontiguousarray(start.T), np.ascontiguousarray(end_.T))
+
+
+def run_forward(
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES,
+    extra: tuple[Index, Array] | None = None,
+) -> Array:  # fmt: skip
+    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3).
+
+    `extra` adds further readings after them, the same states and weights for every rig: starts (k,), weights (k, 3).
+    """
+    from thermicon.circuit.solver import kernel, kernel_batch
+
+    which = [PROBES.index(probe) for probe in probes]
+    places = np.ascontiguousarray(bank.probe_start[:, which])
+    weights = np.ascontiguousarray(bank.probe_weight[:, which])
+    if extra is not None:
+        rigs = len(places)
+        places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
+        weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
+    out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
+
+    def work(part: Index) -> None:
+        run = kernel.forward if part.ndim == 1 else kernel_batch.forward
+        run(
+            part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
+            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state, out,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return out
+
+
+def run_follow(
+    bank: Bank, rig_of: Index, cue_of: Index, period_s: float, target_C: Array, skin_control: bool, state: Array
+) -> tuple[Array, Array, Index]:
+    """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
+    from thermicon.circuit.solver import kernel, kernel_batch
+
+    shape = (len(rig_of), target_C.shape[1])
+    current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+
+    def work(part: Index) -> None:
+        run = kernel.follow if part.ndim == 1 else kernel_batch.follow
+        run(
+            part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
+            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return current, reached, why
+
+
+def run_regulate(
+    bank: Bank,
+    rig_of: Index,
+    cue_of: Index,
+    period_s: float,
+    setpoint_C: Array,
+    gains: Array,
+    bias_A: Array,
+    state: Array,
+) -> tuple[Array, Array, Index]:
+    """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
+    from thermicon.circuit.solver import kernel_pid
+
+    shape = (len(rig_of), setpoint_C.shape[1])
+    current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+
+    def work(part: Index) -> None:
+        kernel_pid.regulate(
+            np.unique(part), rig_of, cue_of, period_s, setpoint_C, gains, bias_A, bank.count, bank.plates,
+            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+        )  # fmt: skip
+
+    _on_all_cores(work, len(rig_of))
+    return current, reached, why
+
+
+FEWEST = 4
+"""Below this many lanes one at a time is quicker than a padded block."""
+
+
+def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
+    """Share lanes out: a few one by one, many in blocks that do not depend on the number of cores."""
+    if lanes < FEWEST:
+        work(np.arange(lanes, dtype=np.int64))
+        return
+    from thermicon.circuit.solver.kernel_batch import LANES
+
+    count = -(-lanes // LANES)
+    blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)
+    used = min(cores(), count)
+    if used == 1:
+        work(blocks)
+        return
+    with ThreadPoolExecutor(used) as pool:
+        list(pool.map(work, np.array_split(blocks, used)))

@@ -1,0 +1,122 @@
+"""A drive: the current that a rig is played, held or linear between its rows, and its CSV file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from thermicon.circuit.inputs import InputError, read_text
+from thermicon.circuit.rig.skin import Array
+
+COLUMNS = ("time_s", "current_A")
+
+
+class DriveError(InputError):
+    """A drive that cannot be played, or a drive file that cannot be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Currents in A at times in s, first at 0; `held` keeps each until the next, otherwise linear between.
+
+    >>> Drive([0, 1, 4], [0.0, 0.5, 0.5])
+    Drive(3 rows, 4 s, 0 … 0.5 A, linear)
+    """
+
+    time_s: Array
+    current_A: Array
+    held: bool = False
+
+    def __init__(self, time_s: Sequence[float] | Array, current_A: Sequence[float] | Array, held: bool = False) -> None:
+        times, currents = np.array(time_s, dtype=np.float64), np.array(current_A, dtype=np.float64)
+        for array in (times, currents):
+            array.setflags(write=False)
+        object.__setattr__(self, "time_s", times)
+        object.__setattr__(self, "current_A", currents)
+        object.__setattr__(self, "held", held)
+        if times.ndim != 1 or times.shape != currents.shape:
+            raise DriveError(f"a drive needs one current for each time; got {times.shape} and {currents.shape}")
+        if len(times) < 2:
+            raise DriveError(f"a drive needs at least two rows, a start and an end; got {len(times)}")
+        if not (np.isfinite(times).all() and np.isfinite(currents).all()):
+            row = int(np.flatnonzero(~(np.isfinite(times) & np.isfinite(currents)))[0])
+            raise DriveError(f"row {row + 1}: time {times[row]:g} s, current {currents[row]:g} A; both must be finite")
+        if times[0] != 0:
+            raise DriveError(f"row 1: time {times[0]:g} s; a drive starts at 0 s")
+        if (np.diff(times) <= 0).any():
+            row = int(np.flatnonzero(np.diff(times) <= 0)[0]) + 1
+            raise DriveError(
+                f"row {row + 1}: time {times[row]:g} s does not come after {times[row - 1]:g} s; times must increase"
+            )
+
+    def __repr__(self) -> str:
+        low, high = self.current_A.min(), self.current_A.max()
+        form = "held" if self.held else "linear"
+        return f"Drive({len(self.time_s)} rows, {self.time_s[-1]:g} s, {low:g} … {high:g} A, {form})"
+
+    @staticmethod
+    def of_command(
+        time_s: Sequence[float] | Array, command_V: Sequence[float] | Array, gain_A_per_V: float, held: bool = False
+    ) -> Drive:
+        """Return the drive that a command voltage makes through a driver's transconductance.
+
+        >>> Drive.of_command([0, 1], [1.0, 5.0], 0.1).current_A
+        array([0.1, 0.5])
+        """
+        return Drive(time_s, np.asarray(command_V, dtype=np.float64) * gain_A_per_V, held)
+
+    def at(self, time_s: Array) -> Array:
+        """Current in A at times in s, the one that begins there where it jumps."""
+        if self.held:
+            place = np.searchsorted(self.time_s, time_s + 1e-9, side="right") - 1
+            return self.current_A[np.clip(place, 0, len(self.current_A) - 1)]
+        return np.asarray(np.interp(time_s, self.time_s, self.current_A), dtype=np.float64)
+
+
+def read_drive(path: str | Path, hold: bool = False) -> Drive:
+    """Return the drive of a CSV file with columns `time_s,current_A`; raises DriveError naming the line at fault."""
+    where = Path(path)
+    rows = list(csv.reader(io.StringIO(read_text(where, "drive file", 200, DriveError))))
+    header = [name.strip() for name in rows[0]] if rows else []
+    missing = [name for name in COLUMNS if name not in header]
+    if "duty" in header and "current_A" in missing:
+        raise DriveError(
+            f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that there "
+            f"is no current to hold; only drives for a device driven by volts or amperes can be replayed, and what "
+            f"this one does is in the sidecar beside it, under predicted"
+        )
+    if missing:
+        raise DriveError(
+            f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "
+            f"(found {', '.join(header[:6]) or 'nothing'})"
+        )
+    places = [header.index(name) for name in COLUMNS]
+    values: list[list[float]] = []
+    for line, row in enumerate(rows[1:], start=2):
+        if not any(cell.strip() for cell in row):
+            continue
+        values.append(
+            [_number(row, place, f"{where}:{line}", name) for place, name in zip(places, COLUMNS, strict=True)]
+        )
+    try:
+        times, currents = np.array(values).reshape(-1, 2).T
+        return Drive(times, currents, hold)
+    except DriveError as problem:
+        raise DriveError(f"{where}: {problem}") from None
+
+
+def _number(row: list[str], place: int, where: str, column: str) -> float:
+    cell = row[place].strip() if place < len(row) else ""
+    try:
+        value = float(cell)
+    except ValueError:
+        raise DriveError(f"{where}: {column} is {cell!r}, not a number") from None
+    if not math.isfinite(value):
+        raise DriveError(f"{where}: {column} is {cell}; it must be a finite number")
+    return value

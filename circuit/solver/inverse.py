@@ -1,0 +1,155 @@
+"""From the temperature a cue asks for to the current that makes it, held over each driver period."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.steady import hold
+from thermicon.circuit.solver.trace import Outcome, judge
+from thermicon.icons import Icon
+
+LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
+"""What held a current back, by the code that the kernel writes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """The current designed for a cue on a rig; before it, `rest_A` has held the state `start_C` (°C) for ever."""
+
+    drive: Drive
+    rest_A: float
+    start_C: Array
+    outcome: Outcome | None
+
+
+def periods(rig: Rig, end_s: float) -> Array:
+    """Ends in s of the driver periods that cover a time."""
+    count = max(1, math.ceil(end_s * rig.driver.update_Hz - 1e-9))
+    return np.arange(1, count + 1) / rig.driver.update_Hz
+
+
+def baseline_C(icon: Icon, rig: Rig) -> float:
+    """Baseline of a cue in °C: its own, or the rig's rest."""
+    return rig.skin.rest_C if icon.frame.baseline_C is None else icon.frame.baseline_C
+
+
+def target_at(icon: Icon, start: float, times_s: Array) -> Array:
+    """What the cue asks for at times in s: °C, or A under current control; the last level is kept."""
+    corners = icon.lower(start)
+    return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
+
+
+def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
+    """Times in s at which a cue makes a step, and until when it must have arrived.
+
+    That is the end of the hold behind it, or, where a ramp follows at once, the next step: the rig may catch up.
+    """
+    corners, found = icon.lower(start), []
+    times, levels = corners.time_s, corners.value
+    begins = [times[place] for place in corners.steps]
+    for place, begin, following in zip(corners.steps, begins, [*begins[1:], math.inf][: len(begins)], strict=True):
+        held = place + 2 < len(levels) and levels[place + 2] == levels[place + 1]
+        found.append((begin, times[place + 2] if held else following))
+    return tuple(found)
+
+
+def design(icon: Icon, rig: Rig, end_s: float) -> Design:
+    """Return the current that plays a cue on a rig until `end_s`; raises RigError for a baseline that cannot be held.
+
+    Skin and display control give currents held over each driver period; current control gives the cue's own corners.
+    """
+    control = icon.frame.control
+    current, state = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
+    if control == "current":
+        corners = icon.lower(current)
+        times, values = list(corners.time_s), list(corners.value)
+        if end_s > times[-1] + 1e-9:
+            times.append(end_s)
+            values.append(values[-1])
+        return Design(Drive(times, values), current, state, None)
+    ends, base = periods(rig, end_s), baseline_C(icon, rig)
+    target = target_at(icon, base, ends)
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    period = 1.0 / rig.driver.update_Hz
+    currents, reached, why = run_follow(
+        bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
+    )
+    outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
+    plan = Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
+    return plan if rig.controller is None else close_loop(rig, plan, icon, target)
+
+
+def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
+    """Return the designs of many cues on one rig, each with its verdict, found side by side on all cores.
+
+    As `design`, but cues share `end_s`. Cues that prescribe current, and rigs with a loop of their own, go one by one.
+
+    >>> from thermicon.icons import load_library
+    >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
+    [True, True, True, True, True, True]
+    """
+    together = [icon for icon in icons if icon.frame.control != "current" and rig.controller is None]
+    found: dict[int, Design] = {}
+    bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
+    for control in ("skin", "display"):
+        cues = [icon for icon in together if icon.frame.control == control]
+        if not cues:
+            continue
+        bases = [baseline_C(icon, rig) for icon in cues]
+        rest = {base: hold(rig, control, base) for base in set(bases)}
+        targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
+        lanes = np.arange(len(cues), dtype=np.int64)
+        states = bank.states([rest[base][1] for base in bases])
+        results = run_follow(bank, np.zeros_like(lanes), lanes, period, targets, control == "skin", states)
+        for icon, base, target, currents, reached, why in zip(cues, bases, targets, *results, strict=True):
+            outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
+            drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
+            found[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
+    return tuple(found.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
+
+
+def gains_of(rig: Rig) -> tuple[float, float, float, float]:
+    """Thermistor lag s and gains A/K, A/(K·s), A·s/K of a rig's own loop."""
+    pid = rig.controller
+    assert pid is not None
+    return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K
+
+
+def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
+    """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
+
+    The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
+    the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
+    """
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    period, control, base = 1.0 / rig.driver.update_Hz, icon.frame.control, baseline_C(icon, rig)
+    setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
+    gains = np.array([gains_of(rig)])
+    currents, reached, why = run_regulate(
+        bank, one, one, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
+    )
+    drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
+    loop = Design(drive, plan.rest_A, plan.start_C, None)
+    controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
+    outcome = judge(target, controlled, period, _limits(why[0], period), steps_at(icon, base))
+    return replace(loop, outcome=outcome)
+
+
+def _along(rig: Rig, plan: Design, probe: str) -> Array:
+    """A probe at the beginning of every driver period of a design, and at its end."""
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    intervals = cut(plan.drive.time_s, plan.drive.time_s, plan.drive.current_A[np.newaxis], held=True)
+    return np.asarray(run_forward(bank, one, one, intervals, bank.states([plan.start_C]), (probe,))[0, 0])
+
+
+def _limits(why: Index, period: float) -> tuple[tuple[str, float], ...]:
+    met = ((LIMITS[int(code)], float(np.argmax(why == code)) * period) for code in np.unique(why) if code)
+    return tuple(sorted(met, key=lambda limit: limit[1]))

@@ -1,0 +1,249 @@
+"""The stepping of `kernel` for many lanes at once: blocks of LANES runs side by side in the processor's vectors.
+
+The arithmetic is that of `kernel`; the innermost loops run over lanes, and a block shares its step lengths.
+"""
+
+# mypy: disable-error-code="no-untyped-def,misc"
+# numba infers the types here, and its decorators have none.
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.solver.kernel import (
+    JUMP_A,
+    LONGEST_STEP_S,
+    SHORTEST_STEP_S,
+    compiled,
+    regulate_sink,
+    settle,
+    wanted,
+)
+
+LANES = 32
+"""Runs in a block: enough to fill the vectors, few enough for the first-level cache."""
+
+THIRD = 1.0 / 3.0
+
+
+@compiled
+def factor(n, half, cap, g, perf, deep, m):
+    """Eliminate the skin for an implicit step of length `half`; arrays (lumps, lane), `m` as `sweep` reads it."""
+    keep, gain, inv, elim = m[0], m[1], m[2], m[3]
+    for lane in range(LANES):
+        inv[n, lane] = 0.0
+        elim[n, lane] = 0.0
+    for i in range(n - 1, -1, -1):
+        for lane in range(LANES):
+            below = g[i + 1, lane] * elim[i + 1, lane]
+            inverse = 1.0 / (cap[i, lane] / half + g[i, lane] + g[i + 1, lane] + perf[i, lane] - below)
+            elim[i, lane] = g[i, lane] * inverse
+            inv[i, lane] = g[i + 1, lane] * inverse
+            keep[i, lane] = cap[i, lane] / half * inverse
+            gain[i, lane] = perf[i, lane] * deep[lane] * inverse
+
+
+@compiled
+def sweep(n, keep, gain, inv, x, z):
+    """Fill z (lumps + 1, lane): a lump after the implicit step is z + elim · (the state above it)."""
+    for i in range(n - 1, -1, -1):
+        for lane in range(LANES):
+            z[i, lane] = keep[i, lane] * x[i + 2, lane] + gain[i, lane] + inv[i, lane] * z[i + 1, lane]
+
+
+@compiled
+def foresee(n, m, weight, constant):
+    """`kernel.foresee` for a block: weight (lumps, lane), constant (lane,)."""
+    for lane in range(LANES):
+        product, total = 1.0, 0.0
+        for i in range(n):
+            weight[i, lane] = product * m[0, i, lane]
+            total += product * m[1, i, lane]
+            product *= m[2, i, lane]
+        constant[lane] = total
+
+
+@compiled
+def weighed(n, weight, constant, x, z0):
+    """Fill z0 (lane,) with constant + Σ weight · lump."""
+    for lane in range(LANES):
+        z0[lane] = constant[lane]
+    for i in range(n):
+        for lane in range(LANES):
+            z0[lane] += weight[i, lane] * x[i + 2, lane]
+
+
+@compiled
+def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
+    """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state from the hot plate to the deep node.
+
+    `p` (parameter, lane) and `rig` (lane, parameter) are Network.plates twice; `sink` (lane, 5) is each lane's heat
+    sink as in `kernel.settle`, and its share in an implicit step.
+    """
+    half = 0.5 * step
+    sweep(n, m[0], m[1], m[2], x, z)
+    elim = m[3]
+    for lane in range(LANES):
+        if p[11, lane] > 0.0:
+            regulate_sink(step, rig[lane], sink[lane])
+            sink[lane, 4] = p[6, lane] / (p[11, lane] / half + p[6, lane])
+    for lane in range(LANES):
+        hot0, cold0 = x[0, lane], x[1, lane]
+        pump, joule = p[0, lane] * current[lane], 0.5 * p[1, lane] * squared[lane]
+        hot_store, cold_store = p[3, lane] / half, p[4, lane] / half
+        share = sink[lane, 4]
+        out = p[6, lane] * (1.0 - share)
+        a11 = hot_store + out + p[2, lane] - pump
+        a22 = cold_store + p[2, lane] + pump + g0[lane] * (1.0 - elim[0, lane])
+        b1 = hot_store * hot0 + out * sink[lane, 0] + share * sink[lane, 2] + pump * ZERO_C_IN_K + joule
+        b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0[lane] * z[0, lane]
+        determinant = 1.0 / (a11 * a22 - p[2, lane] * p[2, lane])
+        hot, cold = (b1 * a22 + p[2, lane] * b2) * determinant, (a11 * b2 + p[2, lane] * b1) * determinant
+        x[0, lane], x[1, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
+        sink[lane, 0] += 2.0 * share * (sink[lane, 2] / p[6, lane] + hot - sink[lane, 0])
+        above[lane] = cold
+    for i in range(n):
+        for lane in range(LANES):
+            value = z[i, lane] + elim[i, lane] * above[lane]
+            above[lane] = value
+            x[i + 2, lane] = 2.0 * value - x[i + 2, lane]
+
+
+@compiled
+def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink):
+    """Load a block's rigs and states side by side; returns the most lumps. Short columns are padded at the deep end.
+
+    The deep node joins the perfusion of the last lump (both are at one temperature), so padding is cut off by g = 0.
+    """
+    n = 0
+    for lane in range(LANES):
+        n = max(n, count[rig_of[block[lane]]])
+    for lane in range(LANES):
+        r = rig_of[block[lane]]
+        own = count[r]
+        for k in range(p.shape[0]):
+            p[k, lane] = rig[lane, k] = bank_plates[r, k]
+        x[0, lane], x[1, lane], x[n + 2, lane] = state[block[lane], 0], state[block[lane], 1], bank_plates[r, 7]
+        settle(x[0, lane], rig[lane], sink[lane])
+        sink[lane, 4] = 0.0
+        for i in range(n + 1):
+            inside = i < own
+            cap[i, lane] = bank_cap[r, i] if inside else 1.0
+            perf[i, lane] = bank_perf[r, i] if inside else 1.0
+            g[i, lane] = bank_g[r, i] if inside else 0.0
+            x[i + 2, lane] = state[block[lane], i + 2] if inside else bank_plates[r, 7]
+        perf[own - 1, lane] += bank_g[r, own]
+    return n
+
+
+@compiled
+def forward(
+    blocks, rig_of, cue_of, edges, start_A, end_A, row_of, count, bank_plates, bank_cap, bank_g, bank_perf, places,
+    weights, state, out,
+):  # fmt: skip
+    """`kernel.forward` for blocks (blocks, LANES) of lanes; a lane may stand in for padding more than once."""
+    most = bank_cap.shape[1] + 1
+    cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
+    x, z, m = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
+    p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
+    sink = np.zeros((LANES, 5))
+    probes = places.shape[1]
+    at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
+    same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
+    current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    for b in range(blocks.shape[0]):
+        block = blocks[b]
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
+        for q in range(probes):
+            same[q] = True
+            for lane in range(LANES):
+                at[q, lane] = places[rig_of[block[lane]], q]
+                same[q] &= at[q, lane] == at[q, 0]
+                for j in range(3):  # a probe near the deep node has no third state: its weight is 0, its place any
+                    weight[q, j, lane] = weights[rig_of[block[lane]], q, j]
+        factored, since = -1.0, 0.0
+        for k in range(edges.size):
+            row = row_of[k]
+            if row >= 0:
+                for q in range(probes):
+                    i = at[q, 0]
+                    if same[q]:
+                        for lane in range(LANES):
+                            value[lane] = (
+                                weight[q, 0, lane] * x[i, lane]
+                                + weight[q, 1, lane] * x[i + 1, lane]
+                                + weight[q, 2, lane] * x[i + 2, lane]
+                            )
+                    else:
+                        for lane in range(LANES):
+                            i = at[q, lane]
+                            value[lane] = (
+                                weight[q, 0, lane] * x[i, lane]
+                                + weight[q, 1, lane] * x[i + 1, lane]
+                                + weight[q, 2, lane] * x[i + 2, lane]
+                            )
+                    for lane in range(LANES):
+                        out[q, block[lane], row] = value[lane]
+            if k == edges.size - 1:
+                break
+            if k > 0:
+                for lane in range(LANES):
+                    c = cue_of[block[lane]]
+                    if abs(start_A[k, c] - end_A[k - 1, c]) > JUMP_A:
+                        since = 0.0
+            length, done = edges[k + 1] - edges[k], 0.0
+            while done < length - 1e-12:
+                left = length - done
+                step = left / math.ceil(left / min(LONGEST_STEP_S, max(SHORTEST_STEP_S, 0.25 * since)) - 1e-9)
+                early, late = done / length, (done + step) / length
+                for lane in range(LANES):
+                    c = cue_of[block[lane]]
+                    first, rise = start_A[k, c], end_A[k, c] - start_A[k, c]
+                    a, e = first + rise * early, first + rise * late
+                    current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
+                if abs(step - factored) > 1e-12:
+                    factor(n, 0.5 * step, cap, g, perf, p[7], m)
+                    factored = step
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
+                done += step
+                since += step
+
+
+@compiled
+def follow(
+    blocks, rig_of, cue_of, period, target, skin_control, face_share, count, bank_plates, bank_cap, bank_g, bank_perf,
+    state, current_out, reached, why,
+):  # fmt: skip
+    """`kernel.follow` for blocks (blocks, LANES) of lanes."""
+    most = bank_cap.shape[1] + 1
+    cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
+    x, z, weight = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.empty((most, LANES))
+    m, mp = np.zeros((4, most, LANES)), np.zeros((4, most, LANES))
+    p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
+    sink, constant, z0 = np.zeros((LANES, 5)), np.empty(LANES), np.empty(LANES)
+    current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
+    pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
+    step = period / pieces
+    for b in range(blocks.shape[0]):
+        block = blocks[b]
+        n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
+        factor(n, 0.5 * step, cap, g, perf, p[7], m)
+        factor(n, period, cap, g, perf, p[7], mp)
+        foresee(n, mp, weight, constant)
+        for k in range(target.shape[1]):
+            weighed(n, weight, constant, x, z0)
+            for lane in range(LANES):
+                share, elim = face_share[rig_of[block[lane]]], mp[3, 0, lane]
+                amperes, code = wanted(
+                    target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
+                    x[0, lane], x[1, lane], sink[lane, 0], current[lane], rig[lane],
+                )  # fmt: skip
+                current[lane], squared[lane] = amperes, amperes * amperes
+                current_out[block[lane], k], why[block[lane], k] = amperes, code
+            for _ in range(pieces):
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
+            for lane in range(LANES):
+                share = face_share[rig_of[block[lane]]] if skin_control else 1.0
+                reached[block[lane], k] = share * x[1, lane] + (1.0 - share) * x[2, lane]

@@ -1,0 +1,173 @@
+"""The circuit as numbers: plates, skin lumps and probes of a rig, ready for stepping.
+
+State vector: hot plate, cold plate (the display), skin lumps from the surface down, deep node (constant), all in °C.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array, Column
+
+PROBES = (
+    "hot_plate_C",
+    "display_C",
+    "skin_C",
+    "cold_receptor_C",
+    "warm_receptor_C",
+    "heat_flow_skin_W_per_m2",
+    "heat_flow_cold_receptor_W_per_m2",
+    "heat_flow_warm_receptor_W_per_m2",
+)
+"""What every run records, in this order; each is a weighted sum of three neighbouring states."""
+
+Weights = tuple[int, tuple[float, float, float]]
+"""A reading: the first of three neighbouring states, and the weight of each."""
+
+HOT, COLD, SKIN = 0, 1, 2
+"""Places of hot plate, cold plate and first skin lump in the state vector."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Network:
+    """A rig as lumps; n skin lumps, arrays read-only.
+
+    `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
+    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for PROBES; `plates` (15,) for the kernel:
+    α, R, 1/Θ, hot and cold plate J/K, sink °C, 1/R_sink, deep °C, least and most current A, compliance voltage V,
+    then the heat sink's own controller: capacity J/K (0: ideal), W/K, W/(K·s), greatest power W.
+    """
+
+    capacity_J_per_K: Array
+    conductance_W_per_K: Array
+    perfusion_W_per_K: Array
+    probe_start: npt.NDArray[np.int64]
+    probe_weight: Array
+    plates: Array
+
+    def __post_init__(self) -> None:
+        for array in (self.capacity_J_per_K, self.conductance_W_per_K, self.perfusion_W_per_K):
+            array.setflags(write=False)
+        for other in (self.probe_start, self.probe_weight, self.plates):
+            other.setflags(write=False)
+
+    @property
+    def deep_C(self) -> float:
+        """Temperature of the deep node and of blood in °C."""
+        return float(self.plates[7])
+
+    @property
+    def face_share(self) -> float:
+        """Weight of the cold plate in the face temperature; the first lump has the rest."""
+        start, weight = int(self.probe_start[2]), self.probe_weight[2]
+        return float(weight[COLD - start]) if start <= COLD else 0.0
+
+    def read(self, state_C: Array, probe: str) -> float:
+        """Value of one of PROBES at a state (n + 3,) in °C."""
+        row = PROBES.index(probe)
+        start = int(self.probe_start[row])
+        return float(self.probe_weight[row] @ state_C[start : start + 3])
+
+
+@lru_cache(maxsize=512)
+def network_of(rig: Rig) -> Network:
+    """Return the lumps of a rig."""
+    return network_on(rig, rig.column, rig.deep_C)
+
+
+def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
+    """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
+    area = rig.contact.area_m2
+    resistance = column.resistance_m2K_per_W.copy()
+    resistance[0] += rig.contact.resistance_m2K_per_W
+    starts, weights = _probes(rig, resistance)
+    module, driver, own = rig.module, rig.driver, rig.heat_sink.controller
+    plates = np.array(
+        [
+            module.seebeck_V_per_K,
+            module.resistance_ohm,
+            1 / module.thermal_resistance_K_per_W,
+            module.hot_plate_J_per_K,
+            module.cold_plate_J_per_K,
+            rig.heat_sink.temperature_C,
+            1 / rig.heat_sink.resistance_K_per_W,
+            deep_C,
+            driver.current_min_A,
+            driver.current_max_A,
+            driver.voltage_limit_V,
+            *(
+                (0.0, 0.0, 0.0, 0.0)
+                if own is None
+                else (own.capacity_J_per_K, own.kp_W_per_K, own.ki_W_per_Ks, own.power_limit_W)
+            ),
+        ]
+    )
+    return Network(
+        column.capacity_J_per_m2K * area, area / resistance, column.perfusion_W_per_m2K * area, starts, weights, plates
+    )
+
+
+def _probes(rig: Rig, resistance: Array) -> tuple[npt.NDArray[np.int64], Array]:
+    """Weights of each probe on three neighbouring states; resistances from the cold plate down, m²·K/W."""
+    place = np.concatenate([[0.0], np.cumsum(resistance)])  # of cold plate, lumps, deep node
+    contact = rig.contact.resistance_m2K_per_W
+    rows = [(HOT, (1.0, 0.0, 0.0)), (COLD, (1.0, 0.0, 0.0)), temperature_weights(contact, place)]
+    depths = [
+        contact + rig.skin.resistance_to_m2K_per_W(depth)
+        for depth in (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)
+    ]
+    rows += [temperature_weights(depth, place) for depth in depths]
+    rows += [flow_weights(0.5 * place[1], place)]
+    rows += [flow_weights(depth, place) for depth in depths]
+    return stacked(rows)
+
+
+def places_of(rig: Rig) -> Array:
+    """Thermal resistance in m²·K/W from the cold plate down to itself, to every skin lump and to the deep node."""
+    resistance = rig.column.resistance_m2K_per_W.copy()
+    resistance[0] += rig.contact.resistance_m2K_per_W
+    return np.concatenate([[0.0], np.cumsum(resistance)])
+
+
+def stacked(rows: Sequence[Weights]) -> tuple[npt.NDArray[np.int64], Array]:
+    """Starts (k,) and weights (k, 3) of several readings, as the kernel takes them."""
+    return np.array([row[0] for row in rows], dtype=np.int64), np.array([row[1] for row in rows]).reshape(-1, 3)
+
+
+def _bracket(at: float, place: Array) -> tuple[int, bool]:
+    """Index of the state just above a place, and whether the place is that state itself."""
+    same = np.flatnonzero(np.abs(place - at) < 1e-9 * place[-1])
+    if same.size:
+        return int(same[0]), True
+    return int(np.searchsorted(place, at)) - 1, False
+
+
+def temperature_weights(at: float, place: Array) -> Weights:
+    """Reading of the temperature at a thermal resistance below the cold plate, linear between states."""
+    above, same = _bracket(at, place)
+    share = 0.0 if same else float((at - place[above]) / (place[above + 1] - place[above]))
+    start = min(above + COLD, len(place) - 2)
+    weight = [0.0, 0.0, 0.0]
+    weight[above + COLD - start] += 1.0 - share
+    if share:
+        weight[above + COLD - start + 1] += share
+    return start, (weight[0], weight[1], weight[2])
+
+
+def flow_weights(at: float, place: Array) -> Weights:
+    """Reading of the heat flow in W/m² there: at a lump the mean of its two faces, between lumps the face's."""
+    above, same = _bracket(at, place)
+    if same and 0 < above < len(place) - 1:  # at a lump: the mean of the flows through its two faces
+        into, out = 0.5 / (place[above] - place[above - 1]), 0.5 / (place[above + 1] - place[above])
+        return above - 1 + COLD, (float(into), float(out - into), float(-out))
+    above = min(above, len(place) - 2)  # at the deep node, what leaves the last lump
+    through = float(1.0 / (place[above + 1] - place[above]))
+    if above + COLD + 2 > len(place):
+        return above + COLD - 1, (0.0, through, -through)
+    return above + COLD, (through, -through, 0.0)

@@ -1,0 +1,113 @@
+"""Probes: what a thermistor at a place reads while a cue plays. A probe is recorded beside the trace's own columns.
+
+`display`: the cold plate, under an insulating layer. `interface`: halfway through the contact resistance. `skin`: the
+tissue at a depth, linear in thermal resistance between lumps. `insulated skin`: see `insulated` beside this.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermicon.circuit.rig.parts import Probe
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.batch_inputs import Index
+from thermicon.circuit.solver.insulated import insulated_C
+from thermicon.circuit.solver.network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
+
+SLOWEST_ROWS_S = 0.01
+"""What has a memory of its own, a lag or a second column, is stepped at least this finely, whatever the rows."""
+
+MOST_VALUES = 200_000_000
+
+
+def between(rows_s: Array, rig: Rig) -> int:
+    """Into how many parts the rows of a run are divided, so that no probe with a memory steps over 10 ms.
+
+    >>> between(np.array([0.0, 0.025]), Rig.load("thenar").with_(probe=[{"name": "a", "place": "skin", "lag_s": 1.0}]))
+    3
+    """
+    if not any(probe.lag_s or probe.place == "insulated skin" for probe in rig.probes):
+        return 1
+    parts = max(1, math.ceil(float(np.diff(rows_s).max(initial=0.0)) / SLOWEST_ROWS_S - 1e-9))
+    values = len(rows_s) * parts * (len(rig.probes) + (len(rig.column.depth_m) if _second(rig) else 0))
+    if values > MOST_VALUES:
+        raise RigError(
+            f"rig {rig.name}: its probes need {values:.2g} values over {rows_s[-1]:g} s; the limit is "
+            f"{MOST_VALUES:.2g}: shorten the run, lower the rate or remove probes"
+        )
+    return parts
+
+
+def divided(rows_s: Array, parts: int) -> Array:
+    """Times in s with every gap between rows in equal parts; every `parts`-th is a row.
+
+    >>> divided(np.array([0.0, 1.0, 3.0]), 2)
+    array([0. , 0.5, 1. , 2. , 3. ])
+    """
+    if parts == 1:
+        return rows_s
+    inside = rows_s[:-1, np.newaxis] + np.diff(rows_s)[:, np.newaxis] * (np.arange(parts) / parts)
+    return np.append(inside.ravel(), rows_s[-1])
+
+
+def _second(rig: Rig) -> bool:
+    return any(probe.place == "insulated skin" for probe in rig.probes)
+
+
+def lump_rows(rig: Rig) -> list[Weights]:
+    """Readings of every skin lump, face first."""
+    count = len(rig.column.depth_m)
+    return [
+        (start, (1.0, 0.0, 0.0) if start == SKIN + i else (0.0, 1.0, 0.0))
+        for i in range(count)
+        for start in [min(SKIN + i, count)]
+    ]
+
+
+def readings_of(rig: Rig) -> tuple[Index, Array] | None:
+    """Return what a run has to record for a rig's probes: one reading each, then all lumps where they are needed."""
+    if not rig.probes:
+        return None
+    place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
+    rows = []
+    for probe in rig.probes:
+        if probe.place == "interface":
+            rows.append(temperature_weights(0.5 * contact, place))
+        elif probe.place == "skin":
+            rows.append(temperature_weights(contact + rig.skin.resistance_to_m2K_per_W(probe.depth_m), place))
+        else:
+            rows.append((COLD, (1.0, 0.0, 0.0)))
+    return stacked(rows + (lump_rows(rig) if _second(rig) else []))
+
+
+def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None) -> tuple[Index, Array] | None:
+    """Return both sets of readings as one, or None."""
+    if first is None or second is None:
+        return first or second
+    return np.concatenate([first[0], second[0]]), np.concatenate([first[1], second[1]])
+
+
+def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[str, Array], ...]:
+    """Return (name, °C) of every probe at every `parts`-th time, from what `readings_of` asked (k, times)."""
+    lumps = recorded[len(rig.probes) :]
+    found = []
+    for probe, read in zip(rig.probes, recorded, strict=False):
+        value = np.ascontiguousarray(read)
+        if probe.place == "insulated skin":
+            value = insulated_C(rig, probe, time_s, value, lumps)
+        found.append((probe.name, _lagged(probe, time_s, value)[::parts].copy()))
+    return tuple(found)
+
+
+def _lagged(probe: Probe, time_s: Array, value: Array) -> Array:
+    if not probe.lag_s:
+        return value
+    from thermicon.circuit.solver import kernel_probes
+
+    out = np.empty_like(value)
+    kernel_probes.lagged(time_s, value, probe.lag_s, out)
+    return out

@@ -1,0 +1,72 @@
+"""A bridge that switches the module: full current or none, and what that costs.
+
+At duty D and current Ip the module pumps α·T·D·Ip, but its resistance heats with D·Ip², where a steady current of the
+same mean heats with (D·Ip)². A slow cycle also ripples the plate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import steady_state
+
+RESISTANCE = 1
+"""Place of the module's resistance among `Network.plates`."""
+
+
+def duty_of(rule: str, current_A: Array, peak_A: float, module: Peltier, cold_C: Array) -> Array:
+    """Return signed duties (n,) that stand for currents (n,) in A, with the cold plate at temperatures (n,) in °C.
+
+    `mean current` keeps the mean, I/Ip. `equal heat` takes as much heat from the cold plate as the steady current does;
+    where the bridge's own current is past the greatest cooling, there is no such duty, and the mean is kept.
+
+    >>> module = Peltier(0.0521, 6.35, 6.56, 2.6, 2.6)
+    >>> duty_of("mean current", np.array([0.95]), 1.9, module, np.array([27.0])).round(3)
+    array([0.5])
+    >>> duty_of("equal heat", np.array([0.95]), 1.9, module, np.array([27.0])).round(3)
+    array([0.657])
+    """
+    size, sign = np.abs(current_A), np.sign(current_A)
+    if rule == "mean current":
+        return np.asarray(sign * np.minimum(size / peak_A, 1.0))
+    pumped = module.seebeck_V_per_K * (cold_C + ZERO_C_IN_K)
+    joule = 0.5 * module.resistance_ohm * sign
+    per_duty = pumped * peak_A - joule * peak_A**2
+    heat = pumped * size - joule * size**2
+    duty = np.where(per_duty > 0, heat / np.where(per_duty > 0, per_duty, 1.0), size / peak_A)
+    return np.asarray(sign * np.clip(duty, 0.0, 1.0))
+
+
+def switched(duty: Array, rate_Hz: float, carrier_Hz: float, peak_A: float) -> Drive:
+    """Return the current of a bridge that holds duties (n + 1,) for one update each, the last for none.
+
+    Every cycle begins with the on-time.
+    """
+    cycles = round(carrier_Hz / rate_Hz)
+    share = np.repeat(duty[:-1], cycles)
+    begin = np.arange(len(share)) / (cycles * rate_Hz)
+    times = np.stack([begin, begin + np.abs(share) / (cycles * rate_Hz)], axis=1)
+    currents = np.stack([np.sign(share) * peak_A, np.zeros(len(share))], axis=1)
+    kept = np.stack([share != 0, np.abs(share) < 1], axis=1)
+    end = (len(duty) - 1) / rate_Hz
+    return Drive(np.append(times[kept], end), np.append(currents[kept], duty[-1] * peak_A), held=True)
+
+
+def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
+    """Return the state in °C to which a duty held for ever leads, but for the ripple.
+
+    The mean current is D·Ip and the mean of its square 1/D times the square of that, as if the resistance were R/D.
+    """
+    network = network_of(rig)
+    if duty == 0:
+        return steady_state(network, 0.0)
+    plates = network.plates.copy()
+    plates[RESISTANCE] /= abs(duty)
+    return steady_state(replace(network, plates=plates), duty * peak_A)

@@ -1,0 +1,212 @@
+"""The circuit run: a cue or a drive on a rig gives a Trace."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.inverse import baseline_C, design, design_many, target_at
+from thermicon.circuit.solver.network import PROBES, network_of
+from thermicon.circuit.solver.probes import between, divided, joined, readings_of, sensed
+from thermicon.circuit.solver.steady import check_sink, hold, steady_state
+from thermicon.circuit.solver.trace import Outcome, Trace
+from thermicon.icons import Icon
+
+MOST_ROWS = 20_000_000
+HOTTEST_C = 1000.0
+"""Above this a run is not of skin and solder any more, but of a wrong number."""
+
+
+def rows_until(end_s: float, rate_Hz: float) -> Array:
+    """Times in s of the rows of a run: a whole number of them a second, and the end.
+
+    >>> rows_until(0.25, 10)
+    array([0.  , 0.1 , 0.2 , 0.25])
+    """
+    if not (0 < rate_Hz < np.inf):
+        raise RigError(f"a rate of {rate_Hz:g} Hz is not possible; it must be above 0")
+    if end_s * rate_Hz > MOST_ROWS:
+        raise RigError(
+            f"{end_s:g} s at {rate_Hz:g} Hz are {end_s * rate_Hz:.0f} rows; the limit is {MOST_ROWS}: lower the rate"
+        )
+    rows = np.arange(int(end_s * rate_Hz + 1e-9) + 1) / rate_Hz
+    return rows if end_s - rows[-1] < 1e-9 else np.append(rows, end_s)
+
+
+def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
+    """Play a cue on a rig: find the current that makes it, then run the circuit with that current.
+
+    The trace has `rate_Hz` rows a second and ends `tail_s` seconds after the cue's last corner. Its `outcome` says
+    whether the target was reached. Raises RigError when no current holds the baseline.
+
+    >>> from thermicon.icons import load_library
+    >>> step = load_library("six-icons")["cooling-step"]
+    >>> simulate(step, Rig.load("thenar"))
+    Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
+    """
+    return _play(icon, rig, rate_Hz, tail_s, None)[0]
+
+
+def duration_s(icon: Icon, rig: Rig) -> float:
+    """Time in s from a cue's start to its last corner; under current control it hangs on the rig's holding current."""
+    if icon.frame.control == "current":
+        return float(icon.lower(hold(rig, "display", baseline_C(icon, rig))[0]).duration_s)
+    return float(icon.lower(baseline_C(icon, rig)).duration_s)
+
+
+def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
+    """Play every cue of a set on one rig until `end_s`: what `simulate` gives, side by side where that is quicker.
+
+    >>> from thermicon.icons import load_library
+    >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
+    6
+    """
+    alike = not rig.probes and rig.controller is None and all(icon.frame.control != "current" for icon in icons)
+    if not alike or len(icons) < FEWEST:
+        tails = [end_s - duration_s(icon, rig) for icon in icons]
+        return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
+    plans, rows, bank = design_many(icons, rig, end_s), rows_until(end_s, rate_Hz), bank_of(rig)
+    lanes = np.arange(len(icons), dtype=np.int64)
+    intervals = cut(rows, plans[0].drive.time_s, np.array([plan.drive.current_A for plan in plans]), held=True)
+    states = bank.states([plan.start_C for plan in plans])
+    recorded = run_forward(bank, np.zeros_like(lanes), lanes, intervals, states)
+    return tuple(
+        _trace(rig, plan.drive, rows, icon.name, _target(icon, rig, rows), icon.frame.control, plan.outcome,
+               recorded[:, lane], ())
+        for lane, (icon, plan) in enumerate(zip(icons, plans, strict=True))
+    )  # fmt: skip
+
+
+def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
+    if icon.frame.control == "current":
+        return np.full(len(rows), np.nan)
+    return target_at(icon, baseline_C(icon, rig), rows)
+
+
+def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C: Array | None = None) -> Trace:
+    """Run the circuit with a given drive, from the steady state of its first current to its last row.
+
+    `start_C` begins with another state, °C. The driver's limits only warn. Raises RigError when the first current has
+    no steady state.
+    """
+    return _replay(drive, rig, rate_Hz, None, start_C)[0]
+
+
+def watch(
+    cue: Icon | Drive, rig: Rig, readings: tuple[Index, Array], *, rate_Hz: float = 100.0, tail_s: float = 0.0
+) -> tuple[Trace, Array]:
+    """Play a cue or a drive, and return its trace with further readings (k, rows) of the state: starts and weights."""
+    if isinstance(cue, Icon):
+        return _play(cue, rig, rate_Hz, tail_s, readings)
+    return _replay(cue, rig, rate_Hz, readings)
+
+
+def _play(
+    icon: Icon, rig: Rig, rate_Hz: float, tail_s: float, readings: tuple[Index, Array] | None
+) -> tuple[Trace, Array]:
+    if not (0 <= tail_s < np.inf):
+        raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
+    if tail_s * rate_Hz > MOST_ROWS:
+        raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
+    end = duration_s(icon, rig) + tail_s
+    plan, rows = design(icon, rig, end), rows_until(end, rate_Hz)
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.frame.control,
+                plan.outcome, readings)  # fmt: skip
+
+
+def _replay(
+    drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array] | None, start_C: Array | None = None
+) -> tuple[Trace, Array]:
+    first = float(drive.current_A[0])
+    try:
+        state = steady_state(network_of(rig), first) if start_C is None else start_C
+    except ArithmeticError as problem:
+        raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
+    check_sink(rig, state)
+    rows = rows_until(float(drive.time_s[-1]), rate_Hz)
+    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None, readings)
+
+
+def _run(
+    rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
+    outcome: Outcome | None, readings: tuple[Index, Array] | None,
+) -> tuple[Trace, Array]:  # fmt: skip
+    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    parts = between(rows, rig)
+    fine = divided(rows, parts)
+    intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
+    own = readings_of(rig)
+    recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
+    probes, others = recorded[: len(PROBES), ::parts], recorded[len(PROBES) :]
+    listed = 0 if own is None else len(own[0])
+    trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
+    return trace, others[listed:, ::parts]
+
+
+def _trace(
+    rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
+    probes: Array, own: tuple[tuple[str, Array], ...],
+) -> Trace:  # fmt: skip
+    """The trace of recorded PROBES (probes, rows); RigError where they are not physical."""
+    temperatures = probes[: PROBES.index("heat_flow_skin_W_per_m2")]
+    possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
+    if not possible.all():
+        at = int(np.argmin(possible))
+        where = PROBES[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
+        raise RigError(
+            f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
+            f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
+        )
+    current = drive.at(rows)
+    values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
+    voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
+    limits = (rig.driver.current_min_A, rig.driver.current_max_A)
+    return Trace(
+        icon=icon,
+        rig_name=rig.name,
+        site=rig.site,
+        area_m2=rig.contact.area_m2,
+        driver_limits_A=limits,
+        control=control,
+        outcome=outcome,
+        warnings=rig.warnings,
+        beyond=_beyond(rig, rows, current, voltage) if outcome is None else (),
+        time_s=rows,
+        current_A=current,
+        voltage_V=voltage,
+        target_C=target,
+        probes=own,
+        limits=rig.limits,
+        **values,
+    )
+
+
+def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
+    return module.seebeck_V_per_K * (hot - cold) + current * module.resistance_ohm
+
+
+def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
+    """Sentences for a drive that asks more of the driver than it has."""
+    driver, found = rig.driver, []
+    asked = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    if asked.max() > 1e-9:
+        most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
+        found.append(
+            f"the drive asks for {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+            f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
+        )
+    needed = np.abs(voltage) - driver.voltage_limit_V
+    if needed.max() > 1e-6:
+        most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
+        found.append(
+            f"the drive needs {voltage[most]:.3g} V at {rows[most]:.2f} s; this driver gives at most "
+            f"{driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
+        )
+    return tuple(found)

@@ -1,0 +1,133 @@
+"""What can be told of a cue on a rig without simulating it, by closed form: levels, rates, a baseline that holds."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.inverse import baseline_C
+from thermicon.circuit.solver.network import COLD, HOT, network_of
+from thermicon.circuit.solver.steady import hold, holding_current_A, steady_state
+from thermicon.icons import Corners, Icon
+
+
+def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
+    """Return what makes a cue impossible on a rig, a sentence each; empty where nothing does.
+
+    Checked are the baseline, the lowest and highest level (each must be one that the rig can hold for ever) and, under
+    display control, each ramp against the steepest that the driver can begin from rest at the ramp's first level.
+    Whether a cue is reached in time is for `simulate` to say.
+
+    >>> from thermicon.icons import load_library
+    >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    ()
+    """
+    control = icon.frame.control
+    try:
+        start_A, _ = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
+    except RigError as problem:
+        return (f"icon {icon.name}: {problem}",)
+    driver, found = rig.driver, []
+    if control == "current":
+        corners = icon.lower(start_A)
+        for level in (corners.lowest, corners.highest):
+            if not driver.current_min_A <= level <= driver.current_max_A:
+                found.append(
+                    f"icon {icon.name}: {level:g} A is outside the driver's {driver.current_min_A:g} … "
+                    f"{driver.current_max_A:g} A; change the cue or driver.current_limit_A"
+                )
+        return tuple(found)
+    corners = icon.lower(baseline_C(icon, rig))
+    low, high = _holdable(rig, control)
+    for level in (corners.lowest, corners.highest):
+        if not low - 1e-9 <= level <= high + 1e-9:
+            found.append(
+                f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.1f} … {high:.1f} °C that "
+                f"rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
+            )
+    if control == "display" and not found:
+        found += _too_fast(icon, rig, corners)
+    return tuple(found)
+
+
+def _holdable(rig: Rig, control: str) -> tuple[float, float]:
+    """Lowest and highest level in °C that the rig can hold, within current and voltage."""
+    network, driver = network_of(rig), rig.driver
+    probe = "skin_C" if control == "skin" else "display_C"
+
+    def level(current: float) -> float:
+        return network.read(steady_state(network, current), probe)
+
+    def volts(current: float) -> float:
+        state = steady_state(network, current)
+        return rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
+
+    coldest = _coldest(level, min(driver.current_max_A, rig.module.seebeck_V_per_K * 320 / rig.module.resistance_ohm))
+    coldest = _within(coldest, lambda current: volts(current) <= driver.voltage_limit_V)
+    warmest = _within(
+        driver.current_min_A, lambda current: _exists(rig, current) and -volts(current) <= driver.voltage_limit_V
+    )
+    return level(coldest), level(warmest)
+
+
+def _coldest(level: Callable[[float], float], most: float) -> float:
+    """Current up to `most` of the lowest steady level, which has one minimum: golden section."""
+    low, high = 0.0, most
+    for _ in range(60):
+        a, b = high - 0.618034 * (high - low), low + 0.618034 * (high - low)
+        low, high = (low, b) if level(a) < level(b) else (a, high)
+    return most if level(most) <= level(high) else high
+
+
+def _exists(rig: Rig, current: float) -> bool:
+    try:
+        steady_state(network_of(rig), current)
+    except ArithmeticError:
+        return False
+    return True
+
+
+def _within(current: float, allowed: Callable[[float], bool]) -> float:
+    """The current nearest to the one given, towards 0, that is allowed."""
+    if allowed(current):
+        return current
+    good, bad = 0.0, current
+    for _ in range(60):
+        middle = 0.5 * (good + bad)
+        good, bad = (middle, bad) if allowed(middle) else (good, middle)
+    return good
+
+
+def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
+    """Sentences for the ramps that are steeper than the driver can begin them from rest at their first level."""
+    found = []
+    points = zip(corners.time_s, corners.value, strict=True)
+    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
+        if place in corners.steps:  # as fast as the driver can, whatever that is
+            continue
+        rate = (to - level) / (later - time)
+        limit = _steepest(rig, level, cooling=rate < 0)
+        if abs(rate) > limit:
+            found.append(
+                f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
+                f"is more than the {limit:.3g} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
+            )
+    return found
+
+
+def _steepest(rig: Rig, level_C: float, cooling: bool) -> float:
+    """Steepest fall or rise in K/s of a display at rest at a level, at the driver's limits."""
+    module, driver, network = rig.module, rig.driver, network_of(rig)
+    state = steady_state(network, holding_current_A(network, "display", level_C))
+    hot, cold = float(state[HOT]), float(state[COLD])
+    from_skin = float(network.conductance_W_per_K[0]) * float(state[COLD + 1] - state[COLD])
+    seebeck = module.seebeck_V_per_K * (hot - cold)
+    if cooling:
+        best = module.seebeck_V_per_K * (cold + ZERO_C_IN_K) / module.resistance_ohm
+        current = min(driver.current_max_A, best, (driver.voltage_limit_V - seebeck) / module.resistance_ohm)
+    else:
+        current = max(driver.current_min_A, (-driver.voltage_limit_V - seebeck) / module.resistance_ohm)
+    return abs(from_skin - module.heat_absorbed_W(current, cold, hot)) / module.cold_plate_J_per_K

@@ -1,0 +1,119 @@
+"""Steady states: the state under a current that never changes, and the current that holds a baseline."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.network import COLD, HOT, SKIN, Network, network_of
+from thermicon.circuit.solver.plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
+
+
+@lru_cache(maxsize=512)
+def _column(network: Network) -> tuple[Array, Array]:
+    """Return (z, e) with lump[i] = z[i] + e[i] · (the state above it) in steady state."""
+    g, perfusion, deep = network.conductance_W_per_K, network.perfusion_W_per_K, network.deep_C
+    n = len(perfusion)
+    z, e = np.empty(n), np.empty(n)
+    below_z, below_e = deep, 0.0
+    for i in range(n - 1, -1, -1):
+        diagonal = g[i] + g[i + 1] * (1.0 - below_e) + perfusion[i]
+        z[i] = (perfusion[i] * deep + g[i + 1] * below_z) / diagonal
+        e[i] = g[i] / diagonal
+        below_z, below_e = z[i], e[i]
+    return z, e
+
+
+def steady_state(network: Network, current_A: float) -> Array:
+    """Return the state (n + 3,) in °C that a current held for ever leads to.
+
+    Raises ArithmeticError when there is none (the module would heat without end).
+    """
+    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    z, e = _column(network)
+    skin = float(network.conductance_W_per_K[0])
+    zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
+    per_cold = leak / (out + leak - alpha * current_A)
+    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e[0])
+    if out + leak - alpha * current_A <= 0 or diagonal <= 0:
+        raise ArithmeticError(f"{current_A:g} A held for ever has no steady state on this rig: it heats without end")
+    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
+    return _fill(network, cold, zero + per_cold * cold, z, e)
+
+
+def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Array:
+    state = np.empty(len(z) + 3)
+    state[HOT], state[COLD], state[-1] = hot, cold, network.deep_C
+    for i in range(len(z)):
+        state[SKIN + i] = z[i] + e[i] * state[COLD + i]
+    return state
+
+
+def holding_current_A(network: Network, control: str, level_C: float) -> float:
+    """Return the current in A that holds `skin` or `display` at a level in °C for ever.
+
+    Where the module cannot cool that far, the result is the current of greatest cooling; its steady state tells.
+    """
+    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    z, e = _column(network)
+    cold = level_C
+    if control == "skin":
+        share = network.face_share  # the face lies between the cold plate and the first lump
+        offset, to_cold = (1.0 - share) * z[0], share + (1.0 - share) * e[0]
+        cold = (level_C - offset) / to_cold
+    heat = float(network.conductance_W_per_K[0]) * (z[0] + (e[0] - 1.0) * cold)
+    base, total = out * sink + leak * cold, out + leak
+    greatest = greatest_cooling_A(cold, base, total, alpha, ohm, leak)
+    return current_for_heat_A(heat, cold, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
+
+
+def check_sink(rig: Rig, state_C: Array) -> None:
+    """Raise RigError where a hot plate under its own control has not the power to rest at a state (n + 3,) in °C."""
+    sink, own = rig.heat_sink, rig.heat_sink.controller
+    if own is None:
+        return
+    power = (float(state_C[HOT]) - sink.temperature_C) / sink.resistance_K_per_W
+    if abs(power) > own.power_limit_W:
+        raise RigError(
+            f"rig {rig.name}: at rest the hot plate has {abs(power):.2f} W to {'remove' if power > 0 else 'add'}, its "
+            f"controller gives {own.power_limit_W:g} W; raise heat_sink.power_limit_W, or begin nearer to rest"
+        )
+
+
+def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
+    """Return (current A, state °C) that hold `skin` or `display` at a baseline; raises RigError when none can.
+
+    >>> current, state = hold(Rig.load("thenar"), "skin", 32.0)
+    >>> round(current, 2)
+    0.08
+    """
+    network = network_of(rig)
+    probe = "skin_C" if control == "skin" else "display_C"
+    what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
+    current = holding_current_A(network, control, level_C)
+    try:
+        state = steady_state(network, current)
+    except ArithmeticError as problem:
+        raise RigError(f"{what}: {problem}") from None
+    reached = network.read(state, probe)
+    driver = rig.driver
+    if not abs(reached - level_C) <= 1e-6:
+        raise RigError(f"{what}: the module cools it to {reached:.1f} °C at most; use a warmer baseline")
+    if not driver.current_min_A - 1e-12 <= current <= driver.current_max_A + 1e-12:
+        raise RigError(
+            f"{what}: it needs {current:.3f} A, the driver gives {driver.current_min_A:g} … "
+            f"{driver.current_max_A:g} A; choose a baseline nearer to rest or a wider current limit"
+        )
+    voltage = rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
+    if abs(voltage) > driver.voltage_limit_V:
+        raise RigError(
+            f"{what}: it needs {voltage:.2f} V, the driver gives at most {driver.voltage_limit_V:g} V; "
+            f"choose a baseline nearer to rest or a higher driver.voltage_limit_V"
+        )
+    check_sink(rig, state)
+    return float(current), state

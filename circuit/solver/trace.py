@@ -1,0 +1,193 @@
+"""A trace: what one run did, row by row, and whether it reached its target."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.network import PROBES
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *PROBES)
+"""Columns of a trace file, in order."""
+
+CLOSE_K = 0.1
+BRIEF_K = 0.25
+BRIEF_S = 0.2
+LAST_S = 2.0
+"""A cue is reached within 0.1 K, or within 0.25 K for at most 0.2 s: a corner in a skin ramp saturates any driver."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Whether the controlled temperature reached its target, judged at the end of every driver period.
+
+    Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits met with
+    the times in s at which each was first met. A step is as fast as the driver can make it: from its beginning until
+    it arrives nothing is missed. `slowest_step_s` is the longest that one took; None where the cue has no step.
+    `late_s` are the times of steps that had not arrived when the level moved on, or at the end.
+    """
+
+    reached: bool
+    largest_miss_K: float
+    largest_miss_s: float
+    rms_miss_K: float
+    limits: tuple[tuple[str, float], ...]
+    slowest_step_s: float | None = None
+    late_s: tuple[float, ...] = ()
+
+    @property
+    def reason(self) -> str | None:
+        """Why the target was missed, in one sentence; None where it was reached."""
+        if self.reached:
+            return None
+        held = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
+        late = f"; its step at {self.late_s[0]:.2f} s does not arrive in time" if self.late_s else ""
+        return (
+            f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s{late}"
+            f"{f', held back by the {held}' if held else ''}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
+
+    `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
+    `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` is about the rig,
+    `beyond` about what the drive asks of the driver that it cannot give. `limits` are the rig's limits of safety.
+    """
+
+    icon: str | None
+    rig_name: str
+    site: str
+    area_m2: float
+    driver_limits_A: tuple[float, float]
+    control: str
+    outcome: Outcome | None
+    warnings: tuple[str, ...]
+    beyond: tuple[str, ...]
+    time_s: Array
+    current_A: Array
+    voltage_V: Array
+    target_C: Array
+    hot_plate_C: Array
+    display_C: Array
+    skin_C: Array
+    cold_receptor_C: Array
+    warm_receptor_C: Array
+    heat_flow_skin_W_per_m2: Array
+    heat_flow_cold_receptor_W_per_m2: Array
+    heat_flow_warm_receptor_W_per_m2: Array
+    probes: tuple[tuple[str, Array], ...] = ()
+    limits: Limits | None = None
+
+    def __post_init__(self) -> None:
+        for name, array in (*((name, getattr(self, name)) for name in COLUMNS[1:]), *self.probes):
+            if array.shape != self.time_s.shape:
+                raise ValueError(f"trace: {name} has {array.shape} values for {self.time_s.shape} times")
+            array.setflags(write=False)
+
+    def __repr__(self) -> str:
+        said = "" if self.outcome is None or self.outcome.reached else ", target missed"
+        said += ", beyond the driver" if self.beyond else ""
+        return (
+            f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
+            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, "
+            f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A{said})"
+        )
+
+    def _repr_html_(self) -> str:
+        from thermicon.circuit.solver.draw import svg_of
+
+        return svg_of(self)
+
+    @property
+    def reachable(self) -> bool:
+        """Whether the rig can play it: the target was reached, or the given current stays within the driver."""
+        return not self.beyond if self.outcome is None else self.outcome.reached
+
+    @property
+    def reason(self) -> str | None:
+        """Why the rig cannot play it, in one sentence; None where it can."""
+        if self.outcome is not None:
+            return self.outcome.reason
+        return "; ".join(self.beyond) or None
+
+    def probe(self, name: str) -> Array:
+        """Temperature (rows,) in °C that a probe of the rig reads; raises KeyError with the probes there are."""
+        for other, values in self.probes:
+            if other == name:
+                return values
+        raise KeyError(f"no probe {name!r} in this trace; there is {', '.join(dict(self.probes)) or 'none'}")
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"icon": pd.Series([self.icon] * len(self.time_s), dtype="string")}
+        columns.update({name: getattr(self, name) for name in COLUMNS[1:]})
+        columns.update({f"probe_{name}_C": values for name, values in self.probes})
+        return pd.DataFrame(columns)
+
+    def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
+        """Draw target, display, skin and receptor temperatures against time, and probes if asked; returns the Axes."""
+        from thermicon.circuit.solver.draw import plot_temperatures
+
+        return plot_temperatures(self, ax, probes)
+
+
+def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
+    """Write traces one after the other as `.csv` or `.parquet`; NaN becomes an empty cell."""
+    import pandas as pd
+
+    frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
+    table = pd.concat(frames, ignore_index=True)
+    if str(path).endswith(".parquet"):
+        table.to_parquet(path, index=False)
+    else:
+        table.to_csv(path, index=False, float_format="%.9g")
+
+
+def judge(
+    target_C: Array,
+    reached_C: Array,
+    period_s: float,
+    limits: tuple[tuple[str, float], ...],
+    steps_s: tuple[tuple[float, float], ...] = (),
+) -> Outcome:
+    """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period.
+
+    `steps_s` are the times at which steps begin, and until when each must have arrived. One with less than 2 s left, at
+    the end of the run, is not held against the rig.
+    """
+    miss = reached_C - target_C
+    close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
+    ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []
+    for begin, until in steps_s:
+        window = np.flatnonzero((ends > begin + 1e-9) & (ends <= until + 1e-9))
+        arrived = window[close[window]]
+        asked[window[window < arrived[0]] if len(arrived) else window] = False
+        if len(arrived):
+            took = max(took, float(ends[arrived[0]]) - begin)
+        elif len(window) and (math.isfinite(until) or ends[-1] - begin >= LAST_S):
+            late.append(begin)
+            asked[window[-1]] = True
+    if not asked.any():
+        return Outcome(not late, 0.0, 0.0, 0.0, limits, took, tuple(late))
+    worst = int(np.argmax(np.where(asked, np.abs(miss), -1.0)))
+    over = asked & ~close
+    largest = float(miss[worst])
+    reached = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
+    rms = float(np.sqrt(np.mean(miss[asked] ** 2)))
+    slowest = took if steps_s else None
+    return Outcome(bool(reached and not late), largest, (worst + 1) * period_s, rms, limits, slowest, tuple(late))

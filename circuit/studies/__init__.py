@@ -1,0 +1,1 @@
+"""thermicon.circuit.studies: the source paper and the mesh, looked into."""

@@ -1,0 +1,253 @@
+"""How much a mesh of the skin matters: graded meshes and fixed elements held against a mesh-converged solution.
+
+Two comparisons are fair, and both are offered: every mesh played the same `current` (what a rig really shares), and
+every mesh led along the same controlled `temperature` with its own current (what a cue prescribes).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, fields, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Array, column_of
+from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.inverse import baseline_C, design, periods, target_at
+from thermicon.circuit.solver.network import Network, network_on
+from thermicon.circuit.solver.simulate import rows_until
+from thermicon.circuit.solver.steady import holding_current_A, steady_state
+from thermicon.icons import Icon
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+WAYS = ("current", "temperature")
+DEPTHS = ("cold_receptor_C", "warm_receptor_C")
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A way to cut skin into lumps: graded (cell at the surface m, growth per unit depth), or elements a layer."""
+
+    name: str
+    first_cell_m: float = FIRST_CELL_M
+    growth: float = CELL_GROWTH
+    elements: tuple[int, ...] | None = None
+
+    @property
+    def section(self) -> str:
+        """Section type and how depths between lumps are read."""
+        if self.elements is not None:
+            return "T-sections, lump in the middle of each element; depths linear in thermal resistance"
+        return "graded, lumps at the ends of cells; receptor depths are lumps"
+
+
+SHIPPED = Mesh("shipped")
+CONVERGED = Mesh("converged", 5e-6, 0.02)
+HALVED = Mesh("converged, halved", 2.5e-6, 0.01)
+
+
+def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
+    """The shipped mesh, coarser and finer ones, and fixed elements: one for the outer layers, a few for the rest."""
+    layers = len(rig.skin.layers)
+    outer = max(1, layers - 3)
+    fixed = [(1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20)]
+    own = rig.skin.elements
+    if own is not None and own not in fixed:
+        fixed.insert(0, own)
+    return (
+        SHIPPED,
+        Mesh("twice as coarse", 2 * FIRST_CELL_M, 2 * CELL_GROWTH),
+        Mesh("twice as fine", FIRST_CELL_M / 2, CELL_GROWTH / 2),
+        *(Mesh(" + ".join(map(str, elements)) + " elements", elements=elements) for elements in fixed),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MeshRow:
+    """Largest errors of one mesh in K, when they were in s, and in parts of the change so far at 0.5 s and 4 s."""
+
+    mesh: str
+    section: str
+    lumps: int
+    cold_error_K: float
+    cold_error_s: float
+    warm_error_K: float
+    warm_error_s: float
+    cold_part_at_half_s: float
+    warm_part_at_half_s: float
+    cold_part_at_4_s: float
+    warm_part_at_4_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class MeshStudy:
+    """Errors of m meshes at both receptor depths; `error_K` (m, 2, rows), `reference_C` (2, rows): cold, then warm.
+
+    `reference_error_K` is what halving the converged mesh still changes; `display_swing_K` what the display did.
+    """
+
+    rig_name: str
+    stimulus: str
+    way: str
+    meshes: tuple[Mesh, ...]
+    lumps: tuple[int, ...]
+    time_s: Array
+    reference_C: Array
+    error_K: Array
+    reference_error_K: float
+    display_swing_K: float
+
+    def __post_init__(self) -> None:
+        for array in (self.time_s, self.reference_C, self.error_K):
+            array.setflags(write=False)
+
+    def __repr__(self) -> str:
+        worst = np.abs(self.error_K[0]).max() * 1e3
+        return (
+            f"MeshStudy({self.stimulus} on {self.rig_name}, same {self.way}: {self.meshes[0].name} mesh within "
+            f"{worst:.1f} mK; reference within {self.reference_error_K * 1e3:.2f} mK)"
+        )
+
+    def part(self, mesh: int, at_s: float) -> tuple[float, float]:
+        """Error of the change from the start at a time in s, in parts of that change: at cold and at warm depth."""
+        row = int(np.searchsorted(self.time_s, at_s - 1e-9))
+        if row >= len(self.time_s):
+            return float("nan"), float("nan")
+        so_far = self.reference_C[:, row] - self.reference_C[:, 0]
+        wrong = np.abs(self.error_K[mesh, :, row] - self.error_K[mesh, :, 0])
+        parts = np.divide(wrong, np.abs(so_far), out=np.full(2, np.nan), where=np.abs(so_far) > 1e-6)
+        return float(parts[0]), float(parts[1])
+
+    def rows(self) -> tuple[MeshRow, ...]:
+        """One row for each mesh."""
+        found = []
+        for k, mesh in enumerate(self.meshes):
+            wrong = np.abs(self.error_K[k])
+            at = wrong.argmax(axis=1)
+            worst = [(float(wrong[d, at[d]]), float(self.time_s[at[d]])) for d in range(2)]
+            parts = (*self.part(k, 0.5), *self.part(k, 4.0))
+            found.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
+        return tuple(found)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the rows as a table, with stimulus and way."""
+        import pandas as pd
+
+        table = pd.DataFrame([astuple(row) for row in self.rows()], columns=[field.name for field in fields(MeshRow)])
+        table.insert(0, "same", self.way)
+        table.insert(0, "stimulus", self.stimulus)
+        return table
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the error of every mesh in mK against time, solid at cold, dashed at warm depth; returns the Axes."""
+        from thermicon.circuit.studies.studydraw import plot_mesh_study
+
+        return plot_mesh_study(self, ax)
+
+
+def mesh_study(
+    rig: Rig,
+    cue: Icon | Drive,
+    *,
+    way: str = "current",
+    meshes: Sequence[Mesh] | None = None,
+    rate_Hz: float = 1000.0,
+    tail_s: float = 0.0,
+) -> MeshStudy:
+    """Play a cue or a drive on a rig cut into several meshes and on a converged one.
+
+    With `way="current"` all get the current designed on the rig as it is; with `"temperature"` each follows the cue
+    with its own. Time steps are the rows, the same for all, and 1 ms by default, so that they do not matter. Raises
+    RigError for a way that does not exist, or a drive whose temperature nobody prescribed.
+
+    >>> from thermicon.icons import load_library
+    >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
+    MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.8 mK; reference within 0.11 mK)
+    """
+    if way not in WAYS:
+        raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")
+    prescribed = isinstance(cue, Icon) and cue.frame.control != "current"
+    if way == "temperature" and not prescribed:
+        raise RigError("a drive prescribes no temperature to follow; compare meshes with way='current'")
+    meshes = usual_meshes(rig) if meshes is None else tuple(meshes)
+    networks = [_network(rig, mesh) for mesh in (*meshes, CONVERGED, HALVED)]
+    plan = _Currents.of(rig, cue, tail_s)
+    rows = rows_until(plan.end_s, rate_Hz)
+    runs = []
+    for network in networks:
+        drive, state = plan.on(network) if way == "current" else _led(rig, cue, network, plan.end_s)
+        bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+        intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
+        runs.append(run_forward(bank, one, one, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
+    reference, display = runs[-2][:2], runs[-2][2]
+    return MeshStudy(
+        rig.name,
+        _name(cue),
+        way,
+        meshes,
+        tuple(len(network.capacity_J_per_K) for network in networks[:-2]),
+        rows,
+        reference,
+        np.array([run[:2] - reference for run in runs[:-2]]),
+        float(np.abs(runs[-1][:2] - reference).max()),
+        float(np.ptp(display)),
+    )
+
+
+def _name(cue: Icon | Drive) -> str:
+    if isinstance(cue, Drive):
+        return f"a drive of {cue.current_A.min():g} … {cue.current_A.max():g} A over {cue.time_s[-1]:g} s"
+    return f"{cue.name} ({cue.frame.control})"
+
+
+def _network(rig: Rig, mesh: Mesh) -> Network:
+    skin = replace(rig.skin, elements=mesh.elements)
+    column = column_of(skin, rig.column.blood_capacity_J_per_m3K, mesh.first_cell_m, mesh.growth)
+    deep = skin.deep_C
+    if deep is None:
+        loss = rig.ambient.film_W_per_m2K * (skin.rest_C - rig.ambient.temperature_C)
+        deep = skin.rest_C - column.steady_drop_K(-loss)
+    return network_on(rig, column, float(deep))
+
+
+@dataclass(frozen=True, slots=True)
+class _Currents:
+    """The current that all meshes are played; before it, `rest_A` was held for ever."""
+
+    drive: Drive
+    rest_A: float
+    end_s: float
+
+    @staticmethod
+    def of(rig: Rig, cue: Icon | Drive, tail_s: float) -> _Currents:
+        if isinstance(cue, Drive):
+            return _Currents(cue, float(cue.current_A[0]), float(cue.time_s[-1]))
+        start = baseline_C(cue, rig)
+        if cue.frame.control == "current":  # such a cue starts from the current that holds its baseline
+            start = design(cue, rig, 0.0).rest_A
+        end = float(cue.lower(start).duration_s) + tail_s
+        plan = design(cue, rig, end)
+        return _Currents(plan.drive, plan.rest_A, end)
+
+    def on(self, network: Network) -> tuple[Drive, Array]:
+        return self.drive, steady_state(network, self.rest_A)
+
+
+def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[Drive, Array]:
+    """The current that leads one mesh along a cue, and where it starts."""
+    assert isinstance(cue, Icon)
+    control, base, ends = cue.frame.control, baseline_C(cue, rig), periods(rig, end_s)
+    state = steady_state(network, holding_current_A(network, control, base))
+    bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+    target = target_at(cue, base, ends)[np.newaxis]
+    currents, _, _ = run_follow(
+        bank, one, one, 1.0 / rig.driver.update_Hz, target, control == "skin", bank.states([state])
+    )
+    return Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), state

@@ -1,0 +1,242 @@
+"""The source paper's results beside ours: Shani & Lineykin 2021, Figs. 3 to 6 and what its discussion says.
+
+Every function plays the paper's cooling step (6 °C at 3 °C/s, 4 s held, back) on a rig, `shani2021` unless another is
+given, and returns data with a `plot`. The paper's own curves are not reproduced: they are not available in numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.depths import Likeness, probe_depths, resembles
+from thermicon.circuit.solver.simulate import simulate
+from thermicon.circuit.solver.trace import Trace
+from thermicon.icons import Icon, load_library
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+TAIL_S = 4.0
+THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
+
+
+@cache
+def printed() -> Table:
+    """Numbers that the paper's text gives, each with its place."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "source-paper.toml")
+
+
+def cooling_step(control: str) -> Icon:
+    """Return the paper's cue, prescribed on the `skin` as in the paper or on the `display` as in the older experiment.
+
+    >>> cooling_step("skin").frame.control
+    'skin'
+    """
+    return load_library("cooling-step-skin" if control == "skin" else "six-icons")["cooling-step"]
+
+
+def _rig(rig: Rig | None) -> Rig:
+    return Rig.load("shani2021") if rig is None else rig
+
+
+def distortion(trace: Trace, of_C: Array) -> float:
+    """How far a course is from any trapezoid of the cue's timing: rms misfit in parts of its own step.
+
+    The cue's target, shifted and scaled to fit best, is the trapezoid; 0 is a perfect one.
+    """
+    shape = (trace.target_C - trace.target_C[0]) / np.ptp(trace.target_C)
+    columns = np.stack([np.ones_like(shape), shape], axis=1)
+    fitted = np.linalg.lstsq(columns, of_C, rcond=None)[0]
+    return float(np.sqrt(np.mean((columns @ fitted - of_C) ** 2)) / abs(fitted[1]))
+
+
+@dataclass(frozen=True, slots=True)
+class ControlledCue:
+    """The cue twice, as in Figs. 3 and 4: prescribed on the skin, and prescribed on the display."""
+
+    skin: Trace
+    display: Trace
+
+    @property
+    def distortions(self) -> dict[str, tuple[float, float]]:
+        """Distortion of (skin, display) under each control, in parts of the step."""
+        traces = {"skin": self.skin, "display": self.display}
+        return {
+            name: (distortion(trace, trace.skin_C), distortion(trace, trace.display_C))
+            for name, trace in traces.items()
+        }
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{name} control: {_said(trace)}" for name, trace in _both(self))
+        return f"ControlledCue({self.skin.rig_name}; {said})"
+
+    def plot(self, ax: Axes | None = None, control: str = "skin") -> Axes:
+        """Draw target, display and skin under `skin` or `display` control; returns the Axes."""
+        from thermicon.circuit.studies.studydraw import plot_controlled
+
+        return plot_controlled(self.skin if control == "skin" else self.display, ax)
+
+
+def _both(cue: ControlledCue) -> tuple[tuple[str, Trace], tuple[str, Trace]]:
+    return ("skin", cue.skin), ("display", cue.display)
+
+
+def _said(trace: Trace) -> str:
+    assert trace.outcome is not None
+    reached = "reached" if trace.outcome.reached else "missed"
+    return f"{reached}, {abs(trace.outcome.largest_miss_K):.2g} K off at most"
+
+
+def controlled_cue(rig: Rig | None = None) -> ControlledCue:
+    """Play the cue under both controls (Figs. 3 and 4).
+
+    >>> controlled_cue()
+    ControlledCue(shani2021; skin control: missed, 0.73 K off at most, display control: reached, ... K off at most)
+    """
+    rig = _rig(rig)
+    return ControlledCue(
+        simulate(cooling_step("skin"), rig, tail_s=TAIL_S), simulate(cooling_step("display"), rig, tail_s=TAIL_S)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Thermistors:
+    """The three thermistors of Figs. 5 and 6 as probes of one trace, and the depth that the third resembles."""
+
+    trace: Trace
+    likeness: Likeness
+    depth_C: Array
+    lateral_m: float
+
+    def __repr__(self) -> str:
+        changes = (f"#{name} {_change(self.trace.probe(name)):.2f} K" for name, _ in THERMISTORS)
+        return f"Thermistors({self.trace.rig_name}; {', '.join(changes)}; {self.likeness!r})"
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the change of all three, and of the depth that the third resembles; returns the Axes."""
+        from thermicon.circuit.studies.studydraw import plot_thermistors
+
+        return plot_thermistors(self, ax)
+
+
+def _change(values: Array) -> float:
+    """Largest change from the start, with its sign."""
+    away = values - values[0]
+    return float(away[np.argmax(np.abs(away))])
+
+
+def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, control: str = "skin") -> Thermistors:
+    """Put the paper's three thermistors on a rig and play the cue (Figs. 5 and 6).
+
+    `lateral_m` is both the distance of the insulated patch to skin in contact and its width; None takes the assumed
+    ones. The paper gives neither, nor the thermistors' lag: here they have none.
+    """
+    probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
+    if lateral_m is not None:
+        probes[2] |= {"lateral_mm": lateral_m * 1e3, "width_mm": lateral_m * 1e3}
+    rig, cue = _rig(rig).with_(probe=probes), cooling_step(control)
+    likeness = resembles(cue, rig, "3", tail_s=TAIL_S)
+    seen = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
+    return Thermistors(seen.trace, likeness, seen.temperature_C[0], rig.probes[2].lateral_m)
+
+
+@dataclass(frozen=True, slots=True)
+class DermisChange:
+    """Largest change in K and fastest fall in K/s at depths in m, and where they are what the paper's text says."""
+
+    rig_name: str
+    depth_m: Array
+    change_K: Array
+    fastest_K_per_s: Array
+    receptor_m: tuple[float, float]
+
+    def depth_of_m(self, change_K: float) -> float:
+        """Shallowest depth in m at which the change is no larger."""
+        return _crossing(self.depth_m, self.change_K, change_K)
+
+    def depth_of_rate_m(self, rate_K_per_s: float) -> float:
+        """Shallowest depth in m below the receptors at which it falls no faster."""
+        return _crossing(self.depth_m, self.fastest_K_per_s, rate_K_per_s)
+
+    def at(self, depth_m: float) -> tuple[float, float]:
+        """Largest change in K and fastest fall in K/s at a depth in m."""
+        return (
+            float(np.interp(depth_m, self.depth_m, self.change_K)),
+            float(np.interp(depth_m, self.depth_m, self.fastest_K_per_s)),
+        )
+
+    def __repr__(self) -> str:
+        return (
+            f"DermisChange({self.rig_name}; {self.at(self.receptor_m[0])[0]:.1f} K at {self.receptor_m[0] * 1e3:g} mm, "
+            f"1 K at {self.depth_of_m(1.0) * 1e3:.2f} mm)"
+        )
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw change and fastest fall against depth, with what the paper says of both; returns the Axes."""
+        from thermicon.circuit.studies.studydraw import plot_dermis
+
+        return plot_dermis(self, ax)
+
+
+def _crossing(depth_m: Array, values: Array, level: float) -> float:
+    below = np.flatnonzero(values <= level)
+    if not below.size or below[0] == 0:
+        return float("nan")
+    k = int(below[0])
+    return float(np.interp(level, [values[k], values[k - 1]], [depth_m[k], depth_m[k - 1]]))
+
+
+def dermis_change(rig: Rig | None = None, *, control: str = "skin") -> DermisChange:
+    """Play the cue and look at all depths down to 2 mm: how much, and how fast, the tissue cools there."""
+    rig = _rig(rig)
+    depths = np.linspace(0.0, min(2.0e-3, rig.skin.thickness_m), 201)
+    seen = probe_depths(cooling_step(control), rig, depths, tail_s=TAIL_S)
+    change = seen.temperature_C[:, :1] - seen.temperature_C.min(axis=1, keepdims=True)
+    fall = -np.diff(seen.temperature_C, axis=1).min(axis=1) / seen.trace.time_s[1]
+    return DermisChange(rig.name, depths, change[:, 0], fall, (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m))
+
+
+@dataclass(frozen=True, slots=True)
+class MissByLimit:
+    """Largest miss in K of the cue under skin control, for current limits in A; both (limits,)."""
+
+    rig_name: str
+    limit_A: Array
+    miss_K: Array
+    reached: tuple[bool, ...]
+    shipped_A: float
+
+    def __repr__(self) -> str:
+        pairs = ", ".join(f"{miss:.2f} K at {limit:g} A" for limit, miss in zip(self.limit_A, self.miss_K, strict=True))
+        return f"MissByLimit({self.rig_name}; {pairs})"
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the miss against the limit, with the shipped limit and the module's own marked; returns the Axes."""
+        from thermicon.circuit.studies.studydraw import plot_miss
+
+        return plot_miss(self, ax)
+
+
+LIMITS_A = (0.75, 1.0, 1.25, 1.5, 1.7, 1.85, 2.0, 2.2, 2.5)
+
+
+def miss_by_limit(rig: Rig | None = None, limits_A: Sequence[float] = LIMITS_A) -> MissByLimit:
+    """Play the cue on the skin with several current limits of the driver; the shipped limit is an assumption of ours.
+
+    >>> miss_by_limit(limits_A=[1.5, 1.85])
+    MissByLimit(shani2021; 0.73 K at 1.5 A, 0.17 K at 1.85 A)
+    """
+    rig = _rig(rig)
+    outcomes = [simulate(cooling_step("skin"), rig.with_(**{"driver.current_limit_A": a})).outcome for a in limits_A]
+    misses = [abs(outcome.largest_miss_K) for outcome in outcomes if outcome is not None]
+    reached = tuple(outcome.reached for outcome in outcomes if outcome is not None)
+    return MissByLimit(rig.name, np.array(limits_A), np.array(misses), reached, rig.driver.current_max_A)
