@@ -1,0 +1,168 @@
+"""Skin under a display whose temperature is prescribed, as a thermode that closes its own loop prescribes it.
+
+Without a module the circuit is linear and never changes: C·dx/dt = −G·x + g₀·u·e₀, with temperatures above the deep
+node's and u that of the display. Its modes are solved exactly for a display that is linear between instants.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.network import COLD, HOT, PROBES, SKIN, Network, network_of
+
+FELT = PROBES[PROBES.index("display_C") :]
+"""What a run under a prescribed display records: PROBES without the hot plate, which no thermode shows."""
+
+SMALL = 1e-6
+"""Below this λ·Δt the series replaces quotients that would lose digits."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SkinModes:
+    """A skin column as n modes: `rate_per_s` (n,), `drive_per_s` (n,) of a display of 1 K, readings of FELT.
+
+    A reading is `reading @ z + direct · u + offset_C`, with modes z and display u in K above the deep node.
+    """
+
+    deep_C: float
+    rate_per_s: Array
+    drive_per_s: Array
+    reading: Array
+    direct: Array
+    offset_C: Array
+
+    def steady(self, display_C: float) -> Array:
+        """Modes (n,) that a display held at a temperature leads to."""
+        return np.asarray(self.drive_per_s / self.rate_per_s * (display_C - self.deep_C))
+
+    def run(self, display_C: Array, step_s: float, modes: Array) -> tuple[Array, Array]:
+        """Return FELT (7, rows) and the modes at the end, for a display (rows,) linear between rows `step_s` apart.
+
+        >>> modes = modes_of(Rig.load("thenar"))
+        >>> felt, _ = modes.run(np.full(3, 32.0), 0.01, modes.steady(32.0))
+        >>> bool(np.ptp(felt[0]) == 0.0)
+        True
+        """
+        from scipy.signal import lfilter
+
+        above = display_C - self.deep_C
+        keep, now, then = _weights(self.rate_per_s, step_s)
+        values = self.direct[:, np.newaxis] * above + self.offset_C[:, np.newaxis]
+        end = modes.copy()
+        for k in range(len(modes)):
+            forcing = self.drive_per_s[k] * (now[k] * above[:-1] + then[k] * above[1:])
+            mode = np.empty(len(above))
+            mode[0] = modes[k]
+            if len(forcing):
+                mode[1:], _ = lfilter([1.0], [1.0, -keep[k]], forcing, zi=[keep[k] * modes[k]])
+            values += self.reading[:, k, np.newaxis] * mode
+            end[k] = mode[-1]
+        return values, end
+
+    def relax(self, times_s: Array, display_C: float, modes: Array) -> Array:
+        """Return FELT (7, times) at times after now, with the display held; `modes` (n,) are those of now."""
+        rest = self.steady(display_C)
+        z = rest[:, np.newaxis] + (modes - rest)[:, np.newaxis] * np.exp(-np.outer(self.rate_per_s, times_s))
+        held = self.direct * (display_C - self.deep_C) + self.offset_C
+        return np.asarray(self.reading @ z + held[:, np.newaxis])
+
+    def after(self, time_s: float, display_C: float, modes: Array) -> Array:
+        """Modes (n,) a time later, with the display held."""
+        rest = self.steady(display_C)
+        return np.asarray(rest + (modes - rest) * np.exp(-self.rate_per_s * time_s))
+
+    def display_for_skin(
+        self, target_C: Array, step_s: float, start_C: float, slew_K_per_s: float, limits_C: tuple[float, float]
+    ) -> Array:
+        """Return the display (rows,) in °C that takes the face of the skin to targets (rows,), the first held before.
+
+        As the inverse of a module does, each level comes from one implicit step over the period, which damps it, and
+        the state moves by the exact one. `slew_K_per_s` and `limits_C` are those of the thermode.
+        """
+        row = FELT.index("skin_C")
+        weight, direct = self.reading[row], float(self.direct[row])
+        keep, now, then = _weights(self.rate_per_s, step_s)
+        damped, gain = 1.0 / (1.0 + self.rate_per_s * step_s), step_s * self.drive_per_s
+        per_display = float(weight @ (damped * gain)) + direct
+        modes, level, most = self.steady(start_C), start_C - self.deep_C, slew_K_per_s * step_s
+        low, high = limits_C[0] - self.deep_C, limits_C[1] - self.deep_C
+        found = np.empty(len(target_C))
+        found[0] = start_C
+        for k, target in enumerate((target_C - self.offset_C[row]).tolist()[1:], 1):
+            wanted = (target - float(weight @ (damped * modes))) / per_display
+            new = min(max(wanted, level - most, low), level + most, high)
+            modes = keep * modes + self.drive_per_s * (now * level + then * new)
+            level = new
+            found[k] = new + self.deep_C
+        return found
+
+    def display_holding_skin_C(self, skin_C: float) -> float:
+        """Temperature of the display in °C that holds the face of the skin at one in steady state."""
+        row = FELT.index("skin_C")
+        per_K = float(self.reading[row] @ (self.drive_per_s / self.rate_per_s) + self.direct[row])
+        return self.deep_C + (skin_C - float(self.offset_C[row])) / per_K
+
+
+@lru_cache(maxsize=256)
+def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
+    """Return the modes of a rig's skin in contact; `insulated`: under a display that lets no heat through.
+
+    >>> round(modes_of(Rig.load("thenar")).display_holding_skin_C(32.0), 2)
+    31.96
+    """
+    return modes_on(network_of(rig), insulated)
+
+
+def modes_on(network: Network, insulated: bool = False) -> SkinModes:
+    """Return the modes of a network's skin; its plates play no part."""
+    capacity, g, perfusion = network.capacity_J_per_K, network.conductance_W_per_K, network.perfusion_W_per_K
+    first = 0.0 if insulated else float(g[0])
+    matrix = np.diag(np.concatenate([[first], g[1:-1]]) + g[1:] + perfusion)
+    inner = np.arange(len(capacity) - 1)
+    matrix[inner, inner + 1] = matrix[inner + 1, inner] = -g[1:-1]
+    root = np.sqrt(capacity)
+    rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
+    shape = vectors / root[:, np.newaxis]  # lumps = shape @ modes
+    weights = np.zeros((len(FELT), len(capacity) + 3))
+    for row, probe in enumerate(FELT):
+        place = PROBES.index(probe)
+        start = int(network.probe_start[place])
+        weights[row, start : start + 3] = network.probe_weight[place]
+    lumps, direct = weights[:, SKIN:-1], weights[:, COLD]
+    offset = weights.sum(axis=1) * network.deep_C  # zero for heat flows
+    assert not weights[:, HOT].any()
+    return SkinModes(network.deep_C, rates, first * vectors[0] / root[0], lumps @ shape, direct, offset)
+
+
+def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:
+    """Return the display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest.
+
+    First-order lag, and no faster than its slew rate.
+
+    >>> shown(np.array([30.0, 31.0, 31.0]), 0.1, slew_K_per_s=5.0).tolist()
+    [30.0, 30.5, 31.0]
+    """
+    share = 1.0 if lag_s <= 0 else -np.expm1(-step_s / lag_s)
+    most = slew_K_per_s * step_s
+    if share == 1.0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
+        return setpoint_C.copy()
+    level, reached = float(setpoint_C[0]), []
+    for wanted in setpoint_C.tolist():
+        level += min(max(share * (wanted - level), -most), most)
+        reached.append(level)
+    return np.array(reached)
+
+
+def _weights(rate_per_s: Array, step_s: float) -> tuple[Array, Array, Array]:
+    """What a mode keeps over a step, and the weights in s of a linear forcing at its beginning and its end."""
+    x = rate_per_s * step_s
+    keep = np.exp(-x)
+    safe = np.where(x < SMALL, 1.0, x)
+    whole = np.where(x < SMALL, 1.0 - 0.5 * x, -np.expm1(-x) / safe)
+    late = np.where(x < SMALL, 0.5 - x / 6.0, (1.0 - whole) / safe)
+    return keep, step_s * (whole - late), step_s * late
