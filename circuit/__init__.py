@@ -21,8 +21,10 @@ from thermicon.circuit.studies.meshstudy import Mesh, MeshStudy, mesh_study
 from thermicon.circuit.solver.nearest import Nearest, nearest_reachable
 from thermicon.circuit.solver.batch import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
 from thermicon.circuit.safety.exposure import cem43_min, henriques
-from thermicon.circuit.safety.limits import Check, SafetyVerdict, judge_safety
-from thermicon.circuit.safety.scenarios import Corner, Futures, corners_of, play_out
+from thermicon.circuit.safety.checks import Check
+from thermicon.circuit.safety.limits import SafetyVerdict, judge_safety
+from thermicon.circuit.safety.corners import Corner, corners_of
+from thermicon.circuit.safety.scenarios import Futures, play_out
 from thermicon.circuit.safety.gate import Gate, gate
 from thermicon.circuit.safety.summary import Summary, summarise
 from thermicon.circuit.delivery.netlist import netlist

@@ -12,7 +12,7 @@ from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared
-    from thermicon.circuit.safety.limits import Check
+    from thermicon.circuit.safety.checks import Check
     from thermicon.notebooks.exporting import Ready
     from thermicon.perception import FeltChange
 

@@ -151,6 +151,10 @@ class UncertaintyTable(_Table):
     contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
     ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
     gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    heat_sink_K: Annotated[float, Field(ge=0, le=20)] | None = None
+    seebeck_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
+    conductance_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
+    plates_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
     reason: str = ""
 
     @property

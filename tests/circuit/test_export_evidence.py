@@ -32,8 +32,8 @@ from thermicon.circuit.delivery.netlist import netlist
 from thermicon.circuit.delivery.realise import followed
 from thermicon.circuit.delivery.worstcase import regulated_corners
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.limits import WATCHED
-from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.icons import Icon, parse
