@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 
@@ -70,31 +69,3 @@ class Demands:
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it under `hardware_must_prevent`."""
         return asdict(self)
-
-
-MAPPED = (
-    "watchdog_s", "cut_off_display_C", "polarity_check", "rest_before_first_play_s", "pause_at_least_s",
-)  # fmt: skip
-"""Demands that the shipped players implement."""
-
-
-def strictest(demands: list[Mapping[str, object]]) -> dict[str, object]:
-    """Of the demands of several drives, by `to_dict`, those that a player of all of them must keep."""
-
-    def numbers(key: str) -> list[float]:
-        return [float(value) for one in demands if isinstance(value := one[key], (int, float))]
-
-    cuts = [cut for one in demands if isinstance(cut := one["cut_off_display_C"], Mapping)]
-    checks = [check for one in demands if isinstance(check := one["polarity_check"], Mapping)]
-    needed = [check for check in checks if check["needed"]]
-    return {
-        "watchdog_s": min(numbers("watchdog_s")),
-        "cut_off_display_C": {
-            "low": min(float(cut["low"]) for cut in cuts),
-            "high": max(float(cut["high"]) for cut in cuts),
-            "react_within_s": min(float(cut["react_within_s"]) for cut in cuts),
-        },
-        "polarity_check": dict((needed or checks)[0]) if checks else None,
-        "rest_before_first_play_s": max(numbers("rest_before_first_play_s"), default=None),
-        "pause_at_least_s": max(numbers("pause_at_least_s"), default=None),
-    }

@@ -44,9 +44,9 @@ class Gate:
     """The verdict on one drive.
 
     `checks` has every rule once, in the scenario that goes farthest; times count from the first row of that play.
-    `after_C` is the skin of the rig as given, 60 s after the last sample, for each of ENDINGS; `drift_C` where zero
-    current takes it in the end. `repeated` is the verdict on playing it again and again, which `checks` include;
-    `demands` is what the hardware must prevent.
+    `after_C` is the skin of the rig as given, 60 s after the last sample, for each ending; `drift_C` where zero
+    current takes it in the end, None for a device without a current. `repeated` is the verdict on playing it again and
+    again, which `checks` include; `demands` is what the hardware must prevent.
     """
 
     rig_name: str
@@ -55,8 +55,8 @@ class Gate:
     limits: Limits
     scenarios: int
     checks: tuple[Check, ...]
-    after_C: tuple[float, ...]
-    drift_C: float
+    after_C: dict[str, float]
+    drift_C: float | None
     repeated: Repeated
     demands: Demands
 
@@ -107,7 +107,7 @@ class Gate:
             "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(surer(self.uncertainty))},
             "scenarios": self.scenarios,
             "ending_s": ENDING_S,
-            "skin_after_ending_C": dict(zip(ENDINGS, self.after_C, strict=True)),
+            "skin_after_ending_C": dict(self.after_C),
             "skin_in_the_end_at_zero_current_C": self.drift_C,
             "repeated": self.repeated.to_dict(),
             "recovery_s": self.repeated.recovery_s,
@@ -213,16 +213,21 @@ def _gated(
     repeating = Repeating(ensemble, cycles, start, held)
     tallies = repeating.tallies(pause)
     shortest = shortest_pause_s(repeating)
-    found = []
+    repeats = []
     for single, own, cycle in zip(singles, tallies, cycles, strict=True):
-        checks = worst_of(tally.checks() for tally in own)
-        plays = plays_in(cycle, held.session_s)
-        repeated = Repeated(pause, single.recovery_s, shortest, plays, held.session_s, checks)
-        found.append(_gate(single, repeated, own))
-    return tuple(found)
+        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, held.session_s)
+        repeats.append(Repeated(pause, single.recovery_s, shortest, plays, held.session_s, checks))
+    every = [
+        check for checks in (*(one.checks for one in singles), *(one.checks for one in repeats)) for check in checks
+    ]
+    display = [check.value for check in every if check.quantity == "display"]
+    reach = (min(display), max(display))
+    return tuple(
+        _gate(single, repeated, own, reach) for single, repeated, own in zip(singles, repeats, tallies, strict=True)
+    )
 
 
-def _gate(single: Single, repeated: Repeated, played: list[Tally]) -> Gate:
+def _gate(single: Single, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Gate:
     rig = single.ensemble.rig
     return Gate(
         rig.name,
@@ -231,10 +236,10 @@ def _gate(single: Single, repeated: Repeated, played: list[Tally]) -> Gate:
         single.limits,
         len(single.ensemble.corners) * len(ENDINGS),
         worst_of([single.checks, repeated.checks]),
-        tuple(float(single.after_C[ending][0]) for ending in ENDINGS),
+        {ending: float(single.after_C[ending][0]) for ending in ENDINGS},
         single.drift_C,
         repeated,
-        single.demands(repeated, played),
+        single.demands(repeated, played, reach_C),
     )
 
 
@@ -242,16 +247,17 @@ def _lines(one: Gate) -> Iterator[str]:
     unsure, again = one.uncertainty, one.repeated
     yield (
         f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
-        f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(ENDINGS)})"
+        f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
     )
     yield f"played again and again: {again.text}"
     table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:
         yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for value, ending in zip(one.after_C, ENDINGS, strict=True))
+    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in one.after_C.items())
     yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
+    if one.drift_C is not None:
+        yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
     if one.limits.changed:
         yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
     if one.limits.loosened:

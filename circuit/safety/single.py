@@ -64,17 +64,15 @@ class Single:
         """Every rule in the scenario that goes farthest."""
         return worst_of(tally.checks() for tally in self.tallies)
 
-    def demands(self, repeated: Repeated, played: list[Tally]) -> Demands:
-        """What the hardware must prevent; `played` are the tallies of repetition."""
+    def demands(self, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Demands:
+        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` where displays get."""
         corners = self._farthest([*self.tallies, *played])
         few = self.ensemble.only(corners)
         faulty = Faulty(few, self.drive, self.rest_A, self.start.take(np.array(corners)), self.limits)
         watchdog, hangs = faulty.watchdog_s()
         rest, begins = faulty.rest_before()
         polarity, swapped = faulty.polarity()
-        checks = (*self.checks, *repeated.checks)
-        display = [check.value for check in checks if check.quantity == "display"]
-        cut_off, stuck = faulty.cut_off((min(display), max(display)))
+        cut_off, stuck = faulty.cut_off(reach_C)
         zero = None
         if self.ensemble.ideal:
             dose = np.zeros(len(self.ensemble.corners))
