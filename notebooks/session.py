@@ -211,7 +211,7 @@ def summary_lines(session: Session) -> list[str]:
     over = [
         f"  beyond     {number(each.seconds, 2)} s {'above' if each.upper else 'below'} the {each.severity} limit of "
         f"{number(each.limit_C)} °C ({each.quantity})"
-        for each in session.beyond
+        for each in session.time_beyond
         if each.seconds > 0
     ]
     return [*lines, *over]

@@ -21,6 +21,9 @@ MOST_BINS = 2000
 MOST_NAMED = 16
 """Plays up to which each has its name written beside its bar."""
 
+NEAR_K = 6.0
+"""Limits of the skin that are nearer than this to what is drawn get a line."""
+
 HOT = "#7f3b08"
 LEAST_DOSE, FELT_K = 1e-8, 0.1
 """Where the axis of dose ends, as a share of the limit; changes of the skin below this get no bar."""
@@ -92,7 +95,7 @@ def _temperatures(session: Session, ax: Axes, scale: float) -> None:
     ax.set_ylabel("temperature (°C)")
     low, high = ax.get_ylim()
     for rule in session.gate.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - 4.0 < rule.limit < high + 4.0:
+        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
             hard = rule.severity == "hard"
             ax.axhline(
                 rule.limit,
@@ -111,7 +114,7 @@ def _hot_plate(session: Session, ax: Axes, scale: float) -> None:
     worst = session.worst("hot plate")
     if worst is not None:
         ax.axhline(worst.value, color=HOT, lw=0.9, ls=(0, (1, 1.5)), label="highest in the worst case")
-        if worst.limit < worst.value + 6.0:
+        if worst.limit < worst.value + NEAR_K:
             ax.axhline(worst.limit, color=LIMIT, lw=1.4, label=f"hard limit, {worst.limit:g} °C")
     ax.set_ylabel("hot plate\n(°C)")
 

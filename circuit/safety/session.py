@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT, Gate
 from thermicon.circuit.safety.limits import Check, as_dict, colour_of, findings_of
+from thermicon.circuit.safety.sessioncorners import beyond
 from thermicon.circuit.safety.sessionplan import SessionPlan
 from thermicon.circuit.solver.trace import Trace
 
@@ -69,7 +70,7 @@ class Session:
     plays: tuple[Play, ...]
     gate: Gate
     checks: tuple[Check, ...]
-    beyond: tuple[TimeBeyond, ...]
+    time_beyond: tuple[TimeBeyond, ...]
     dose_cem43_min: float
     henriques: float
     energy_J: float
@@ -120,7 +121,8 @@ class Session:
 
     def worst(self, quantity: str) -> Check | None:
         """The hard rule on a quantity where it goes farthest in the worst case; None where no rule is about it."""
-        return next((check for check in self.checks if check.quantity == quantity and check.severity == "hard"), None)
+        hard = [check for check in self.checks if check.quantity == quantity and check.severity == "hard"]
+        return max(hard, key=beyond, default=None)
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per play, with the fields of a Play as columns."""
@@ -168,7 +170,7 @@ class Session:
             },
             "heat_to_sink_min_W": sink and sink[0],
             "heat_to_sink_max_W": sink and sink[1],
-            "time_beyond": [asdict(each) for each in self.beyond],
+            "time_beyond": [asdict(each) for each in self.time_beyond],
             "checks": [as_dict(check) for check in self.checks],
             "uncertainty": asdict(self.gate.uncertainty),
             "limits": self.gate.limits.to_dict(),

@@ -52,14 +52,15 @@ def merged(checks: Sequence[Check], fine: Sequence[Check]) -> tuple[Check, ...]:
 def farther(first: Check, second: Check) -> Check:
     """Of two checks of one rule the one that goes farther, first passed when the earlier one of both is."""
     since = min((each.since_s for each in (first, second) if each.since_s is not None), default=None)
-    return replace(second if _beyond(second) > _beyond(first) else first, since_s=since)
+    return replace(second if beyond(second) > beyond(first) else first, since_s=since)
 
 
 def _rule(check: Check) -> tuple[str, str, bool, str]:
     return check.quantity, check.severity, check.upper, check.note
 
 
-def _beyond(check: Check) -> float:
+def beyond(check: Check) -> float:
+    """How far a check is beyond its limit, in its unit; negative within."""
     return check.value - check.limit if check.upper else check.limit - check.value
 
 

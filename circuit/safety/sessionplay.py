@@ -65,7 +65,7 @@ def play_session(
         plays=plays,
         gate=verdict,
         checks=merged(verdict.checks, fine_checks(played, rig, rules)),
-        beyond=_times_beyond(rules, trace),
+        time_beyond=_times_beyond(rules, trace),
         dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
         henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),
         energy_J=float(power.sum()),
