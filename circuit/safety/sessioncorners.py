@@ -18,13 +18,13 @@ from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.limits import WATCHED, Check, checks_of
 from thermicon.circuit.safety.scenarios import corners_of
 from thermicon.circuit.safety.sessiondrive import SessionDrive
-from thermicon.circuit.solver.batch_inputs import Bank, Index, cut, run_forward
-from thermicon.circuit.solver.network import Weights, network_of, stacked
+from thermicon.circuit.solver.batch_inputs import Bank, State, cut, run_on
+from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.simulate import rows_until
 from thermicon.circuit.solver.steady import steady_state
 
 STRETCH_ROWS = 5_000
-"""Rows played at a time: 9 corners of a rig with 40 lumps are about 20 MB."""
+"""Rows played at a time: little memory, and few starts of a run."""
 
 INSTANT = (
     *("skin surface", "cold-receptor depth", "display", "hot plate"),
@@ -74,28 +74,13 @@ def _stretches(played: SessionDrive, rig: Rig) -> Iterator[tuple[Array, dict[str
         starts = [steady_state(each, played.rest_A * gain) for each, gain in zip(networks, gains, strict=True)]
     except ArithmeticError:
         return  # a corner that heats without end at rest fails every limit in the gate already
-    states = bank.states(starts)
-    rows, whole = rows_until(float(drive.time_s[-1]), played.rate_Hz), _whole_state(states.shape[1])
-    names = tuple(str(corner) for corner in corners)
-    # The state of a heat sink's own controller is not part of the network's, so that such a run is not divided.
-    length = STRETCH_ROWS if rig.heat_sink.controller is None else len(rows)
-    for first in range(0, len(rows) - 1, length):
-        part = rows[first : first + length + 1]
+    state = State.settled(bank.states(starts))
+    rows, names = rows_until(float(drive.time_s[-1]), played.rate_Hz), tuple(str(corner) for corner in corners)
+    for first in range(0, len(rows) - 1, STRETCH_ROWS):
+        part = rows[first : first + STRETCH_ROWS + 1]
         since = max(0, int(np.searchsorted(drive.time_s, part[0] + 1e-9, side="right")) - 1)
         until = int(np.searchsorted(drive.time_s, part[-1] + 1e-9, side="right"))
         times, currents = np.maximum(drive.time_s[since:until], part[0]), drive.current_A[since:until]
         intervals = cut(part, times, gains[:, np.newaxis] * currents, held=True)
-        out = run_forward(bank, every, every, intervals, states, WATCHED, whole if length < len(rows) else None)
-        states = np.ascontiguousarray(out[len(WATCHED) :, :, -1].T) if length < len(rows) else states
-        yield part, dict(zip(WATCHED, out, strict=False)), names
-
-
-def _whole_state(states: int) -> tuple[Index, Array]:
-    """Readings of every state: where its three neighbours start, and a weight of 1 for itself."""
-    last = states - 3
-    rows: list[Weights] = []
-    for place in range(states):
-        weight = [0.0, 0.0, 0.0]
-        weight[place - min(place, last)] = 1.0
-        rows.append((min(place, last), (weight[0], weight[1], weight[2])))
-    return stacked(rows)
+        out, state = run_on(bank, every, every, intervals, state, WATCHED)
+        yield part, dict(zip(WATCHED, out, strict=True)), names

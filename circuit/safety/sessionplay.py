@@ -44,7 +44,7 @@ def play_session(
     >>> from thermicon.icons import load_library
     >>> plan = SessionPlan(("cooling-step", "warming-step"), gap_s=10.0)
     >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))
-    Session(green: 2 plays in 26 s on thenar, skin 26.92 … 35.63 °C, baseline drift -0.75 K, 0 min CEM43)
+    Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
     """
     wanted = set(plan.names)
     known = {icon.name: icon for icon in icons if icon.name in wanted}

@@ -33,6 +33,9 @@ icon hot {{ warm by {amount} °C at 3 °C/s; hold for 20 s; return at 3 °C/s }}
 icon cool {{ cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }}
 """
 
+SINK = ("capacity_J_per_K=200", "kp_W_per_K=5", "ki_W_per_Ks=0.5", "power_limit_W=40")
+"""A hot plate under its own loop."""
+
 
 @pytest.fixture(scope="module")
 def rig() -> Rig:
@@ -159,14 +162,17 @@ def test_a_rate_is_not_averaged_away_in_a_long_session(rig: Rig) -> None:
 def test_checks_in_stretches_are_those_of_one_run(six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
     from thermicon.circuit.safety import sessioncorners
 
-    drive = drive_of(SessionPlan(("cooling-step", "linear-warming")), {icon.name: icon for icon in six}, rig)
-    whole = sessioncorners.fine_checks(drive, rig, rig.limits)
-    monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 333)
-    parts = sessioncorners.fine_checks(drive, rig, rig.limits)
-    assert len(whole) == len(parts) > 8
-    for one, other in zip(whole, parts, strict=True):
-        assert one.quantity == other.quantity
-        assert one.value == pytest.approx(other.value, abs=2e-4)
+    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
+    for each in (rig, sink):
+        drive = drive_of(SessionPlan(("cooling-step", "linear-warming")), {icon.name: icon for icon in six}, each)
+        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 5_000)
+        whole = sessioncorners.fine_checks(drive, each, each.limits)
+        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 333)
+        parts = sessioncorners.fine_checks(drive, each, each.limits)
+        assert len(whole) == len(parts) > 8
+        for one, other in zip(whole, parts, strict=True):
+            assert one.quantity == other.quantity
+            assert one.value == pytest.approx(other.value, abs=2e-4)
 
 
 def test_icons_that_prescribe_current_are_played_by_their_means(rig: Rig) -> None:
@@ -187,14 +193,7 @@ def test_a_loop_and_a_sink_of_its_own_are_played(six: IconSet, rig: Rig) -> None
             "controller.lag_s=0.05",
         ]
     )
-    sink = rig.with_set(
-        [
-            "heat_sink.capacity_J_per_K=200",
-            "heat_sink.kp_W_per_K=5",
-            "heat_sink.ki_W_per_Ks=0.5",
-            "heat_sink.power_limit_W=40",
-        ]
-    )
+    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
     for other in (loop, sink):
         session = play_session(six, SessionPlan(("cooling-step", "warming-step")), other)
         alone = simulate(six["cooling-step"], other)
