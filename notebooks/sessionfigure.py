@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 MOST_BINS = 2000
 """Bins on the axis of time; each shows the least and the most of its rows, so that no peak is lost."""
 
-MOST_NAMED = 16
-"""Plays up to which each has its name written beside its bar."""
+MOST_NAMED, MOST_BARS = 16, 200
+"""Plays up to which each has its name written beside its bar, and a bar as wide as it lasts."""
 
 NEAR_K = 6.0
 """Limits of the skin that are nearer than this to what is drawn get a line."""
@@ -67,10 +67,16 @@ def _changes(session: Session, ax: Axes, scale: float) -> None:
     base = np.array([rest + play.drift_K for play in session.plays])
     low = np.array([play.skin_min_C for play in session.plays]) - base
     high = np.array([play.skin_max_C for play in session.plays]) - base
-    if low.min() < -FELT_K:
-        ax.bar(starts, low, widths, align="edge", color=COOL, label="cooling in a play")
-    if high.max() > FELT_K:
-        ax.bar(starts, high, widths, align="edge", color=WARM, hatch="//", edgecolor="white", lw=0.0, label="warming")
+    if len(session.plays) > MOST_BARS:
+        ax.vlines(starts, low, 0.0, color=COOL, lw=0.6, label="cooling in a play")
+        ax.vlines(starts, 0.0, high, color=WARM, lw=0.6, label="warming")
+    else:
+        if low.min() < -FELT_K:
+            ax.bar(starts, low, widths, align="edge", color=COOL, label="cooling in a play")
+        if high.max() > FELT_K:
+            ax.bar(
+                starts, high, widths, align="edge", color=WARM, hatch="//", edgecolor="white", lw=0.0, label="warming"
+            )
     drift = [play.drift_K for play in session.plays]
     ax.plot(starts, drift, color=INK, marker=".", ms=4, lw=1.0, label="baseline drift")
     ax.axhline(0.0, color=GREY, lw=0.8)
@@ -120,8 +126,8 @@ def _hot_plate(session: Session, ax: Axes, scale: float) -> None:
 
 
 def _mark_plays(session: Session, ax: Axes, scale: float) -> None:
-    for play in session.plays:
-        ax.axvspan(play.start_s * scale, play.end_s * scale, color=GREY, alpha=0.10, lw=0.0, zorder=0)
+    spans = [(play.start_s * scale, (play.end_s - play.start_s) * scale) for play in session.plays]
+    ax.broken_barh(spans, (0.0, 1.0), transform=ax.get_xaxis_transform(), color=GREY, alpha=0.10, lw=0.0, zorder=0)
 
 
 def _dose(session: Session, ax: Axes, scale: float) -> None:

@@ -23,8 +23,8 @@ TRACKINGS = ("replay", "display")
 SLOWEST_HZ = 100.0
 """Fewest rows a second: a rate over a longer time than 10 ms hides how steep the skin's temperature was."""
 
-MOST_ROWS = 3_000_000
-"""Rows of a session: about 300 MB of temperatures and heat flows."""
+MOST_ROWS = 1_500_000
+"""Rows of a session, which with its corners and the gate take up to about 1.3 GB."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -251,7 +251,7 @@ def test_impossible_plans_are_refused_before_any_work(six: IconSet, rig: Rig, mo
     with pytest.raises(SessionError, match=rf"last \d+ s; the limit is {LONGEST_S:g} s: play fewer, shorten the gap"):
         play_session(six, SessionPlan(("cooling-step",) * 100, gap_s=120.0), rig)
     fast = rig.with_(**{"driver.update_Hz": 10_000.0})
-    with pytest.raises(SessionError, match=r"driver's 10000 Hz are \d+ rows; the limit is 3,000,000"):
+    with pytest.raises(SessionError, match=r"driver's 10000 Hz are \d+ rows; the limit is 1,500,000"):
         play_session(six, SessionPlan(("cooling-step",) * 60), fast)
     with pytest.raises(SessionError, match="tracking 'ideal' is not known"):
         play_session(six, SessionPlan(("cooling-step",)), rig, tracking="ideal")

@@ -197,7 +197,7 @@ def test_a_figure_is_complete_or_absent(
     assert not list(tmp_path.glob(".*"))
 
 
-def test_the_figure_shows_plays_limits_and_dose(two: Path) -> None:
+def test_the_figure_shows_plays_limits_and_dose(two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     session = play_session(read_cue(two), SessionPlan(("cool-step", "warm-step")), Rig.load("thenar"))
     figure = session_figure(session)
     changes, temperatures, plate, dose = figure.axes
@@ -208,6 +208,11 @@ def test_the_figure_shows_plays_limits_and_dose(two: Path) -> None:
     assert "hot plate" in plate.get_ylabel()
     assert dose.get_yscale() == "log"
     assert temperatures.get_ylabel() == "temperature (°C)"
+    assert len(changes.patches) >= 4
+    monkeypatch.setattr("thermicon.notebooks.sessionfigure.MOST_BARS", 1)  # many plays are lines and not bars
+    crowded = session_figure(session).axes[0]
+    assert not crowded.patches
+    assert len(crowded.collections) == 2
 
 
 def test_a_long_session_is_drawn_with_every_peak() -> None:
