@@ -26,6 +26,9 @@ from thermicon.circuit.safety.limits import SafetyVerdict, judge_safety
 from thermicon.circuit.safety.corners import Corner, corners_of
 from thermicon.circuit.safety.scenarios import Futures, play_out
 from thermicon.circuit.safety.gate import Gate, gate
+from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
+from thermicon.circuit.safety.session import Play, Session
+from thermicon.circuit.safety.sessionplay import play_session
 from thermicon.circuit.safety.summary import Summary, summarise
 from thermicon.circuit.delivery.netlist import netlist
 from thermicon.circuit.delivery.devicefile import DeviceError
@@ -98,6 +101,11 @@ __all__ = [
     "play_out",
     "Gate",
     "gate",
+    "SessionError",
+    "SessionPlan",
+    "Play",
+    "Session",
+    "play_session",
     "Summary",
     "summarise",
     "netlist",
