@@ -87,13 +87,12 @@ def test_a_request_to_end_is_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> No
 def test_drafts_of_the_dead_are_swept_and_those_of_the_living_are_not(tmp_path: Path) -> None:
     gone = subprocess.Popen([sys.executable, "-c", ""])
     gone.wait()
-    for draft in (f".a.csv.{gone.pid}.part", f".a.csv.{os.getppid()}.part", ".a.csv.x.part"):
+    mark = "thermicon-part.csv"
+    kept = {f".a.{os.getppid()}-0.{mark}", f".a.x-0.{mark}", f"a.{gone.pid}-0.{mark}", f".a.{gone.pid}.part.csv"}
+    for draft in (*kept, f".a.{gone.pid}-0.{mark}"):
         (tmp_path / draft).write_text("")
     write_together(FILES, tmp_path)
-    assert [name for name in names(tmp_path) if name.startswith(".")] == [
-        f".a.csv.{os.getppid()}.part",
-        ".a.csv.x.part",
-    ]
+    assert {name for name in names(tmp_path) if "part" in name} == kept
 
 
 @posix
@@ -124,9 +123,9 @@ EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons"
 SERVER = """
 import os, sys
 from pathlib import Path
-from thermicon.notebooks import outputs
-real = outputs.write_together
-def serve(files, folder, replace=False):
+from thermicon.notebooks import exportfolder
+real = exportfolder.publish
+def serve(files, folder, replace=False, how=""):
     for line in sys.stdin:
         child = os.fork()
         if child == 0:
@@ -136,8 +135,8 @@ def serve(files, folder, replace=False):
         os.waitpid(child, 0)
         print("ended", flush=True)
     os._exit(0)
-import thermicon.notebooks.export as export
-export.write_together = serve
+import thermicon.notebooks.exporting as exporting
+exporting.publish = serve
 from thermicon.notebooks.cli import main
 sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", sys.argv[1]]
 main()
