@@ -44,6 +44,7 @@ def table_of(content: bytes) -> dict[str, Any] | None:
         return None
     try:
         held = json.loads(content)
+        json.dumps(held, ensure_ascii=False).encode("utf-8")  # half characters and endless nesting are no text
     except (ValueError, RecursionError):
         return None
     return held if isinstance(held, dict) else None
