@@ -129,11 +129,12 @@ def _stage(goal: Path, folder: Path) -> Iterator[Path]:
                 raise OutputError(
                     f"another export is writing into {folder}{owner.words}; wait for its end, or give another folder"
                 )
+            _recover(stage, goal)
             try:
-                _recover(stage, goal)
                 yield stage
             finally:
-                _recover(stage, goal)
+                with contextlib.suppress(OSError):
+                    _recover(stage, goal)  # what cannot be tidied up now is by the next export
                 owner.remove()
                 with contextlib.suppress(OSError):
                     stage.rmdir()  # not empty: the next export has taken it over
