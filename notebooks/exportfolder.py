@@ -12,7 +12,7 @@ import os
 import shutil
 import stat
 from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from thermicon.notebooks.belonging import replaced_with
@@ -124,7 +124,11 @@ def _stage(goal: Path, folder: Path) -> Iterator[Path]:
         with contextlib.suppress(FileExistsError):
             stage.mkdir()
         _check_stage(stage, folder)
-        with contextlib.suppress(FileNotFoundError), lock(stage / OWNER) as owner:
+        with ExitStack() as held:
+            try:
+                owner = held.enter_context(lock(stage / OWNER))
+            except FileNotFoundError:
+                continue  # whoever had it has just removed it
             if not owner.mine:
                 raise OutputError(
                     f"another export is writing into {folder}{owner.words}; wait for its end, or give another folder"

@@ -242,6 +242,23 @@ class TestFiles:
         publish(drive("b", b"2"), tmp_path)
         assert held(tmp_path) == {**drive("a", b"1"), **drive("b", b"2")}
 
+    def test_a_file_that_vanishes_meanwhile_is_one_clear_error(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        out = tmp_path / "out"
+        publish(drive("a", b"1"), out)
+        real = os.link
+
+        def gone(source: Path, target: Path, **extra: Any) -> None:
+            source.unlink(missing_ok=True)
+            real(source, target, **extra)
+
+        monkeypatch.setattr(os, "link", gone)
+        with pytest.raises(OutputError, match=r"cannot write into .*out: No such file or directory"):
+            publish(drive("b", b"2"), out)
+        assert names(tmp_path) == ["out"]
+        assert not (out / "b.csv").exists()
+
     def test_two_renames_where_folders_cannot_be_exchanged(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
