@@ -12,7 +12,7 @@ from thermicon.notebooks.door import BAD_INPUT, note
 from thermicon.notebooks.exportfolder import STAGE
 from thermicon.notebooks.outputs import OutputError
 from thermicon.notebooks.tables import show, table
-from thermicon.notebooks.wording import number
+from thermicon.notebooks.wording import number, span
 
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.readback import Figures
@@ -83,7 +83,7 @@ def _held(pair: Pair) -> str:
         return "not read back, digest only"
     count = f"{held.count} values, " if held.count is not None else ""
     lasts = f"{number(held.duration_s, 2)} s, " if held.duration_s is not None else ""
-    return f"{count}{lasts}{held.least:.4g} to {held.greatest:.4g} {pair.unit}"
+    return f"{count}{lasts}{span(held.least, held.greatest, pair.unit, 3)}"
 
 
 def _clean(text: str) -> str:
