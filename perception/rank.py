@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.program import own_version
 from thermicon.perception.carryover import CarryOver, among, prepared
 from thermicon.perception.choose import Choice, choose
-from thermicon.perception.chunks import RATE_HZ, Work, own_version
+from thermicon.perception.chunks import RATE_HZ, Work
 from thermicon.perception.coverage import outside_data
 from thermicon.perception.edits import with_edits
 from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K

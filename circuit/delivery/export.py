@@ -9,7 +9,7 @@ from typing import Literal, Protocol
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
 from thermicon.circuit.delivery.realise import Realised, realise
-from thermicon.circuit.delivery.sidecar import sidecar, sidecar_text
+from thermicon.circuit.delivery.sidecar import sealed, sidecar, sidecar_text
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.difference import Difference, difference
@@ -138,27 +138,45 @@ def pack(
     Raises FormatError where two cues would get the same name, or one is unsafe.
     """
     check_names([one.realised.icon.name for one in ready], form)
-    files: dict[str, bytes] = {}
-    named = []
+    drives = {}
     for one in ready:
         name = one.realised.icon.name
         if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
             raise FormatError(f"{name}: {unsafe[0]}")
         drive = form.file_name(one.realised)
-        beside = f"{form.stem(name)}.json"
         if form.name == psychopy.FORMAT.name and drive.casefold() in psychopy.SET_FILES:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
-        over = [str(refusal) for refusal in one.refusals]
-        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        content = sidecar(one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over)
-        files[beside] = sidecar_text(content)  # first, so that no drive is ever without its sidecar
         try:
-            files[drive] = form.write(one.realised)
+            drives[name] = drive, form.write(one.realised)
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
-        named.append((one.realised, drive, beside))
-    if form.name == psychopy.FORMAT.name and named:
-        files.update(psychopy.set_files(named))
-    return files
+    shared: dict[str, bytes] = {}
+    if form.name == psychopy.FORMAT.name and ready:
+        names = [one.realised.icon.name for one in ready]
+        named = [(one.realised, drives[name][0], beside(name, form)) for one, name in zip(ready, names, strict=True)]
+        shared = psychopy.set_files(named)
+    files: dict[str, bytes] = {}
+    for one in ready:
+        name = one.realised.icon.name
+        drive, content = drives[name]
+        over = [str(refusal) for refusal in one.refusals]
+        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
+        about = sidecar(
+            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
+            drive=content, set_files=shared,
+        )  # fmt: skip
+        files[beside(name, form)] = sidecar_text(sealed(about))
+        files[drive] = content
+    return {**files, **shared}
+
+
+def beside(name: str, form: Format) -> str:
+    """Name of the sidecar of an icon.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> beside("double-dip", load_format("c-array"))
+    'double_dip.json'
+    """
+    return f"{form.stem(name)}.json"

@@ -15,6 +15,7 @@ from thermicon.circuit import Device, Prepared, Realised, Rig, Verdict, gate, ju
 from thermicon.circuit.delivery.export import Refusal, pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
+from thermicon.circuit.program import code_digest
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -201,6 +202,25 @@ class TestSidecar:
         assert told["update_rate_Hz"] == {"requested": 100.0, "realised": 100.0}
         assert told["seed"] is None
         assert told["what_it_is_not"] == NO_CLEARANCE
+
+    def test_it_is_bound_to_its_drive_rig_device_and_program(self) -> None:
+        one = ready(device="ni-analogue-output", form="psychopy")
+        files = pack([one], load_format("psychopy"))
+        told = json.loads(files["cooling-step.json"])
+        sha256 = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+        assert told["drive_sha256"] == sha256["cooling-step.csv"]
+        assert told["set_files"] == {name: sha256[name] for name in ("conditions.csv", "play_icons.py")}
+        assert told["rig_sha256"] == told["rig"]["content_hash"]
+        device = json.dumps(told["device"], sort_keys=True, ensure_ascii=False)
+        assert told["device_sha256"] == hashlib.sha256(device.encode()).hexdigest()
+        assert told["device"]["streams"] is one.realised.device.streams
+        assert told["program"] == {"version": version("thermicon"), "code_sha256": code_digest()}
+        assert (told["played"]["greatest_command_V"], told["played"]["least_command_V"]) == pytest.approx(
+            (one.realised.played.command.max(), one.realised.played.command.min())  # type: ignore[union-attr]
+        )
+        known = told.pop("sidecar_sha256")
+        bare = json.dumps(told, ensure_ascii=False, indent=2) + "\n"
+        assert known == hashlib.sha256(bare.encode()).hexdigest()
 
     def test_every_column_has_a_unit_and_a_meaning(self) -> None:
         columns = {column["name"]: column["unit"] for column in sidecar_of(ready())["columns"]}
