@@ -17,6 +17,13 @@ LONGEST_NAME, LONGEST_LINE = 200, 2000
 """Characters of a name, and of any other text of one line: room for a sentence, not for a file within a file."""
 
 
+LONGEST_QUOTE = 62
+"""Characters of a value that a message quotes."""
+
+TEXT_FAULT = "text"
+"""Type of pydantic's error for a text that may not stand where it does."""
+
+
 class InputError(Exception):
     """Bad input, told in plain words: what, where, value, limit, unit, cure; its text is safe to show on a terminal."""
 
@@ -35,6 +42,34 @@ def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str
     if len(text) > longest:
         return f"has {len(text):,} characters; at most {longest:,} are taken"
     return None
+
+
+def one_line(text: str) -> str:
+    """Return a text that is one line without control characters; as a validator of a table's field it says why not."""
+    return _checked(text, line_fault(text))
+
+
+def paragraph(text: str) -> str:
+    """Return a text that may have several lines and tabs, but no other control characters."""
+    return _checked(text, line_fault(text, 10 * LONGEST_LINE, "\n\t"))
+
+
+def _checked(text: str, fault: str | None) -> str:
+    if fault:
+        from pydantic_core import PydanticCustomError
+
+        raise PydanticCustomError(TEXT_FAULT, "{fault}", {"fault": fault})
+    return text
+
+
+def quoted(value: object) -> str:
+    """Return a value as messages quote it: as Python writes it, shortened where it is long.
+
+    >>> quoted("a" * 100), quoted(0.17)
+    ("'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…'", '0.17')
+    """
+    text = repr(value)
+    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 2]}…{text[-1]}"
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> str:
