@@ -115,13 +115,17 @@ def read_toml(text: str, where: str, error: type[InputError] = InputError) -> di
     import tomllib
 
     if len(text) > MOST_KEYS_A_LINE and (line := _endless_key(text)):
-        raise error(f"{where}:{line}: a key of more than {MOST_KEYS_A_LINE} parts; a key has two or three, as in skin.site")
+        raise error(
+            f"{where}:{line}: a key of more than {MOST_KEYS_A_LINE} parts; a key has two or three, as in skin.site"
+        )
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
         raise error(f"{where}: not a valid TOML file: {problem}") from None
     except RecursionError:
-        raise error(f"{where}: tables and lists are nested too deeply; two or three levels are all that is needed") from None
+        raise error(
+            f"{where}: tables and lists are nested too deeply; two or three levels are all that is needed"
+        ) from None
     except ValueError:  # whole numbers of more than 4,300 digits
         raise error(f"{where}: a whole number has thousands of digits; numbers have at most {MOST_DIGITS}") from None
     if fault := _unreadable(document):
@@ -143,13 +147,17 @@ def _unreadable(document: dict[str, Any]) -> str | None:
     while open_:
         key, value, depth = open_.pop()
         if depth > DEEPEST:
-            return f"{clean_line(key[:60])}: nested more than {DEEPEST} deep; two or three levels are all that is needed"
+            return (
+                f"{clean_line(key[:60])}: nested more than {DEEPEST} deep; two or three levels are all that is needed"
+            )
         if isinstance(value, dict):
             open_ += [(f"{key}.{name}", inner, depth + 1) for name, inner in value.items()]
         elif isinstance(value, list):
             open_ += [(f"{key}.{place}", inner, depth + 1) for place, inner in enumerate(value)]
         elif isinstance(value, int) and not -(2**63) <= value < 2**63:
-            return f"{clean_line(key[:60])}: a whole number of more than 64 bits; write it as a decimal number, as in 1e20"
+            return (
+                f"{clean_line(key[:60])}: a whole number of more than 64 bits; write it as a decimal number, as in 1e20"
+            )
     return None
 
 

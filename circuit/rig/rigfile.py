@@ -9,7 +9,16 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import LONGEST_NAME, TEXT_FAULT, InputError, nearest, one_line, paragraph, quoted, read_toml
+from thermicon.circuit.inputs import (
+    LONGEST_NAME,
+    TEXT_FAULT,
+    InputError,
+    nearest,
+    one_line,
+    paragraph,
+    quoted,
+    read_toml,
+)
 from thermicon.circuit.rig.modules import module_faults
 from thermicon.circuit.rig.rules import faults_of
 from thermicon.circuit.rig.uncertainty import uncertainty_faults
