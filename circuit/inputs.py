@@ -10,6 +10,7 @@ from typing import Any
 from thermicon.icons.cleaning import clean, clean_line, first_control
 from thermicon.icons.handed import NotRegular, TooLarge, read_limited
 
+TOO_DEEP = "nested too deeply; two or three levels are all that is needed"
 DEEPEST, MOST_KEYS_A_LINE, MOST_DIGITS = 10, 50, 19
 """Levels of tables, parts of a dotted key, and digits of a whole number: far more than any file of ours has."""
 
@@ -123,9 +124,7 @@ def read_toml(text: str, where: str, error: type[InputError] = InputError) -> di
     except tomllib.TOMLDecodeError as problem:
         raise error(f"{where}: not a valid TOML file: {problem}") from None
     except RecursionError:
-        raise error(
-            f"{where}: tables and lists are nested too deeply; two or three levels are all that is needed"
-        ) from None
+        raise error(f"{where}: tables and lists are {TOO_DEEP}") from None
     except ValueError:  # whole numbers of more than 4,300 digits
         raise error(f"{where}: a whole number has thousands of digits; numbers have at most {MOST_DIGITS}") from None
     if fault := _unreadable(document):
@@ -134,9 +133,10 @@ def read_toml(text: str, where: str, error: type[InputError] = InputError) -> di
 
 
 def _endless_key(text: str) -> int | None:
-    """Number of the line with a key of absurdly many parts, whose tables would be nested as deeply."""
+    """Number of the line with a key of absurdly many parts, which takes tomllib as its square."""
     for number, line in enumerate(text.splitlines(), 1):
-        if line.partition("=")[0].count(".") > MOST_KEYS_A_LINE:
+        key, equals, _ = line.partition("=")
+        if (equals or key.lstrip().startswith("[")) and key.count(".") > MOST_KEYS_A_LINE:
             return number
     return None
 
@@ -147,9 +147,7 @@ def _unreadable(document: dict[str, Any]) -> str | None:
     while open_:
         key, value, depth = open_.pop()
         if depth > DEEPEST:
-            return (
-                f"{clean_line(key[:60])}: nested more than {DEEPEST} deep; two or three levels are all that is needed"
-            )
+            return f"{clean_line(key[:60])}: {TOO_DEEP}"
         if isinstance(value, dict):
             open_ += [(f"{key}.{name}", inner, depth + 1) for name, inner in value.items()]
         elif isinstance(value, list):

@@ -71,7 +71,8 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
 def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[tuple[int, int], ...]:
     step, tick = device.most("set-point step"), device.most("tick")
     fastest, longest = device.most("ramp rate"), int(device.most("segment length"))
-    begin, before, found = 0, round(levels[0] / step), []
+    begin, before = 0, round(levels[0] / step)
+    found: list[tuple[int, int]] = []
     for (_, _), (time, level) in pairwise(zip(times, levels, strict=True)):
         goal = round(level / step)
         least = max(1, math.ceil(abs(goal - before) * step / fastest / tick - 1e-9))

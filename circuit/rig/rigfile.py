@@ -369,6 +369,8 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
         return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
     if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
         limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
+        if kind == "greater_than_equal" and 0 < limit < 0.01 and value <= 0:
+            kind, limit = "greater_than", 0
         words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
         return f"{said}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
     if kind == "finite_number":

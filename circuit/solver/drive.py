@@ -18,9 +18,9 @@ from thermicon.icons.cleaning import clean_line
 COLUMNS = ("time_s", "current_A")
 MOST_MB, LONGEST_CELL = 200, 60
 
-SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 86_400.0, 1000.0
-"""Closest rows in s, far below what any driver switches and far above where numbers end; longest drive, a day; largest
-current in A, far above what any module takes."""
+SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
+"""Closest rows in s, far below what any driver switches and far above where numbers end; longest drive in s,
+four months; largest current in A, far above what any module takes."""
 
 
 class DriveError(InputError):
@@ -61,7 +61,7 @@ class Drive:
                 f"row {row + 1}: time {times[row]:g} s does not come after {times[row - 1]:g} s; times must increase"
             )
         if times[-1] > LONGEST_S:
-            raise DriveError(f"the last row is at {times[-1]:g} s; a drive lasts a day at most, {LONGEST_S:g} s")
+            raise DriveError(f"the last row is at {times[-1]:g} s; a drive lasts {LONGEST_S:g} s at most")
         if (np.diff(times) < SHORTEST_S).any():
             row = int(np.flatnonzero(np.diff(times) < SHORTEST_S)[0]) + 1
             raise DriveError(

@@ -50,7 +50,7 @@ def in_header(what: str, value: float, unit: str, most_off: float) -> str:
     text = f"{value:.{DECIMALS}f}"
     if abs(float(text) - value) > most_off:
         raise FormatError(
-            f"keysight-arb writes its {what} with {DECIMALS} decimals, which makes {text} {unit} of {value:.6g} {unit}; "
+            f"keysight-arb writes its {what} with {DECIMALS} decimals; {value:.6g} {unit} would be {text} {unit}: "
             f"use another format, or a device with a wider range and a higher rate"
         )
     return text
