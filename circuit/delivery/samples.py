@@ -19,6 +19,9 @@ from thermicon.circuit.solver.pwm import duty_of, switched
 DENSEST_HZ = 10_000.0
 """From here on a drive has a row for each change and not for each sample; the sum is the same."""
 
+MOST_SAMPLES = 10_000_000
+"""Samples, or switching cycles of a bridge, of one drive: with their traces they fill half a gigabyte."""
+
 Codes = npt.NDArray[np.int64]
 
 
@@ -60,6 +63,7 @@ def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
     A slower device gets every k-th update, a faster one repeats each; a bridge a whole number of its cycles. One that
     cannot hold so many samples gets fewer. Raises DeviceError where it then falls below its slowest rate.
     """
+    carrier = 0.0
     if device.driven_by == "duty":
         carrier = device.most("carrier frequency")
         rate, low = carrier / math.ceil(carrier / requested_Hz - 1e-9), 0.0
@@ -81,7 +85,16 @@ def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
             f"{device.name}: {length_s:g} s at {requested_Hz:g} Hz are {needed} samples, it holds {most:g} and plays "
             f"{low:g} Hz at the slowest; shorten the icon or use another device"
         )
+    _check_count(device, f"{length_s:g} s at {max(rate, carrier):g} Hz", math.ceil(length_s * max(rate, carrier)))
     return rate
+
+
+def _check_count(device: Device, what: str, count: int) -> None:
+    if count > MOST_SAMPLES:
+        raise DeviceError(
+            f"{device.name}: {what} are {count:,} samples, at most {MOST_SAMPLES:,} are computed; shorten the icon or "
+            f"use a slower device"
+        )
 
 
 def sample(
@@ -95,6 +108,7 @@ def sample(
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
+    _check_count(device, "the fewest that it plays", least)
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])

@@ -71,7 +71,7 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
 
 def _item(items: list[dict[str, Any]], part: str, key: str) -> int:
     names = [str(item.get("name", f"hot side at {item.get('t_hot_C')} °C")) for item in items]
-    if part.isdigit() and int(part) < len(items):
+    if part.isascii() and part.isdigit() and len(part) < 5 and int(part) < len(items):
         return int(part)
     if part in names:
         return names.index(part)

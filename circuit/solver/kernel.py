@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from thermicon.circuit.compiled import kernel
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.circuit.solver import plate
 
-compiled = njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
+compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 greatest_cooling = compiled(plate.greatest_cooling_A)
 current_for_heat = compiled(plate.current_for_heat_A)
 
@@ -63,7 +63,7 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
     whole[4] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "reassoc"})
+@kernel(nogil=True, fastmath={"contract", "reassoc"})
 def weighed(n, upper, lower, x):
     """Weighted sum of the lumps: the part of the first lump, after an implicit step, that the cold plate has not."""
     total = 0.0
