@@ -26,6 +26,10 @@ from thermicon.circuit.solver.trace import Outcome, Trace
 from thermicon.icons import Icon
 
 
+BRIDGE_ROUNDS = 3
+"""Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
+
+
 @dataclass(frozen=True, slots=True)
 class Realised:
     """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
@@ -89,7 +93,7 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     narrow = within(device, rig)
     possible = _led(plan if narrow is rig else design(icon, narrow, end), end, rate)
     model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    samples, told = sample(device, rig, possible, rate, (model.time_s, model.display_C))
+    samples, told = _sampled(device, rig, possible, rate, model)
     asked, least, most = plan.drive.current_A, narrow.driver.current_min_A, narrow.driver.current_max_A
     if asked.min() < least - 1e-9 or asked.max() > most + 1e-9:
         told = (_narrower(device, rig, narrow), *told)
@@ -102,13 +106,32 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
 
 
+def _sampled(
+    device: Device, rig: Rig, possible: Drive, rate_Hz: float, model: Trace
+) -> tuple[Samples, tuple[str, ...]]:
+    """The codes of a drive; those of a bridge also make up for the heat that its hotter hot plate lets back."""
+    hotter = np.zeros_like(model.time_s)
+    samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    if device.driven_by != "duty" or device.duty_rule != "equal heat":
+        return samples, told
+    for _ in range(BRIDGE_ROUNDS):
+        drive = current_of(device, rig, samples)
+        hot = simulate_current(drive, rig, start_C=_start_of(device, rig, samples))
+        hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
+        samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    return samples, told
+
+
 def start_of(realised: Realised) -> Array | None:
     """State in °C from which a delivered drive starts; None: the steady state of its first current."""
-    played, device = realised.played, realised.device
+    return _start_of(realised.device, realised.rig, realised.played)
+
+
+def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
     if device.driven_by != "duty" or isinstance(played, Setpoints):
         return None
     low, high = device.interval("output range")
-    return steady_of(realised.rig, float(played.command[0]), min(-low, high))
+    return steady_of(rig, float(played.command[0]), min(-low, high))
 
 
 def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
