@@ -16,8 +16,9 @@ from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Realised, Rig
-    from thermicon.circuit.delivery.export import Prepared, Refusal
+    from thermicon.circuit.delivery.export import Prepared
     from thermicon.circuit.delivery.formats import Format
+    from thermicon.circuit.delivery.refusal import Refusal
     from thermicon.icons import Icon
     from thermicon.perception import FeltChange
 
@@ -133,20 +134,26 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-    for warning in (*realised.told, *one.verdict.cautions):
+    for warning in one.warnings:
         yield f"warning: {realised.icon.name}: {warning}"
 
 
 def refusals(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]]) -> list[tuple[str, Refusal]]:
-    """Every reason against exporting, with the name of its icon; `losses` are what perception adds."""
-    from thermicon.circuit.delivery.export import Refusal
+    """Every cause against exporting, with the name of its icon.
 
-    names = [one.realised.icon.name for one in ready]
-    return [
-        (name, refusal)
-        for name, one in zip(names, ready, strict=True)
-        for refusal in (*one.refusals, *(Refusal("lossy", text) for text in losses.get(name, ())))
-    ]
+    `losses` are what perception adds: told where nothing else is, since what is lost in feeling follows from the rest.
+    """
+    from thermicon.circuit.delivery.refusal import Refusal
+
+    found = []
+    for one in ready:
+        name, felt = one.realised.icon.name, losses.get(one.realised.icon.name, ())
+        causes = one.refusals
+        if felt and not causes:
+            more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
+            causes = (Refusal("lossy", f"{felt[0]}{more}; use a device that is finer or faster"),)
+        found += [(name, refusal) for refusal in causes]
+    return found
 
 
 def refused(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]], force: bool) -> bool:
