@@ -187,9 +187,10 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         gain = rig.driver.transconductance_A_per_V
         least = gain * max(asked.max() / held.current_max_A, asked.min() / (held.current_min_A or -np.inf))
         through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
-        cure = f"raise that to {np.ceil(100 * least) / 100:g} if the current source can, or use a device of more volts"
+        least = np.ceil(100 * least - 1e-6) / 100
+        cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
     text = (
-        f"{device.name}: plays {signed(held.current_min_A)} … {signed(held.current_max_A)} A{through}, the design asks "
+        f"{device.name} plays {signed(held.current_min_A)} … {signed(held.current_max_A)} A{through}, the design asks "
         f"for up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)

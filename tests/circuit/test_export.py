@@ -81,14 +81,14 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
     one = ready(rig=weak)
     (refusal,) = one.refusals
     assert re.match(
-        r"NOT reached: dac-16: plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
+        r"NOT reached: dac-16 plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
         r"design asks for up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
         str(refusal),
     )
     assert one.warnings == ()
     dull = replace(one.realised, narrowed=replace(one.realised.narrowed, outcome=None))  # type: ignore[type-var]
     (lossy,) = refusals_of(dull, one.verdict, one.apart)
-    assert re.search(r"^loses too much: dac-16: plays .* With that the \w+ receptor differs by ", str(lossy))
+    assert re.search(r"^loses too much: dac-16 plays .* With that the \w+ receptor differs by ", str(lossy))
 
 
 def test_where_rig_and_device_are_too_weak_one_sentence_names_both() -> None:

@@ -44,7 +44,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     lines = said.stderr.splitlines()
     assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on keysight-33500b, receptors within ")
     assert lines[0].endswith("mK), safety green in 27 scenarios")
-    assert lines[1].startswith("warning: cool-step: keysight-33500b: plays −1 … 1 A (−10 … 10 V through ")
+    assert lines[1].startswith("warning: cool-step: keysight-33500b plays −1 … 1 A (−10 … 10 V through ")
     assert (
         f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json" in said.stderr
     )
