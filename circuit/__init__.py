@@ -39,7 +39,8 @@ from thermicon.circuit.delivery.realise import Realised, realise
 from thermicon.circuit.solver.difference import Difference, difference
 from thermicon.circuit.delivery.events import Event, events_of
 from thermicon.circuit.delivery.worstcase import worst_case
-from thermicon.circuit.delivery.export import Prepared, Refusal, Verdict, pack, prepare
+from thermicon.circuit.delivery.export import Prepared, Verdict, pack, prepare
+from thermicon.circuit.delivery.refusal import Refusal
 
 __all__ = [
     "InputError",

@@ -75,7 +75,7 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-    for warning in (*realised.told, *one.verdict.cautions):
+    for warning in one.warnings:
         yield f"warning: {realised.icon.name}: {warning}"
 
 

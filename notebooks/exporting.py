@@ -42,18 +42,21 @@ class Ready:
 
     @property
     def against(self) -> list[tuple[str, Refusal]]:
-        """Every reason against writing, with the icon that it is about."""
-        from thermicon.circuit.delivery.export import Refusal
+        """Every cause against writing, with the icon that it is about.
 
-        losses = self.losses
-        return [
-            (one.realised.icon.name, refusal)
-            for one in self.prepared
-            for refusal in (
-                *one.refusals,
-                *(Refusal("lossy", text) for text in losses.get(one.realised.icon.name, ())),
-            )
-        ]
+        What perception loses is reported where nothing else is refused, since it follows from the rest.
+        """
+        from thermicon.circuit.delivery.refusal import Refusal
+
+        found = []
+        for one in self.prepared:
+            name, causes = one.realised.icon.name, one.refusals
+            felt = self.losses.get(name, ())
+            if felt and not causes:
+                more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
+                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device that is finer or faster"),)
+            found += [(name, refusal) for refusal in causes]
+        return found
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Protocol
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
 from thermicon.circuit.delivery.realise import Realised, realise
+from thermicon.circuit.delivery.refusal import Refusal, refusals_of
 from thermicon.circuit.delivery.sidecar import sealed, sidecar, sidecar_text
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.rig import Rig
@@ -41,24 +42,6 @@ class Verdict(Protocol):
 
 Gate = Callable[[Realised], Verdict]
 
-_SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
-
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """Why a cue is not exported. What is unsafe cannot be forced."""
-
-    kind: Literal["unsafe", "unreachable", "lossy"]
-    text: str
-
-    @property
-    def forcible(self) -> bool:
-        """Whether a person may insist."""
-        return self.kind != "unsafe"
-
-    def __str__(self) -> str:
-        return f"{_SAID[self.kind]}: {self.text}"
-
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
@@ -68,6 +51,16 @@ class Prepared:
     verdict: Verdict
     apart: Difference
     refusals: tuple[Refusal, ...]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is to be known of the delivery, then what is amber; not again what it is refused for."""
+        narrowed = self.realised.narrowed
+        told = self.realised.told
+        if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
+            told = tuple(text for text in told if text != narrowed.text)
+        refused = [refusal.text for refusal in self.refusals]
+        return (*(text for text in told if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
 
 
 def prepare(
@@ -91,13 +84,12 @@ def prepare(
     realised = realise(icon, rig, device, tail_s=tail_s)
     verdict = gate(realised)
     apart = difference(realised.designed_trace, realised.trace)
-    against = []
-    if verdict.colour == "red":
-        against.append(Refusal("unsafe", verdict.reason or "the gate says red"))
-    if realised.outcome is not None and not realised.outcome.reached:
-        against.append(Refusal("unreachable", realised.outcome.reason or "the target is missed"))
-    against += [Refusal("lossy", text) for text in apart.losses()]
-    return Prepared(realised, verdict, apart, tuple(against))
+    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart))
+
+
+def _bare(warning: str) -> str:
+    """A warning without the name of the device before it."""
+    return warning.partition(": ")[2] or warning
 
 
 def check_names(names: Sequence[str], form: Format) -> None:

@@ -98,13 +98,13 @@ def _check_count(device: Device, what: str, count: int) -> None:
 
 
 def sample(
-    device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates_C: tuple[Array, Array]
+    device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates: tuple[Array, Array, Array]
 ) -> tuple[Samples, tuple[str, ...]]:
     """Return the codes that stand for a designed drive, and sentences on what the device cannot give.
 
     Each sample is the mean of the designed current over its period, so that no charge is lost, limited by the device's
-    slew rate and range, rounded to the nearest code. `plates_C`: times in s and display temperature of the design, for
-    a bridge.
+    slew rate and range, rounded to the nearest code. `plates`, for a bridge: times in s, display temperature in °C of
+    the design, and how many K hotter than in the design the hot plate is.
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
@@ -112,7 +112,7 @@ def sample(
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
-    wanted = _command(device, rig, current, edges, plates_C)
+    wanted = _command(device, rig, current, edges, plates)
     told = []
     limit = device.most("slew rate")
     limited = _slewed(wanted, limit / rate_Hz)
@@ -166,11 +166,11 @@ def _means(drive: Drive, edges: Array) -> Array:
     return means
 
 
-def _command(device: Device, rig: Rig, current: Array, times: Array, plates_C: tuple[Array, Array]) -> Array:
+def _command(device: Device, rig: Rig, current: Array, times: Array, plates: tuple[Array, Array, Array]) -> Array:
     if device.driven_by == "duty":
         low, high = device.interval("output range")
-        cold = np.interp(times, plates_C[0], plates_C[1])
-        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold)
+        cold, hotter = (np.interp(times, plates[0], column) for column in plates[1:])
+        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold, hotter)
     return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
 
 

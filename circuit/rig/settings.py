@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from thermicon.circuit.rig.modules import PARAMETERS
+from thermicon.circuit.rig.modules import PARAMETERS, build_of, module_names
 from thermicon.circuit.rig.rigfile import RigError, parse_toml, rig_keys, unknown_key
 
 _OPTIONAL = ("controller", "uncertainty", "safety")
@@ -31,11 +31,16 @@ def read_settings(settings: Iterable[str]) -> dict[str, object]:
 
 
 def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
-    """Set dotted keys in the document; a module that changes drops its source and the way it was given before."""
+    """Set dotted keys in the document; a module that changes drops its source and the way it was given before.
+
+    A module by name brings its plates, where they are on record.
+    """
     for key, value in changes.items():
         if key in ("module.datasheet", "module.name") and value is not None:
             for way in (*PARAMETERS, "datasheet", "name"):
                 document["module"].pop(way, None)
+        if key == "module.name" and value in module_names() and (plate := build_of(str(value)).plate_J_per_K):
+            document["module"].update(hot_plate_J_per_K=plate, cold_plate_J_per_K=plate)
     for key, value in changes.items():
         put(document, key, value)
 

@@ -46,11 +46,11 @@ def test_every_number_of_a_shipped_device_has_a_source_and_none_was_played(name:
 
 @pytest.mark.parametrize(
     ("name", "milliamperes"),
-    [("dac-12", 0.488281), ("dac-14", 0.12207), ("dac-16", 0.0305176), ("pwm-h-bridge-8", 14.84)],
+    [("dac-12", 0.732422), ("dac-14", 0.183105), ("dac-16", 0.0457764), ("pwm-h-bridge-10", 1.46484)],
 )
 def test_steps_are_as_large_as_arithmetic_says(name: str, milliamperes: float) -> None:
     device = Device.load(name)
-    per_unit = 0.1 if device.driven_by == "volts" else 1.9
+    per_unit = 0.15 if device.driven_by == "volts" else 1.5
     assert device.scale(1.0).step * per_unit * 1e3 == pytest.approx(milliamperes, rel=1e-3)
 
 
