@@ -109,6 +109,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     from thermicon.circuit.safety.sessionplan import order_text
     from thermicon.notebooks.cues import read_set, warn_of_site
     from thermicon.notebooks.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
+    from thermicon.notebooks.progress import progress_bar
 
     for path, suffixes, what in (
         (request.json, (), "a report"),
@@ -120,7 +121,9 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     icons = read_set([file])
     plan = plan_of(icons, request)
     warn_of_site(file, icons, rig)
-    session = play_session([icons[name] for name in plan.names], plan, rig, tracking=request.tracking)
+    with progress_bar("worst case") as progress:
+        played = [icons[name] for name in plan.names]
+        session = play_session(played, plan, rig, tracking=request.tracking, progress=progress)
     if request.json is not None:
         with complete_or_absent(request.json) as draft:
             draft.write_text(session_text(session, icons, rig), encoding="utf-8")
@@ -197,7 +200,7 @@ def summary_lines(session: Session) -> list[str]:
     shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
     lines = [
         f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s apart{shuffled}",
-        f"safety {session.verdict} in {session.gate.scenarios} scenarios, over the whole session and 60 s after",
+        f"safety {session.verdict} in {session.scenarios} scenarios, over the whole session and after",
         *(f"  - {'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in session.findings),
     ]
     for words, column in (("skin", trace.skin_C), ("display", trace.display_C), ("hot plate", trace.hot_plate_C)):

@@ -52,7 +52,7 @@ def session_figure(session: Session) -> Figure:
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
     figure.suptitle(
         f"{plays}, {session.plan.gap_s:g} s apart, on the {session.trace.rig_name} rig: safety {session.verdict} in "
-        f"the worst of {session.gate.scenarios} scenarios",
+        f"the worst of {session.scenarios} scenarios",
         fontsize=11,
         wrap=True,
     )
@@ -100,7 +100,7 @@ def _temperatures(session: Session, ax: Axes, scale: float) -> None:
         ax.plot(time, drawn, color=color, ls=dashes, lw=width, label=label)
     ax.set_ylabel("temperature (°C)")
     low, high = ax.get_ylim()
-    for rule in session.gate.limits.rules:
+    for rule in session.limits.rules:
         if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
             hard = rule.severity == "hard"
             ax.axhline(

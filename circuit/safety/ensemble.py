@@ -157,7 +157,8 @@ class Ensemble:
 
 def row_of(drive: Drive) -> float:
     """Distance in s of the rows that a drive is watched at: its shortest update, within ROW_S and FINEST_S."""
-    return float(np.clip(np.diff(drive.time_s).min(), FINEST_S, ROW_S))
+    shortest = round(float(np.diff(drive.time_s).min()), 9)  # differences of times are off by rounding
+    return float(np.clip(shortest, FINEST_S, ROW_S))
 
 
 def between(drive: Drive, begin_s: float, end_s: float) -> Drive:

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
+from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.safety.checks import Check, as_dict, beyond, colour_of, findings_of
-from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT, Gate
+from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
 from thermicon.circuit.safety.sessionplan import SessionPlan
 from thermicon.circuit.solver.trace import Trace
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-
-COLOURS = ("green", "amber", "red")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,11 +55,11 @@ class TimeBeyond:
 class Session:
     """A session on a rig.
 
-    `trace` is the rig as given, from the first icon's start to the last one's end. `gate` judges the whole drive in the
-    worst case and 60 s beyond; `checks` are its rules, those of each instant at the full rate of the run. The dose
-    (min CEM43), `henriques`, `energy_J` (into the module) and `heat_to_sink_W` (least, most; None where the sink has a
-    capacity of its own) are those of the rig as given. `recovery_s` is how long after the end the skin is within 0.1 K
-    of where it began, None where 10 min are too short.
+    `trace` is the rig as given, from the first icon's start to the last one's end. `checks` has every rule once, in the
+    scenario of the worst case that goes farthest. The dose (min CEM43), `henriques`, `energy_J` (into the module) and
+    `heat_to_sink_W` (least, most; None where the sink has a capacity of its own) are those of the rig as given.
+    `recovery_s` is how long after the end display and skin are within 0.1 K of where they began, in every corner of the
+    uncertainty; None where 10 min are too short.
     """
 
     plan: SessionPlan
@@ -67,7 +67,9 @@ class Session:
     rest_A: float
     trace: Trace
     plays: tuple[Play, ...]
-    gate: Gate
+    limits: Limits
+    uncertainty: Uncertainty
+    scenarios: int
     checks: tuple[Check, ...]
     time_beyond: tuple[TimeBeyond, ...]
     dose_cem43_min: float
@@ -100,13 +102,12 @@ class Session:
     @property
     def verdict(self) -> str:
         """Green, amber or red, of the whole session in the worst case."""
-        return max(self.gate.colour, colour_of(self.findings), key=COLOURS.index)
+        return colour_of(self.findings)
 
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence; None where there is none."""
-        hard = next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
-        return hard or self.gate.reason
+        return next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -145,7 +146,7 @@ class Session:
             "reason": self.reason,
             "findings": [as_dict(finding) for finding in self.findings],
             "what_it_is_not": WHAT_IT_IS_NOT,
-            "scenarios": self.gate.scenarios,
+            "scenarios": self.scenarios,
             "rig": trace.rig_name,
             "tracking": self.tracking,
             "seed": self.plan.seed,
@@ -171,7 +172,7 @@ class Session:
             "heat_to_sink_max_W": sink and sink[1],
             "time_beyond": [asdict(each) for each in self.time_beyond],
             "checks": [as_dict(check) for check in self.checks],
-            "uncertainty": asdict(self.gate.uncertainty),
-            "limits": self.gate.limits.to_dict(),
+            "uncertainty": asdict(self.uncertainty),
+            "limits": self.limits.to_dict(),
             "plays": [asdict(play) for play in self.plays],
         }

@@ -24,7 +24,7 @@ SLOWEST_HZ = 100.0
 """Fewest rows a second: a rate over a longer time than 10 ms hides how steep the skin's temperature was."""
 
 MOST_ROWS = 1_500_000
-"""Rows of a session, which with its corners and the gate take up to about 1.3 GB."""
+"""Rows of a session, which take about 0.5 GB while they are computed."""
 
 
 @dataclass(frozen=True, slots=True)

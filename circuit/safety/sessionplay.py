@@ -13,34 +13,37 @@ from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.checks import findings_of
 from thermicon.circuit.safety.exposure import cem43_min, henriques
-from thermicon.circuit.safety.gate import gate
 from thermicon.circuit.safety.limits import SafetyVerdict, checks_of
 from thermicon.circuit.safety.session import Play, Session, TimeBeyond
 from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
 from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
+from thermicon.circuit.safety.sessionworst import Progress, worst_case_of
 from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.solver.drive import Drive
 from thermicon.circuit.solver.simulate import simulate_current
-from thermicon.circuit.solver.trace import CLOSE_K, Trace
+from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
-
-RECOVERY_S = 600.0
-"""How long the skin is followed after the last icon, with the resting current held."""
 
 PLACES = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
 """Columns of temperatures that limits are about, where it is not the skin surface."""
 
 
 def play_session(
-    icons: Iterable[Icon], plan: SessionPlan, rig: Rig, *, tracking: str = "replay", limits: Limits | None = None
+    icons: Iterable[Icon],
+    plan: SessionPlan,
+    rig: Rig,
+    *,
+    tracking: str = "replay",
+    limits: Limits | None = None,
+    progress: Progress | None = None,
 ) -> Session:
     """Play the icons of a plan one after the other on a rig, as one run without a rest in between.
 
     With tracking `replay` the current of each icon, designed from rest, is played open loop, as exported drives are,
     and its holding current in the gaps; with `display` the driver follows each icon's display temperature, as a
     thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` takes the
-    place of the rig's. Raises SessionError where the plan names an icon that is not given, is too long, or cannot be
-    tracked, and RigError where the rig cannot hold a baseline.
+    place of the rig's; `progress` is called with the seconds of the worst case that are done, and in all.
+    Raises SessionError where the plan names an icon that is not given, is too long, or cannot be tracked, and RigError
+    where the rig cannot hold a baseline.
 
     >>> from thermicon.icons import load_library
     >>> plan = SessionPlan(("cooling-step", "warming-step"), gap_s=10.0)
@@ -55,7 +58,7 @@ def play_session(
     played = drive_of(plan, known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     rules = rig.limits if limits is None else limits
-    verdict = gate(played.drive, rig, rest_A=played.rest_A, limits=limits, once=True)
+    worst = worst_case_of(played, rig, rules, progress)
     power = np.append(trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s), 0.0)
     plays = _plays(plan, played, trace, rules, power)
     return Session(
@@ -64,14 +67,16 @@ def play_session(
         rest_A=played.rest_A,
         trace=trace,
         plays=plays,
-        gate=verdict,
-        checks=verdict.checks,
+        limits=rules,
+        uncertainty=rig.uncertainty,
+        scenarios=worst.scenarios,
+        checks=worst.checks,
         time_beyond=_times_beyond(rules, trace),
         dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
         henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),
         energy_J=float(power.sum()),
         heat_to_sink_W=_heat_to_sink_W(rig, trace),
-        recovery_s=_recovery_s(played, rig, float(trace.skin_C[0])),
+        recovery_s=worst.recovery_s,
     )
 
 
@@ -123,18 +128,3 @@ def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:
     hot = np.array([trace.hot_plate_C.min(), trace.hot_plate_C.max()])
     least, most = (hot - sink.temperature_C) / sink.resistance_K_per_W
     return float(least), float(most)
-
-
-def _recovery_s(played: SessionDrive, rig: Rig, rest_C: float) -> float | None:
-    """Seconds after the last icon until the skin stays within 0.1 K of its rest, with the resting current held."""
-    drive = played.drive
-    end = float(drive.time_s[-1])
-    held = Drive(np.append(drive.time_s, end + RECOVERY_S), np.append(drive.current_A, drive.current_A[-1]), held=True)
-    trace = simulate_current(held, rig, rate_Hz=1.0, start_C=played.start_C)
-    after = trace.time_s >= played.ends_s[-1]
-    away = np.abs(trace.skin_C[after] - rest_C) > CLOSE_K
-    if not away.any():
-        return 0.0
-    last = int(np.flatnonzero(away)[-1])
-    times = trace.time_s[after] - played.ends_s[-1]
-    return float(times[last + 1]) if last + 1 < len(times) else None

@@ -44,18 +44,15 @@ class Single:
     def of(ensemble: Ensemble, drive: Drive, rest_A: float, limits: Limits) -> Single:
         """Play a drive; raises RigError where the rig as given has no rest to start from."""
         start = ensemble.at_rest(rest_A)
-        tallies = {
-            ending: Tally(limits, [f"{corner}, then {ending}" for corner in ensemble.corners]) for ending in ENDINGS
-        }
-        state = start
+        played, state = Tally(limits, [str(corner) for corner in ensemble.corners]), start
         for (rows, values), then in ensemble.play(drive, start):
-            for tally in tallies.values():
-                tally.add(rows, values)
+            played.add(rows, values)
             state = then
+        tallies = {ending: played.fork(f"then {ending}") for ending in ENDINGS}
         end_s = float(drive.time_s[-1])
         after = follow_endings(ensemble, state, float(drive.current_A[-1]), end_s, tallies)
         begun = skin_C(ensemble, start)
-        judged = (*tallies.values(), judge_the_end(ensemble, limits, end_s, begun))
+        judged = (played, *tallies.values(), judge_the_end(ensemble, limits, end_s, begun))
         recovery = recovery_s(ensemble, rest_A, start, state)
         return Single(ensemble, drive, rest_A, limits, start, state, judged, after, recovery)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import deepcopy
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,6 +80,12 @@ class Tally:
             values = measured[rule.quantity]
             if values is not None and not (drift and (rule.relative or rule.severity != "hard")):
                 self._count(place, rule, time_s, values)
+
+    def fork(self, what: str) -> Tally:
+        """The same so far, to be added to under other names: those of its scenarios with `what` behind them."""
+        other = deepcopy(self)
+        other.scenarios = tuple(f"{scenario}, {what}" for scenario in self.scenarios)
+        return other
 
     def limits_of(self, rule: Rule) -> Array:
         """The limit of a rule in each lane (lanes,)."""

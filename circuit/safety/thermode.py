@@ -167,12 +167,11 @@ def watched(felt: Sequence[Array]) -> Array:
 def tally_once(under: Under, shown: Shown, limits: Limits) -> tuple[list[Tally], list[Array]]:
     """Every rule over one play and its endings, and the states at the end of the play."""
     values, ended = under.play(shown, under.steady(float(shown.display_C[0])))
-    names = [f"{corner}, {shown.way}" for corner in under.corners]
-    tallies = [Tally(limits, [f"{name}, then {ending}" for name in names]) for ending in ENDINGS]
-    for tally in tallies:
-        tally.add(shown.rows_s, values)
+    played = Tally(limits, [f"{corner}, {shown.way}" for corner in under.corners])
+    played.add(shown.rows_s, values)
+    tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
     add_endings(under, shown, ended, tallies)
-    return tallies, ended
+    return [played, *tallies], ended
 
 
 def add_endings(

@@ -44,7 +44,7 @@ def test_an_order_is_played_and_reported(cli: Cli, two: Path, order: Path) -> No
     assert said.exit_code == 0
     lines = said.stdout.splitlines()
     assert lines[0] == "3 plays in 42 s on thenar, 10 s apart"
-    assert lines[1].startswith("safety green in 27 scenarios")
+    assert lines[1].startswith("safety green in 195 scenarios")
     for words in ("  dose       0 min CEM43", "the limit of a session is 1", "  baseline   −0.", "back within 0.1 K"):
         assert words in said.stdout
     table = [line.split() for line in lines if "-step" in line]

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, SessionPlan, play_session
+from thermicon.circuit import Rig, SessionPlan, simulate_current
+from thermicon.circuit.safety.sessiondrive import drive_of
 from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import Task, carry_over, carryover, rank
 
@@ -37,10 +38,12 @@ def largest_miss_K(tracking: str, gap_s: float, got: list[Received]) -> float:
     worst, begin = 0.0, round((8.0 + gap_s) * carryover.RATE_HZ)
     for place, first in enumerate(ICONS):
         for other, second in enumerate(ICONS):
-            session = play_session(ICONS, SessionPlan((first.name, second.name), gap_s), RIG, tracking=tracking)
+            plan = SessionPlan((first.name, second.name), gap_s)
+            session = drive_of(plan, {icon.name: icon for icon in ICONS}, RIG, tracking)
+            run = simulate_current(session.drive, RIG, start_C=session.start_C)
             every = round(100 / carryover.RATE_HZ)
             for values, column in zip(got[place], ("cold_receptor_C", "warm_receptor_C"), strict=True):
-                played = getattr(session.trace, column)[::every][begin:]
+                played = getattr(run, column)[::every][begin:]
                 worst = max(worst, float(np.abs(played - values[other, begin : begin + len(played)]).max()))
     return worst
 

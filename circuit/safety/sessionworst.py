@@ -1,0 +1,60 @@
+"""A session in the worst case: the whole drive in every corner of the rig's uncertainty, and what follows it.
+
+As one play at the gate: rows no farther apart than 10 ms or the driver's updates, so that no rate is averaged away, in
+stretches, so that memory does not grow with the session. A session is the sequence that is played, so it is not
+judged as something that is played again and again; single faults of the hardware are the business of an export.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.safety.checks import Check, worst_of
+from thermicon.circuit.safety.endings import ENDINGS, follow_endings, judge_the_end
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.repeated import recovery_s, skin_C
+from thermicon.circuit.safety.sessiondrive import SessionDrive
+from thermicon.circuit.safety.tally import Tally
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase:
+    """Every rule in the scenario that goes farthest, of so many; and how long display and skin take to recover.
+
+    `recovery_s` counts from the end of the session until both are within 0.1 K of where they began in every corner,
+    with the resting current held; None where that takes longer than 10 min.
+    """
+
+    checks: tuple[Check, ...]
+    scenarios: int
+    recovery_s: float | None
+
+
+def worst_case_of(played: SessionDrive, rig: Rig, limits: Limits, progress: Progress | None = None) -> WorstCase:
+    """Check a session against every rule in all corners; `progress` is called with seconds played and in all.
+
+    Raises RigError where the rig as given has no rest to start from.
+    """
+    from threadpoolctl import threadpool_limits
+
+    with threadpool_limits(limits=1, user_api="blas"):  # small matrices: threads would only wait for each other
+        ensemble, drive = Ensemble.of(rig), played.drive
+        start = state = ensemble.at_rest(played.rest_A)
+        end_s = float(drive.time_s[-1])
+        whole = Tally(limits, [str(corner) for corner in ensemble.corners])
+        for (rows, values), then in ensemble.play(drive, state):
+            whole.add(rows, values)
+            state = then
+            if progress is not None:
+                progress(round(float(rows[-1])), round(end_s))
+        endings = {ending: whole.fork(f"then {ending}") for ending in ENDINGS}
+        follow_endings(ensemble, state, float(drive.current_A[-1]), end_s, endings)
+        later = judge_the_end(ensemble, limits, end_s, skin_C(ensemble, start))
+        checks = worst_of([each.checks() for each in (whole, *endings.values(), later)])
+        recovery = recovery_s(ensemble, played.rest_A, start, state)
+    return WorstCase(checks, len(ensemble.corners) * len(ENDINGS), recovery)
