@@ -1,102 +1,75 @@
 """The gate of safety for what a device delivers: how each kind of device meets the corners of a rig's uncertainty.
 
 Volts and amperes are played open loop, so the gain of the current source counts. A bridge switches its full current,
-so its rest and its last value are means. A thermode that is given set-points measures its plate and corrects itself:
-the gain of the rig's current source is none of its own, and in each corner the gate plays the current by which the
-display follows the set-points *there*. A better contact brings such a skin nearer to the set-point than the current of
-the nominal rig would. The limits of the rig's driver are not those of the thermode either, and are left out.
+so its rest and its last value are means. A thermode shows its own set-points at its own tick: they are judged as they
+stand, with its lag and without, and neither module nor driver nor heat sink of the rig take part.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
-from thermicon.circuit.delivery.realise import Realised, followed
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.checks import Check
-from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.safety.gate import Gate, gate
+from thermicon.circuit.safety.gate import Gate, gate_set
+from thermicon.circuit.safety.thermode import Shown
+from thermicon.circuit.safety.thermode_gate import gate_shown
+from thermicon.circuit.solver.prescribed import shown
 
-REACHED = "every set-point reached"
-
-_NO_LIMITS = {"driver.current_min_A": -20.0, "driver.current_limit_A": 20.0, "driver.voltage_limit_V": 200.0}
-_NO_GAIN = "the device measures its plate and corrects itself: the gain of the rig's current source is none of its own"
-_CORNER = "one corner of a rig's uncertainty, which the gate varies itself"
-_SURE = {"contact_resistance_relative": 0.0, "ambient_K": 0.0, "gain_relative": 0.0, "reason": _CORNER}
+AT_ONCE, LAGGED = "followed at once", "followed with its lag"
 
 
-def worst_case(realised: Realised) -> Gate:
-    """Hold what a device delivers against every rule of safety, in all corners of the rig's uncertainty and 60 s after.
+def worst_case(realised: Realised, pause_s: float | None = None) -> Gate:
+    """Check what a device delivers against every rule of safety, once and again and again with a pause.
 
-    >>> from thermicon.circuit.delivery.device import Device
+    See `gate`. Raises PauseError for a pause that cannot be.
+
+    >>> from thermicon.circuit import Rig
     >>> from thermicon.circuit.delivery.realise import realise
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
     >>> worst_case(realise(icon, rig, Device.load("dac-12")))
-    Gate(green: 22 rules in 27 scenarios on thenar)
+    Gate(green: 22 rules in 195 scenarios on thenar)
     >>> worst_case(realise(icon, rig, Device.load("qst-tcs2")))
-    Gate(green: 22 rules in 15 scenarios on thenar)
+    Gate(green: 21 rules in 20 scenarios on thenar)
     """
-    played, device = realised.played, realised.device
-    if isinstance(played, Setpoints):
-        return _regulated(realised, played)
+    return worst_cases([realised], pause_s)[0]
+
+
+def worst_cases(realised: Sequence[Realised], pause_s: float | None = None) -> tuple[Gate, ...]:
+    """Check what one device delivers of several cues on one rig, which may be played again and again in any order."""
+    device, rig = realised[0].device, realised[0].rig
+    if device.driven_by == "set-points":
+        low, high = device.interval("set-point range")
+        return gate_shown([ways_of(one) for one in realised], rig, stuck_C=(low, high), pause_s=pause_s)
     if device.driven_by != "duty":
-        return gate(realised.delivered, realised.rig)
+        drives = [(one.delivered, float(one.delivered.current_A[0])) for one in realised]
+        return gate_set(drives, rig, pause_s=pause_s)
     low, high = device.interval("output range")
     peak = min(-low, high)
-    return gate(realised.delivered, realised.rig, rest_A=float(played.command[0]) * peak, bridge_A=peak)
+    bridged = [(one.delivered, float(_samples(one).command[0]) * peak) for one in realised]
+    return gate_set(bridged, rig, bridge_A=peak, pause_s=pause_s)
 
 
-def regulated_corners(rig: Rig) -> tuple[tuple[str, Rig], ...]:
-    """Corners of contact and ambient, in words and as rigs that are sure, with a driver as strong as need be."""
-    calm = rig.with_(**{"uncertainty.gain_relative": 0.0, "uncertainty.reason": _NO_GAIN})
-    sure = {f"uncertainty.{key}": value for key, value in _SURE.items()}
-    return tuple((str(corner), corner.rig.with_(**sure, **_NO_LIMITS)) for corner in corners_of(calm))
+def ways_of(realised: Realised) -> tuple[Shown, ...]:
+    """The display of a thermode in each way in which it may follow its set-points, at its own tick."""
+    played, device = realised.played, realised.device
+    assert isinstance(played, Setpoints)
+    step = played.tick_s
+    levels, fastest = played.sampled(), device.most("ramp rate")
+    found = [Shown(AT_ONCE, step, shown(levels, step, 0.0, fastest))]
+    if lag := _lag_s(device):
+        found.append(Shown(LAGGED, step, shown(levels, step, lag, fastest)))
+    return tuple(found)
 
 
-def _regulated(realised: Realised, setpoints: Setpoints) -> Gate:
-    rig, found = realised.rig, []
-    for words, there in regulated_corners(rig):
-        try:
-            drive = followed(there, setpoints, realised.lead_s, realised.end_s)
-        except RigError:  # where the module cannot hold the baseline, it does what it does on the rig as given
-            drive = realised.delivered
-        one = gate(drive, there, limits=rig.limits)
-        checks = [
-            replace(check, scenario=f"{words}, then {check.scenario.rpartition(', then ')[2]}") for check in one.checks
-        ]
-        found.append(replace(one, checks=tuple(checks)))
-    worst = [
-        _reached(max(same, key=_beyond), setpoints, realised.lead_s)
-        for same in zip(*(one.checks for one in found), strict=True)
-    ]
-    return replace(
-        found[0],
-        uncertainty=replace(rig.uncertainty, gain_relative=0.0, reason=_both(rig.uncertainty.reason, _NO_GAIN)),
-        scenarios=sum(one.scenarios for one in found),
-        checks=tuple(worst),
-    )
+def _lag_s(device: Device) -> float:
+    record = device.record("lag")
+    return 0.0 if record is None else record.central
 
 
-def _both(given: str, own: str) -> str:
-    return f"{given}; {own}" if given else own
-
-
-def _beyond(check: Check) -> float:
-    return check.value - check.limit if check.upper else check.limit - check.value
-
-
-def _reached(check: Check, setpoints: Setpoints, lead_s: float) -> Check:
-    """A check of the display with the set-points themselves, where the rig's module falls short of them."""
-    if check.quantity != "display":
-        return check
-    levels: Sequence[float] = setpoints.level_C.tolist()
-    value = max(levels) if check.upper else min(levels)
-    time = lead_s + float(setpoints.time_s[levels.index(value)])
-    own = replace(check, value=value, time_s=time, since_s=None, scenario=REACHED)
-    if _beyond(own) <= _beyond(check) + 1e-6:
-        return check
-    return replace(own, since_s=time) if _beyond(own) > 0 else own
+def _samples(realised: Realised) -> Samples:
+    assert isinstance(realised.played, Samples)
+    return realised.played

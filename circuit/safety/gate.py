@@ -7,8 +7,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
-import numpy as np
-
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rig import Rig
@@ -29,7 +27,6 @@ from thermicon.circuit.safety.repeated import (
 from thermicon.circuit.safety.repetition import Cycle
 from thermicon.circuit.safety.scenarios import rest_of
 from thermicon.circuit.safety.single import Single
-from thermicon.circuit.solver.batch_inputs import State
 from thermicon.circuit.solver.drive import Drive
 
 WHAT_IT_IS_NOT = (
@@ -206,9 +203,8 @@ def _gated(
     pause = pause_s
     if pause is None:
         pause = LONGEST_PAUSE_S if None in known else max(time for time in known if time is not None)
-    start = State(np.mean([single.start.nodes_C for single in singles], axis=0), singles[0].start.sink)
     cycles = [Cycle(ensemble, single.drive, single.rest_A, pause) for single in singles]
-    repeating = Repeating(ensemble, cycles, start, held)
+    repeating = Repeating(ensemble, cycles, [single.start for single in singles], held)
     tallies = repeating.tallies(pause)
     shortest = shortest_pause_s(repeating)
     repeats = []

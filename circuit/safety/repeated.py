@@ -100,22 +100,22 @@ def check_pause(pause_s: float | None) -> None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Repeating:
-    """Drives on one rig that may follow each other in any order, each in all corners; what they are judged by."""
+    """Drives on one rig that may follow each other in any order, each in all corners and from a rest of its own."""
 
     ensemble: Ensemble
     drives: Sequence[Cycle]
-    start: State
+    starts: Sequence[State]
     limits: Limits
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
         cycles = [replace(cycle, ensemble=self.ensemble, pause_s=pause_s) for cycle in self.drives]
-        steady = [steady_cycle(cycle, self.start)[0] for cycle in cycles]
-        warm = bound(cycles, self.start, steady, warm=True)
-        cold = bound(cycles, self.start, steady, warm=False)
-        begun = skin_C(self.ensemble, self.start)
+        steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
+        warm = bound(cycles, self.starts, steady, warm=True)
+        cold = bound(cycles, self.starts, steady, warm=False)
         found = []
-        for cycle, state in zip(cycles, steady, strict=True):
+        for cycle, start, state in zip(cycles, self.starts, steady, strict=True):
+            begun = skin_C(self.ensemble, start)
             own = [self._tally(cycle, state, begun, "", True)[0]]
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
@@ -217,7 +217,8 @@ def _later(repeating: Repeating, pause_s: float) -> float | None:
 
 
 def _with(repeating: Repeating, corners: list[int]) -> Repeating:
-    return replace(repeating, ensemble=repeating.ensemble.only(corners), start=repeating.start.take(np.array(corners)))
+    few = [start.take(np.array(corners)) for start in repeating.starts]
+    return replace(repeating, ensemble=repeating.ensemble.only(corners), starts=few)
 
 
 def _bisect(few: Repeating) -> float | None:

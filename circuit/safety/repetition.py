@@ -71,15 +71,13 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
     return _parted(found, start), settled
 
 
-def bound(cycles: Sequence[Cycle], start: State, steady: Sequence[State], warm: bool) -> State:
+def bound(cycles: Sequence[Cycle], starts: Sequence[State], steady: Sequence[State], warm: bool) -> State:
     """Return states that are warmer (or colder) than those before any play of a sequence of the cycles, in any order.
 
-    `start` is that before the first play, `steady` the states before each play of each cycle's own repetition.
+    `starts` are those before a first play of each cycle, `steady` those before each play of its own repetition.
     """
-    side = 1.0 if warm else -1.0
-    now = side * start.nodes_C
-    for state in steady:
-        now = np.maximum(now, side * state.nodes_C)
+    side, start = 1.0 if warm else -1.0, starts[0]
+    now = np.max([side * state.nodes_C for state in (*starts, *steady)], axis=0)
     before = np.zeros(len(now))
     for _ in range(MOST_PLAYS):
         at = State(side * now, start.sink)
