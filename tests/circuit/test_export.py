@@ -186,7 +186,11 @@ class TestWorstCase:
             "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
         )
         found = realise(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
-        assert judge_safety(found.trace).colour == "green"
+        assert found.outcome is not None
+        assert found.outcome.reached
+        assert judge_safety(found.trace).colour == "red"
+        assert found.trace.display_C.min() == pytest.approx(24.0, abs=0.01)
+        assert found.told == ()  # 0.4 A are the limit of another driver
         assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
 
