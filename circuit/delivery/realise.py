@@ -25,6 +25,9 @@ from thermicon.circuit.solver.steady import hold
 from thermicon.circuit.solver.trace import Outcome, Trace
 from thermicon.icons import Icon
 
+NO_DRIVER = {"driver.current_min_A": -20.0, "driver.current_limit_A": 20.0, "driver.voltage_limit_V": 200.0}
+"""A thermode has a driver of its own: that of the rig does not hold back what its set-points ask for."""
+
 BRIDGE_ROUNDS = 3
 """Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
 
@@ -74,8 +77,9 @@ class Realised:
 
     @property
     def told(self) -> tuple[str, ...]:
-        """What is to be known of the delivery: warnings, and what it asks of the driver (which a bridge replaces)."""
-        return self.warnings if self.device.driven_by == "duty" else (*self.warnings, *self.trace.beyond)
+        """What is to be known of the delivery: warnings, and what it asks of the rig's driver, where that plays it."""
+        own = self.device.driven_by in ("duty", "set-points")
+        return self.warnings if own else (*self.warnings, *self.trace.beyond)
 
     @property
     def end_s(self) -> float:
@@ -98,9 +102,9 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.91 … 32.03 °C)
     """
     end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
-    plan = design(icon, rig, end)
     if device.driven_by == "set-points":
-        return _by_setpoints(icon, rig, device, plan, end, rate_Hz)
+        return _by_setpoints(icon, rig, device, end, rate_Hz)
+    plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
     best = plan if narrow is rig else design(icon, narrow, end)
@@ -207,8 +211,9 @@ def _led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
     return Drive([0.0, *times], [plan.rest_A, *currents])
 
 
-def _by_setpoints(icon: Icon, rig: Rig, device: Device, plan: Design, end_s: float, rate_Hz: float) -> Realised:
-    update = rig.driver.update_Hz
+def _by_setpoints(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Realised:
+    free = rig.with_(**NO_DRIVER)
+    plan, update = design(icon, free, end_s), rig.driver.update_Hz
     lead = 1.0 / update
     designed = _led(plan, end_s, update)
     exact = icon.frame.control == "display"
@@ -223,7 +228,7 @@ def _by_setpoints(icon: Icon, rig: Rig, device: Device, plan: Design, end_s: flo
         times, levels = fine.time_s[inside] - lead, fine.display_C[inside]
     setpoints = setpoints_of(device, times, levels, curve=not exact)
     end = max(lead + float(setpoints.time_s[-1]), float(designed.time_s[-1]))
-    delivered = followed(rig, setpoints, lead, end)
+    delivered = followed(free, setpoints, lead, end)
     designed = designed_until(designed, float(delivered.time_s[-1]))
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     return Realised(

@@ -187,9 +187,18 @@ class TestWorstCase:
             "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
         )
         found = realise(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
-        assert judge_safety(found.trace).colour == "green"
+        assert judge_safety(found.trace).colour == "red"
+        assert found.told == ()  # 0.4 A are the limit of another driver
         assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
+
+    def test_the_rigs_driver_does_not_hold_a_thermode_back(self) -> None:
+        weak = RIG.with_(**{"driver.current_limit_A": 0.4})
+        (refusal,) = ready(rig=weak).refusals
+        assert refusal.kind == "unreachable"
+        one = ready(device="qst-tcs2", form="tcs2-serial", rig=weak)
+        assert (one.refusals, one.warnings) == ((), ())
+        assert one.realised.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
 
     def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
         text = (

@@ -281,7 +281,7 @@ def check_all(seed: int, count: int, few: bool) -> Counter[str]:
 def test_forty_exported_drives_stay_inside_their_limits() -> None:
     told = check_all(100, 40, few=True)
     assert told["red"] > 3, "cues that must not be exported are among them"
-    assert min(told["green"], told["amber"]) > 3
+    assert min(told["green"], told["amber"]) > 2
     assert told["runs"] > 60
 
 
