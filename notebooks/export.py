@@ -26,7 +26,15 @@ CAUTION = (
 
 
 def export_file(
-    file: str, to: str, device: str | None, icon: str | None, rig: Rig, tail_s: float, force: bool, folder: Path
+    file: str,
+    to: str,
+    device: str | None,
+    icon: str | None,
+    rig: Rig,
+    tail_s: float,
+    force: bool,
+    folder: Path,
+    pause_s: float | None = None,
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit.delivery.export import check_names
@@ -39,7 +47,8 @@ def export_file(
     check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, rig)
     with progress_bar("realising") as progress:
-        ready = prepare_icons(chosen, others(whole, chosen), rig, device, to, step=progress, tail_s=tail_s)
+        rest = others(whole, chosen)
+        ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
     for warning in ready.warnings:
         note(warning)
     tell(ready.prepared)
@@ -75,6 +84,8 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
+    for line in one.verdict.notes:
+        yield f"{realised.icon.name}: {line}"
     for warning in one.warnings:
         yield f"warning: {realised.icon.name}: {warning}"
 

@@ -100,25 +100,23 @@ def prepare_icons(
     form: str = FORMAT,
     step: Callable[[int, int], None] | None = None,
     tail_s: float = 0.0,
+    pause_s: float | None = None,
 ) -> Ready:
     """Realise and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
 
-    ``tail_s`` is followed after the last corner.
+    ``tail_s`` is followed after the last corner, ``pause_s`` lies between plays (None: the recovery time).
     Raises InputError where the device cannot play an icon, or not in this format.
     """
-    from thermicon.circuit import Device, prepare
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.export import prepare_set
     from thermicon.circuit.delivery.formats import load_format
 
     made = load_format(form)
     played = Device.load(device or made.device)
-    prepared = []
-    for done, icon in enumerate(icons, 1):
-        prepared.append(prepare(icon, rig, played, made, tail_s=tail_s))
-        if step is not None:
-            step(done, len(icons))
+    prepared = prepare_set(icons, rig, played, made, tail_s=tail_s, pause_s=pause_s, step=step)
     warned: list[str] = []
     felt = compare_felt(prepared, rest, rig, played, tail_s, warned.append)
-    return Ready(made, played, tuple(prepared), felt, tuple(warned))
+    return Ready(made, played, prepared, felt, tuple(warned))
 
 
 def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:

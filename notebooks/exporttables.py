@@ -28,8 +28,8 @@ def delivered_html(ready: Ready) -> str:
     told: dict[str, list[str]] = {}  # what holds for many icons is said once
     for one in ready.prepared:
         name = one.realised.icon.name
-        for line in list(told_of(one))[1:]:
-            told.setdefault(line.removeprefix(f"warning: {name}: "), []).append(name)
+        for line in one.warnings:
+            told.setdefault(line, []).append(name)
     warned = [f"{', '.join(names)}: {said}" for said, names in told.items()]
     notes = [line.removeprefix("warning: ") for line in (*ready.warnings, *warned)]
     against = "".join(
@@ -66,7 +66,8 @@ def gate_html(one: Prepared) -> str:
     body = "".join(_check(check) for check in sorted(checks, key=lambda check: check.passed))
     head = "".join(f"<th>{word}</th>" for word in ("", "rule", "worst", "limit", "at", "in", "source"))
     table = f'<table class="th gate"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-    return f"<details><summary>{summary}{told}</summary>{table}</details>"
+    notes = "".join(f'<div class="th-note">{escape(line)}</div>' for line in verdict.notes)
+    return f"<details><summary>{summary}{told}</summary>{table}</details>{notes}"
 
 
 def _check(check: Check) -> str:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from thermicon.notebooks.designing import Designing
 
 SETTLES_S = 0.2
-Wanted = tuple[str, "Rig", "str | None", str, str]
-"""Text, rig, name of the icon (None: all), device, format."""
+Wanted = tuple[str, "Rig", "str | None", str, str, str]
+"""Text, rig, name of the icon (None: all), device, format, pause as typed."""
 
 
 class ExportView:
@@ -50,20 +50,24 @@ class ExportView:
         which = [("the icon that is shown", "shown"), ("all icons of the set", "all")]
         self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
         self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
+        self.pause = widgets.Text(
+            value="", placeholder="recovery time", description="pause, s", continuous_update=False, layout=wide
+        )
         self.overwrite = widgets.Checkbox(value=False, description="overwrite files that are there", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also what is lossy or not reached", indent=False)
         self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
-        for control in (self.device, self.form, self.folder, self.which):
+        for control in (self.device, self.form, self.folder, self.which, self.pause):
             control.style.description_width = "52px"
         self.said = {name: widgets.HTML() for name in ("status", "written", "delivered", "figure", "gate")}
         self.device.observe(lambda _: self._safely(self._device_chosen), "value")
-        for control in (self.form, self.which):
+        for control in (self.form, self.which, self.pause):
             control.observe(lambda _: self._safely(self.renew), "value")
         self.folder.observe(lambda _: self._safely(self._forget_result), "value")
         self.insist.observe(lambda _: self._safely(self._allow), "value")
         self.button.on_click(lambda _: self._safely(self.write))
         said = self.said
-        controls = [self.device, self.form, self.which, self.folder, self.overwrite, self.insist, self.button]
+        controls = [self.device, self.form, self.which, self.pause, self.folder]
+        controls += [self.overwrite, self.insist, self.button]
         left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
         self.body = widgets.VBox(
             [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
@@ -124,11 +128,11 @@ class ExportView:
 
     def _wanted(self) -> Wanted:
         name = self.design.scene.icon if self.which.value == "shown" else None
-        return self.design.text, self.design.rig, name, self.device.value, self.form.value
+        return self.design.text, self.design.rig, name, self.device.value, self.form.value, self.pause.value
 
     def _prepare(self, turn: Turn, want: Wanted) -> None:
         """The job of the worker."""
-        text, rig, name, device, form = want
+        text, rig, name, device, form, typed = want
         icons = read_text(text).icons
         assert icons is not None
         chosen = [icon for icon in icons if name in (None, icon.name)] if len(icons) <= MOST_RANKED else []
@@ -139,7 +143,7 @@ class ExportView:
         def step(done: int, total: int) -> None:
             turn.tell(lambda: self._say(f"working … {done} of {total}"))
 
-        made = prepare_icons(chosen, rest, rig, device, form, step)
+        made = prepare_icons(chosen, rest, rig, device, form, step, pause_s=pause_of(typed))
         shown = self.design.scene.icon
         red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
         named = (k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown)
@@ -203,6 +207,24 @@ class ExportView:
             act()
         except Exception as wrong:  # a page that goes silent is worse than any sentence
             self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
+
+
+def pause_of(typed: str) -> float | None:
+    """Return the pause in s that was typed, None for nothing; raises PauseError for what is no such time.
+
+    >>> pause_of(" 12.5 "), pause_of("")
+    (12.5, None)
+    """
+    from thermicon.circuit.safety.repeated import PauseError, check_pause
+
+    if not typed.strip():
+        return None
+    try:
+        pause = float(typed)
+    except ValueError:
+        raise PauseError(f"pause {typed.strip()!r} is no number; give seconds, 0 to 600, or leave it empty") from None
+    check_pause(pause)
+    return pause
 
 
 def export_svg(made: Ready, place: int) -> str:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from thermicon.notebooks.door import Missing, check_changes, load_rig, usage
-from thermicon.notebooks.options import Changes, IconName, RigName, Tail, check_tail
+from thermicon.notebooks.options import Changes, IconName, RigName, Tail, check_pause, check_tail
 
 
 def export_command(
@@ -32,6 +32,10 @@ def export_command(
     ] = None,
     icon: IconName = None,
     tail: Tail = 0.0,
+    pause: Annotated[
+        float | None,
+        typer.Option("--pause", metavar="S", help="Time between plays, 0 to 600 s.  [default: the recovery time]"),
+    ] = None,
     force: Annotated[
         bool,
         typer.Option("--force", help="Replace files, and export what is lossy or not reached; never what is unsafe."),
@@ -56,7 +60,8 @@ def export_command(
     --verify DIR checks a folder that was exported; the exit code is 1 where something in it does not belong together.
     """
     if verify is not None:
-        _alone(file, {"--to": to, "-o": folder, "--device": device, "--icon": icon, "--rig": rig, "--set": changes})
+        options = {"--to": to, "-o": folder, "--device": device, "--icon": icon, "--pause": pause}
+        _alone(file, {**options, "--rig": rig, "--set": changes})
         if force or tail:
             raise usage("needs nothing else but the folder; leave out --force and --tail", "--verify")
         from thermicon.notebooks.verifying import verify_folder
@@ -71,9 +76,10 @@ def export_command(
         raise Missing("option '-o' / '--output'")
     check_changes(changes or [])
     check_tail(tail)
+    check_pause(pause)
     from thermicon.notebooks.export import export_file
 
-    export_file(file, to, device, icon, load_rig(rig, changes or []), tail, force, folder)
+    export_file(file, to, device, icon, load_rig(rig, changes or []), tail, force, folder, pause)
 
 
 def _alone(file: str | None, options: Mapping[str, object]) -> None:

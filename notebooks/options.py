@@ -72,3 +72,13 @@ def check_tail(tail_s: float | None) -> None:
     """Fail with a usage error for a tail that is no time."""
     if tail_s is not None and not (math.isfinite(tail_s) and tail_s >= 0):
         raise usage(f"{tail_s:g} is not a time in seconds of 0 or more", "--tail")
+
+
+LONGEST_PAUSE_S = 600.0
+"""The longest pause between plays, as in `thermicon.circuit.safety.repeated`, here without its imports."""
+
+
+def check_pause(pause_s: float | None) -> None:
+    """Fail with a usage error for a pause that is no time between 0 and 10 min."""
+    if pause_s is not None and not 0 <= pause_s <= LONGEST_PAUSE_S:
+        raise usage(f"{pause_s:g} is not a time between plays of 0 to {LONGEST_PAUSE_S:g} s", "--pause")

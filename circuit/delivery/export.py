@@ -11,8 +11,9 @@ from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
 from thermicon.circuit.delivery.realise import Realised, realise
 from thermicon.circuit.delivery.refusal import Refusal, refusals_of
 from thermicon.circuit.delivery.sidecar import sealed, sidecar, sidecar_text
-from thermicon.circuit.delivery.worstcase import worst_case
+from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.safety.repeated import check_pause
 from thermicon.circuit.solver.difference import Difference, difference
 from thermicon.icons import Icon
 
@@ -39,8 +40,17 @@ class Verdict(Protocol):
     def to_dict(self) -> dict[str, object]:
         """What the sidecar holds."""
 
+    @property
+    def demanded(self) -> dict[str, object]:
+        """What the hardware must prevent, as the sidecar and the players hold it."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known of repetition and of the hardware, a sentence each."""
+
 
 Gate = Callable[[Realised], Verdict]
+"""What judges one realised cue."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +74,21 @@ class Prepared:
 
 
 def prepare(
-    icon: Icon, rig: Rig, device: Device, form: Format, *, gate: Gate = worst_case, tail_s: float = 0.0
+    icon: Icon,
+    rig: Rig,
+    device: Device,
+    form: Format,
+    *,
+    gate: Gate | None = None,
+    tail_s: float = 0.0,
+    pause_s: float | None = None,
 ) -> Prepared:
     """Return a cue as the device delivers it, judged by the gate, by its target and by what is lost.
 
-    The gate is that of the worst case, unless another is given.
+    The gate is that of the worst case, with `pause_s` between plays (None: the recovery time), unless another is given.
 
-    Raises FormatError where the format is not for this device, DeviceError where the device cannot play the cue, and
-    RigError where the baseline cannot be held.
+    Raises PauseError for a pause that cannot be, FormatError where the format is not for this device, DeviceError
+    where the device cannot play the cue, and RigError where the baseline cannot be held.
 
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
@@ -82,7 +99,42 @@ def prepare(
     """
     form.check(device)
     realised = realise(icon, rig, device, tail_s=tail_s)
-    verdict = gate(realised)
+    return _judged(realised, worst_case(realised, pause_s) if gate is None else gate(realised))
+
+
+def prepare_set(
+    icons: Sequence[Icon],
+    rig: Rig,
+    device: Device,
+    form: Format,
+    *,
+    tail_s: float = 0.0,
+    pause_s: float | None = None,
+    step: Callable[[int, int], None] | None = None,
+) -> tuple[Prepared, ...]:
+    """Return cues that may be played again and again in any order, as the device delivers them; as `prepare` does.
+
+    Each counts in the worst sequence of all of them. `step` is called after each with how many are done.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icons, rig = list(load_library("six-icons"))[:2], Rig.load("thenar")
+    >>> ready = prepare_set(icons, rig, Device.load("dac-16"), load_format("csv"), pause_s=60.0)
+    >>> [one.verdict.safe for one in ready]
+    [True, True]
+    """
+    check_pause(pause_s)
+    form.check(device)
+    realised = []
+    for done, icon in enumerate(icons, 1):
+        realised.append(realise(icon, rig, device, tail_s=tail_s))
+        if step is not None:
+            step(done, len(icons))
+    verdicts = worst_cases(realised, pause_s) if realised else ()
+    return tuple(_judged(one, verdict) for one, verdict in zip(realised, verdicts, strict=True))
+
+
+def _judged(realised: Realised, verdict: Verdict) -> Prepared:
     apart = difference(realised.designed_trace, realised.trace)
     return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart))
 
@@ -157,7 +209,7 @@ def pack(
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         about = sidecar(
             one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
-            drive=content, set_files=shared,
+            demanded=one.verdict.demanded, drive=content, set_files=shared,
         )  # fmt: skip
         files[beside(name, form)] = sidecar_text(sealed(about))
         files[drive] = content

@@ -32,13 +32,15 @@ def sidecar(
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
     *,
+    demanded: Mapping[str, object],
     drive: bytes,
     set_files: Mapping[str, bytes],
 ) -> dict[str, Any]:
     """Return all there is to know of one exported drive; units are in the names.
 
     `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
-    that was not. `drive` and `set_files` are the bytes of the files that belong to it, named here by their digests.
+    that was not, `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes of the files that
+    belong to it, named here by their digests.
     """
     icon, rig, outcome, device = realised.icon, realised.rig, realised.outcome, _device(realised.device)
     text, told = str(icon), [*rig.warnings, *realised.told]
@@ -76,6 +78,7 @@ def sidecar(
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
         "safety": dict(safety),
+        "hardware_must_prevent": dict(demanded),
         "warnings": told,
         "forced": bool(forced),
         "forced_over": list(forced),

@@ -220,6 +220,7 @@ class SafetyTable(_Table):
     hot_plate_highest_C: Celsius | None = None
     thermal_dose_min_CEM43: Positive | None = None
     henriques_integral: Positive | None = None
+    session_min: Positive | None = None
     reason: Text = ""
 
     @property

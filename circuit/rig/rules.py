@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -10,8 +11,11 @@ from importlib import resources
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.records import Record, Table, load_records
 
-SHORTEST_REASON = 20
-"""Fewest characters of a reason for a loosened limit: a sentence, not a word."""
+SHORTEST_REASON, FEWEST_WORDS = 20, 4
+"""Fewest characters and different words of a reason for a loosened limit: a sentence, not a word."""
+
+SESSION_KEY, LONGEST_SESSION_MIN = "session_min", 480.0
+"""The key of a rig file's [safety] table for how long a session lasts, over which doses add up; 8 h at most."""
 
 _EXTRA = (
     *("severity", "above_C", "low_key", "high_key"),
@@ -23,9 +27,10 @@ _EXTRA = (
 class Rule:
     """One side of one limit: what may not go above (`upper`) or below `limit`, in `unit`.
 
-    `severity` is hard or soft. `key` names it in a rig file's [safety] table, empty where it is fixed; `bound` is the
-    published figure that it cannot be loosened beyond, None where none is on record. With `above_C` it limits the time
-    in s that the display is warmer. A limit in K counts from where a run began. `shipped` is the limit unchanged.
+    `severity` is hard or soft. `key` names it in a rig file's [safety] table, empty where it is fixed; `bound` is
+    the published figure that it cannot be loosened beyond, None where there is none: then it can only be tightened.
+    With `above_C` it limits the time in s that the display is warmer. A limit in K counts from where a run began.
+    `shipped` is the limit unchanged.
     """
 
     quantity: str
@@ -78,17 +83,26 @@ class Limits:
         """Return the shipped limits with some changed by key; raises ValueError with every fault, a line each."""
         if faults := faults_of(changes, reason):
             raise ValueError("\n".join(faults))
-        return _changed(changes, reason.strip())
+        limits = _changed(changes, reason.strip())
+        minutes = changes.get(SESSION_KEY)
+        return limits if minutes is None else replace(limits, session_s=60.0 * minutes)
 
     @property
     def changed(self) -> tuple[str, ...]:
         """A few words for each limit that is not the shipped one, in the order of the rules."""
-        return _told(rule for rule in self.rules if rule.limit != rule.shipped)
+        return _told(rule for rule in self.rules if rule.limit != rule.shipped) + self._session(True)
 
     @property
     def loosened(self) -> tuple[str, ...]:
         """A few words for each limit that lets more pass than the shipped one."""
-        return _told(rule for rule in self.rules if rule.loosened)
+        return _told(rule for rule in self.rules if rule.loosened) + self._session(False)
+
+    def _session(self, longer: bool) -> tuple[str, ...]:
+        """The session in words where it is not the shipped one; without `longer` only where it is shorter."""
+        shipped = Limits.shipped().session_s
+        if self.session_s == shipped or (self.session_s > shipped and not longer):
+            return ()
+        return (f"{SESSION_KEY} {self.session_s / 60:g} min instead of {shipped / 60:g} min",)
 
     @property
     def hidden(self) -> tuple[str, ...]:
@@ -137,8 +151,12 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
     """Return what is wrong with changes of limits, a sentence each; keys are those of [safety]."""
     if not changes:
         return []
+    changes = dict(changes)
+    session = changes.pop(SESSION_KEY, None)
+    timing = None if session is None else session_fault(session, reason)
     unknown = [key for key in changes if key not in safety_keys()]
-    faults = [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
+    faults = [] if timing is None else [timing]
+    faults += [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
     told = {key for key in changes if key in unknown}
     for rule in _changed(changes, reason).rules:
         if rule.key not in changes or rule.key in told:
@@ -147,22 +165,48 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
         said = f"safety.{rule.key} = {value:g}{unit}"
         if beyond(rule):
             told.add(rule.key)
+            bound, why = (rule.shipped, "no published figure allows more") if rule.bound is None else (rule.bound, "")
             faults.append(
-                f"{said}: cannot be loosened beyond {rule.bound:g}{unit} ({rule.bound_source}); use "
-                f"{'at most' if rule.upper else 'at least'} {rule.bound:g}{unit}"
+                f"{said}: cannot be loosened beyond {abs(bound):g}{unit} ({why or rule.bound_source}); use "
+                f"{'at most' if rule.upper or bound < 0 else 'at least'} {abs(bound):g}{unit}"
             )
-        elif rule.loosened and len(reason.strip()) < SHORTEST_REASON:
+        elif rule.loosened and not is_reason(reason):
             told.add(rule.key)
             faults.append(
-                f"{said}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, at "
-                f"least {SHORTEST_REASON} characters on why this is justified, or use {abs(rule.shipped):g}{unit}"
+                f"{said}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, a "
+                f"sentence of at least {SHORTEST_REASON} characters on why this is justified, or use "
+                f"{abs(rule.shipped):g}{unit}"
             )
     return faults + _crossed(changes, reason)
 
 
 def beyond(rule: Rule) -> bool:
-    """Whether a rule's limit lets more pass than what is published."""
-    return rule.bound is not None and (rule.limit > rule.bound if rule.upper else rule.limit < rule.bound)
+    """Whether a rule's limit lets more pass than its bound; where none is published, than the shipped limit."""
+    bound = rule.shipped if rule.bound is None else rule.bound
+    return rule.limit > bound if rule.upper else rule.limit < bound
+
+
+def is_reason(text: str) -> bool:
+    """Whether a text can be a reason: a sentence of at least 20 characters and four different words.
+
+    >>> is_reason("gain measured against a shunt, 2026-05-12"), is_reason("x" * 20)
+    (True, False)
+    """
+    words = {word.casefold() for word in re.findall(r"[^\W\d_]{2,}", text)}
+    return len(text.strip()) >= SHORTEST_REASON and len(words) >= FEWEST_WORDS
+
+
+def session_fault(minutes: float, reason: str) -> str | None:
+    """What is wrong with the length of a session in min, in a sentence; a shorter one adds up fewer plays."""
+    shipped = Limits.shipped().session_s / 60.0
+    if not 1.0 <= minutes <= LONGEST_SESSION_MIN:
+        return f"safety.{SESSION_KEY} = {minutes:g} min: must be 1 to {LONGEST_SESSION_MIN:g} min"
+    if minutes < shipped and not is_reason(reason):
+        return (
+            f"safety.{SESSION_KEY} = {minutes:g} min: is shorter than the shipped {shipped:g} min, so that fewer plays "
+            f"add up; give safety.reason, a sentence on what ends a session, or use {shipped:g} min or more"
+        )
+    return None
 
 
 def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:

@@ -12,7 +12,7 @@ from importlib import resources
 
 from thermicon.circuit.records import Table, load_records
 from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.rig.rules import SHORTEST_REASON
+from thermicon.circuit.rig.rules import SHORTEST_REASON, is_reason
 
 _WORDS = {
     "contact_resistance_relative": ("contact resistance", 100.0, "%"),
@@ -47,7 +47,7 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
     >>> uncertainty_faults({"gain_relative": 0.02}, "gain measured against a shunt, 2026-05-12")
     []
     """
-    if len(reason.strip()) >= SHORTEST_REASON:
+    if is_reason(reason):
         return []
     found = []
     for key, shipped in _shipped().items():
@@ -55,8 +55,8 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
         if value < shipped:
             found.append(
                 f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
-                f"the gate of safety; give uncertainty.reason, at least {SHORTEST_REASON} characters on how this is "
-                f"known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
+                f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters on "
+                f"how this is known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
             )
     return found
 

@@ -92,6 +92,16 @@ class Gate:
         """The verdict as a table to read: every rule, its worst value, the limit, when, where and by whom."""
         return "\n".join(_lines(self))
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be known of repetition and of the hardware, a sentence each."""
+        return f"played again and again: {self.repeated.text}", f"the hardware must provide: {self.demands.text}"
+
+    @property
+    def demanded(self) -> dict[str, object]:
+        """What the hardware must prevent, as a sidecar and the players hold it."""
+        return self.demands.to_dict()
+
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it."""
         return {
@@ -199,27 +209,33 @@ def _gated(
     ensemble = Ensemble.of(rig, bridge_A)
     held = rig.limits if limits is None else limits
     singles = [Single.of(ensemble, drive, rest, held) for drive, rest in drives]
+    alone = [single for single in singles if not single.safe]  # never written, so never part of a sequence
+    together = [single for single in singles if single.safe]
+    gates: dict[int, Gate] = {}
+    for group in ([together] if together else []) + [[single] for single in alone]:
+        gates |= zip(map(id, group), _gated_together(group, ensemble, held, pause_s), strict=True)
+    return tuple(gates[id(single)] for single in singles)
+
+
+def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, pause_s: float | None) -> Iterator[Gate]:
+    """The verdicts on drives that may follow each other in any order."""
     known = [single.recovery_s for single in singles]
     pause = pause_s
     if pause is None:
         pause = LONGEST_PAUSE_S if None in known else max(time for time in known if time is not None)
     cycles = [Cycle(ensemble, single.drive, single.rest_A, pause) for single in singles]
-    repeating = Repeating(ensemble, cycles, [single.start for single in singles], held)
+    repeating = Repeating(ensemble, cycles, [single.start for single in singles], limits)
     tallies = repeating.tallies(pause)
-    shortest = shortest_pause_s(repeating)
+    shortest = shortest_pause_s(repeating) if singles[0].safe else None  # no pause mends a play that is red by itself
     repeats = []
     for single, own, cycle in zip(singles, tallies, cycles, strict=True):
-        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, held.session_s)
-        repeats.append(Repeated(pause, single.recovery_s, shortest, plays, held.session_s, checks))
-    every = [
-        check for checks in (*(one.checks for one in singles), *(one.checks for one in repeats)) for check in checks
-    ]
-    display = [check.value for check in every if check.quantity == "display"]
+        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, limits.session_s)
+        repeats.append(Repeated(pause, single.recovery_s, shortest, plays, limits.session_s, checks))
+    every = [*(single.checks for single in singles), *(repeated.checks for repeated in repeats)]
+    display = [check.value for checks in every for check in checks if check.quantity == "display"]
     reach = (min(display), max(display))
-    return tuple(
-        _gate(single, repeated, single.demands(repeated, own, reach))
-        for single, repeated, own in zip(singles, repeats, tallies, strict=True)
-    )
+    for single, repeated, own in zip(singles, repeats, tallies, strict=True):
+        yield _gate(single, repeated, single.demands(repeated, own, reach))
 
 
 def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:

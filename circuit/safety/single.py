@@ -61,6 +61,11 @@ class Single:
         """Every rule in the scenario that goes farthest."""
         return worst_of(tally.checks() for tally in self.tallies)
 
+    @property
+    def safe(self) -> bool:
+        """Whether one play passes no hard limit."""
+        return all(tally.passes() for tally in self.tallies)
+
     def demands(self, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Demands:
         """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` where displays get."""
         corners = self._farthest([*self.tallies, *played])

@@ -150,6 +150,8 @@ class Faulty:
             worst = text if beyond.any() else worst
         cut = CutOff(round(low, 1), round(high, 1), slowest)
         prevented = f"a cut-off at {cut.low:g} and {cut.high:g} °C on the measured display, within {slowest:g} s"
+        if slowest == 0.0:
+            prevented = "a lower current limit of the driver; no cut-off is quick enough at this one"
         return cut, SingleFault("driver stuck at its limit", "red" if worst[:2] != "no" else "green", worst, prevented)
 
     def _reaction_s(self, full_A: float, low: float, high: float, lanes: Index) -> float:

@@ -86,7 +86,9 @@ def gate_shown(
         times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
         pause = max(times)
     again = _again(under, drives, held, pause)
-    shortest = _shortest(lambda one: _safe(_again(under, drives, held, one)))
+    shortest = None
+    if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
+        shortest = _shortest(lambda one: _safe(_again(under, drives, held, one)))
     found = []
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
         plays = _plays(ways[0], pause, held.session_s)
@@ -192,7 +194,7 @@ def _demands(
     cut = CutOff(
         round(max(hard[False], min(display) - BEYOND_K), 1),
         round(min(hard[True], max(display) + BEYOND_K), 1),
-        round(MARGIN * react, 2),
+        round(MARGIN * react, 3),
     )
     faults = (
         SingleFault(

@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.corner import perturbed
-from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.solver.network import network_of
 
 THENAR = Rig.load("thenar")
