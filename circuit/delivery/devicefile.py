@@ -31,6 +31,7 @@ UNITS = {
     "segment length": "ticks",
     "baseline range": "°C",
     "ramp rate": "K/s",
+    "lag": "s",
 }
 """Quantities a device may state, each with its unit; those whose unit hangs on what drives it are below."""
 

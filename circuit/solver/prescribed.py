@@ -142,18 +142,22 @@ def modes_on(network: Network, insulated: bool = False) -> SkinModes:
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:
     """Return the display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest.
 
-    First-order lag, and no faster than its slew rate.
+    First-order lag, exact for set-points that are linear between rows, and no faster than its slew rate.
 
     >>> shown(np.array([30.0, 31.0, 31.0]), 0.1, slew_K_per_s=5.0).tolist()
     [30.0, 30.5, 31.0]
     """
-    share = 1.0 if lag_s <= 0 else -np.expm1(-step_s / lag_s)
     most = slew_K_per_s * step_s
-    if share == 1.0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
+    if lag_s <= 0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
         return setpoint_C.copy()
-    level, reached = float(setpoint_C[0]), []
+    keep, now, then = (0.0, 0.0, 1.0)
+    if lag_s > 0:
+        weights = _weights(np.array([1.0 / lag_s]), step_s)
+        keep, now, then = float(weights[0][0]), float(weights[1][0]) / lag_s, float(weights[2][0]) / lag_s
+    level, before, reached = float(setpoint_C[0]), float(setpoint_C[0]), []
     for wanted in setpoint_C.tolist():
-        level += min(max(share * (wanted - level), -most), most)
+        goal = keep * level + now * before + then * wanted
+        level, before = min(max(goal, level - most), level + most), wanted
         reached.append(level)
     return np.array(reached)
 
