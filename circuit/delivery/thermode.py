@@ -52,6 +52,6 @@ def display_of(
     """
     step = step_of(setpoints.tick_s)
     end = float(setpoints.time_s[-1]) if end_s is None else end_s
-    times = np.arange(math.ceil(end / step - 1e-9) + 1) * step
+    times: Array = np.arange(math.ceil(end / step - 1e-9) + 1, dtype=np.float64) * step
     lag = lag_of(device) if lagged else 0.0
     return step, shown(setpoints.at(times), step, lag, device.most("ramp rate"))
