@@ -12,19 +12,8 @@ import numpy as np
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.displayed import part_of
 from thermicon.circuit.solver.prescribed import shown
-
-FINEST_S = 0.01
-"""A longer tick is divided into equal parts of at most this, so that lag and skin are resolved within it."""
-
-
-def step_of(tick_s: float) -> float:
-    """Return the tick in s, or the largest whole fraction of it that is not above 10 ms.
-
-    >>> step_of(0.01), step_of(0.5)
-    (0.01, 0.01)
-    """
-    return tick_s / max(1, math.ceil(tick_s / FINEST_S - 1e-9))
 
 
 def lag_of(device: Device) -> float:
@@ -50,7 +39,7 @@ def display_of(
     >>> step, display.tolist()
     (0.01, [32.0, 31.0, 30.0])
     """
-    step = step_of(setpoints.tick_s)
+    step = part_of(setpoints.tick_s)
     end = float(setpoints.time_s[-1]) if end_s is None else end_s
     times: Array = np.arange(math.ceil(end / step - 1e-9) + 1, dtype=np.float64) * step
     lag = lag_of(device) if lagged else 0.0

@@ -95,6 +95,17 @@ class ControllerTable(_Table):
     kd_As_per_K: NotNegative = 0.0
 
 
+class ThermodeTable(_Table):
+    """A thermode in the place of module, heat sink, driver and controller: it shows the set-points it is given."""
+
+    slew_K_per_s: Positive
+    lag_s: NotNegative = 0.0
+    resolution_K: NotNegative = 0.0
+    lowest_C: Celsius
+    highest_C: Celsius
+    update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
+
+
 class AmbientTable(_Table):
     """The air that bare skin rests in."""
 
@@ -206,10 +217,11 @@ class RigTable(_Table):
     name: Annotated[str, Field(min_length=1)]
     title: str = ""
     notes: list[str] = Field(default_factory=list)
-    module: ModuleTable
-    heat_sink: HeatSinkTable
-    driver: DriverTable
+    module: ModuleTable | None = None
+    heat_sink: HeatSinkTable | None = None
+    driver: DriverTable | None = None
     controller: ControllerTable | None = None
+    thermode: ThermodeTable | None = None
     contact: ContactTable
     ambient: AmbientTable
     skin: SkinTable
@@ -218,6 +230,23 @@ class RigTable(_Table):
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
     safety: SafetyTable = Field(default_factory=SafetyTable)
     source: dict[str, str] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _one_display(self) -> RigTable:
+        pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
+        given = [key for key, table in pumped.items() if table is not None]
+        missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
+        if self.thermode is not None and given:
+            raise ValueError(
+                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(given)}; remove "
+                f"{', '.join(f'[{key}]' for key in given)} or [thermode]"
+            )
+        if self.thermode is None and missing:
+            lines = [f"{key} is missing; add it" for key in missing]
+            if len(missing) == 3:
+                lines = ["module is missing; add [module], [heat_sink] and [driver], or a [thermode] in their place"]
+            raise ValueError("\n".join(lines))
+        return self
 
 
 _UNITS = (
@@ -295,6 +324,15 @@ def rig_keys() -> tuple[str, ...]:
     return tuple(_keys(RigTable, ""))
 
 
+_OPTIONAL_TABLES: dict[str, type[BaseModel]] = {
+    "module": ModuleTable,
+    "heat_sink": HeatSinkTable,
+    "driver": DriverTable,
+    "controller": ControllerTable,
+    "thermode": ThermodeTable,
+}
+
+
 def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
     for name, field in table.model_fields.items():
         if name == "layer":
@@ -305,8 +343,8 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
         elif name == "probe":
             yield "probe"
             yield from _keys(ProbeTable, "probe.0.")
-        elif name == "controller":
-            yield from _keys(ControllerTable, "controller.")
+        elif name in _OPTIONAL_TABLES:
+            yield from _keys(_OPTIONAL_TABLES[name], f"{name}.")
         elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
             yield from _keys(field.annotation, f"{prefix}{name}.")
         elif name != "source":
