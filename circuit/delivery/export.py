@@ -8,11 +8,12 @@ from typing import Literal, Protocol
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
-from thermicon.circuit.delivery.realise import Realised, realise
+from thermicon.circuit.delivery.realise import realise
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.sidecar import sidecar, sidecar_text
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.solver.difference import Difference, difference
+from thermicon.circuit.solver.difference import Difference
 from thermicon.icons import Icon
 
 
@@ -90,7 +91,7 @@ def prepare(
     form.check(device)
     realised = realise(icon, rig, device, tail_s=tail_s)
     verdict = gate(realised)
-    apart = difference(realised.designed_trace, realised.trace)
+    apart = realised.apart
     against = []
     if verdict.colour == "red":
         against.append(Refusal("unsafe", verdict.reason or "the gate says red"))

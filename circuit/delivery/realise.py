@@ -1,75 +1,33 @@
 """What a device makes of a cue: quantised, held, limited, and simulated again.
 
-The file of every device begins with the rest: for one update (`lead_s`) the current, duty or set-point that holds the
-baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
+The file of a device that plays samples begins with the rest: for one update (`lead_s`) the current or duty that holds
+the baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.samples import Samples, current_of, rate_of, sample, within
-from thermicon.circuit.delivery.setpoints import Setpoints, setpoints_of
+from thermicon.circuit.delivery.realised import Realised
+from thermicon.circuit.delivery.regulated import realise_setpoints, traces_of_setpoints
+from thermicon.circuit.delivery.samples import current_of, rate_of, sample, within
+from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import bank_of, run_follow
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, baseline_C, design
+from thermicon.circuit.solver.inverse import Design, design
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.circuit.solver.simulate import duration_s, simulate_current
 from thermicon.circuit.solver.steady import hold
-from thermicon.circuit.solver.trace import Outcome, Trace
+from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
 
-
-@dataclass(frozen=True, slots=True)
-class Realised:
-    """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
-
-    The device gets the best that its range allows: a design within that range. `played` is what goes into files,
-    `delivered` the current that then flows (for set-points: by which this rig's module would follow them), `trace` what
-    it does; `designed` and `designed_trace` the same without the device.
-    `outcome` says whether the design reaches its target.
-    """
-
-    icon: Icon
-    rig: Rig
-    device: Device
-    requested_Hz: float
-    rate_Hz: float
-    lead_s: float
-    played: Samples | Setpoints
-    designed: Drive
-    delivered: Drive
-    designed_trace: Trace
-    trace: Trace
-    outcome: Outcome | None
-    warnings: tuple[str, ...]
-
-    def __repr__(self) -> str:
-        return (
-            f"Realised({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at {self.rate_Hz:g} Hz, "
-            f"skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
-        )
-
-    @property
-    def told(self) -> tuple[str, ...]:
-        """What is to be known of the delivery: warnings, and what it asks of the driver (which a bridge replaces)."""
-        return self.warnings if self.device.driven_by == "duty" else (*self.warnings, *self.trace.beyond)
-
-    @property
-    def end_s(self) -> float:
-        """Time in s of the row that marks the end."""
-        return float(self.delivered.time_s[-1])
-
-    @property
-    def file_s(self) -> float:
-        """How long in s the file plays; one of set-points has no rest before it, which the simulation begins with."""
-        return float(self.played.time_s[-1])
+__all__ = ["Realised", "designed_until", "followed", "realise", "start_of", "traces_until"]
 
 
 def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> Realised:
@@ -81,10 +39,10 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.91 … 32.03 °C)
     """
+    if device.driven_by == "set-points":
+        return realise_setpoints(icon, rig, device, tail_s, rate_Hz)
     end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
-    if device.driven_by == "set-points":
-        return _by_setpoints(icon, rig, device, plan, end, rate_Hz)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
     possible = _led(plan if narrow is rig else design(icon, narrow, end), end, rate)
@@ -96,7 +54,7 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     designed = designed_until(_led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     found = Realised(
-        icon, rig, device, requested, rate, 1.0 / rate, samples, designed, current_of(device, rig, samples), model,
+        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
         model, plan.outcome, told,
     )  # fmt: skip
     return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
@@ -114,12 +72,12 @@ def start_of(realised: Realised) -> Array | None:
 def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, the rest held at the end."""
     rig, played = realised.rig, realised.played
-    designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
     if isinstance(played, Setpoints):
-        delivered = designed_until(realised.delivered, end_s)
-    else:
-        delivered = current_of(realised.device, rig, played.until(end_s))
-    return designed, simulate_current(delivered, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
+        designed, delivered, _ = traces_of_setpoints(realised.icon, rig, realised.device, played, end_s, rate_Hz)
+        return designed, delivered
+    designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
+    drive = current_of(realised.device, rig, played.until(end_s))
+    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
 
 
 def designed_until(drive: Drive, end_s: float) -> Drive:
@@ -153,31 +111,6 @@ def _led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
         return Drive([0.0, *(times + lead), end_s + lead], [plan.rest_A, *currents, plan.rest_A], held=True)
     times, currents = drive.time_s + lead, drive.current_A
     return Drive([0.0, *times], [plan.rest_A, *currents])
-
-
-def _by_setpoints(icon: Icon, rig: Rig, device: Device, plan: Design, end_s: float, rate_Hz: float) -> Realised:
-    update = rig.driver.update_Hz
-    lead = 1.0 / update
-    designed = _led(plan, end_s, update)
-    exact = icon.frame.control == "display"
-    if exact:
-        corners = icon.lower(baseline_C(icon, rig))
-        times, levels = np.array(corners.time_s), np.array(corners.value)
-        if end_s > times[-1] + 1e-9:
-            times, levels = np.append(times, end_s), np.append(levels, levels[-1])
-    else:
-        fine = simulate_current(designed, rig, rate_Hz=1.0 / device.most("tick"), start_C=plan.start_C)
-        inside = fine.time_s >= lead - 1e-9
-        times, levels = fine.time_s[inside] - lead, fine.display_C[inside]
-    setpoints = setpoints_of(device, times, levels, curve=not exact)
-    end = max(lead + float(setpoints.time_s[-1]), float(designed.time_s[-1]))
-    delivered = followed(rig, setpoints, lead, end)
-    designed = designed_until(designed, float(delivered.time_s[-1]))
-    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    return Realised(
-        icon, rig, device, update, 1.0 / setpoints.tick_s, lead, setpoints, designed, delivered, model,
-        simulate_current(delivered, rig, rate_Hz=rate_Hz), plan.outcome, (),
-    )  # fmt: skip
 
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:

@@ -12,9 +12,10 @@ from typing import Any
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.formats.form import Format, events_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.thermode import lag_of
 from thermicon.circuit.records import Record
 from thermicon.circuit.safety.summary import summarise
 from thermicon.circuit.solver.difference import Difference, loss_table
@@ -108,24 +109,20 @@ def _played(realised: Realised) -> dict[str, object]:
             "baseline_C": float(played.level_C[0]),
             "icon_begins_at_s": 0.0,
             "duration_s": realised.file_s,
+            "lag_s": lag_of(realised.device),
             "clock": (
-                f"times of events count from the start command; those under safety count from {realised.lead_s:g} s "
-                f"before it, since the simulation begins with one update of baseline"
+                "times count from the start command; the display follows with the lag, which is a delay and not "
+                "counted as a miss or a loss"
             ),
         }
     return _samples(played, realised.lead_s)
-
-
-_NOT_ITS_OWN = ("current_", "voltage_", "energy_", "hot_plate_")
-"""What a device that gets set-points does not have: these would be those of the rig's own module."""
 
 
 def _predicted(realised: Realised) -> dict[str, object]:
     found: dict[str, object] = dict(summarise(realised.trace).to_dict())
     if not isinstance(realised.played, Setpoints):
         return found
-    told = {key: None if key.startswith(_NOT_ITS_OWN) else value for key, value in found.items()}
-    return {**told, "duration_s": realised.file_s}
+    return {**found, "duration_s": realised.file_s}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:

@@ -132,7 +132,7 @@ def test_static_checks_know_range_and_ramp_rate() -> None:
     assert check_static(STEP, RIG) == ()
     (cold,) = check_static(icon_of("cool by 35 °C at 1 °C/s"), RIG)
     assert "-3 °C on the display needs a display of -3.0 °C, outside the 0.1 … 60 °C of thermode tcs2" in cold
-    (fast,) = check_static(STEP, RIG.with_(**{"thermode.slew_K_per_s": 2.0}))
+    fast, _ = check_static(STEP, RIG.with_(**{"thermode.slew_K_per_s": 2.0}))
     assert "3 °C/s of cooling at 0 s is more than the 2 °C/s of thermode tcs2" in fast
 
 

@@ -8,7 +8,7 @@ import io
 import numpy as np
 
 from thermicon.circuit.delivery.formats.form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 FIRST = "rest"
 

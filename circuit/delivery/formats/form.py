@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.events import Event, events_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.inputs import InputError

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from thermicon.circuit.delivery.formats import csv_table, tcs2_serial
 from thermicon.circuit.delivery.formats.form import Column, Format, events_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, setpoints_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 ZONES = "11111"
 ABOVE_K = 1.0

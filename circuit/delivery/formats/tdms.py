@@ -13,7 +13,7 @@ from thermicon.circuit.delivery.formats.form import (
     command_column,
     samples_of,
 )
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 GROUP = "thermicon"
 
