@@ -17,7 +17,7 @@ class DeviceError(InputError):
     """A device that cannot be, or that cannot do what is asked: what, where, value, limit, unit, cure."""
 
 
-DrivenBy = Literal["volts", "amperes", "duty", "set-points"]
+DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
 
 UNITS = {
     "resolution": "bit",
@@ -26,6 +26,8 @@ UNITS = {
     "carrier frequency": "Hz",
     "set-point range": "°C",
     "set-point step": "K",
+    "set-point gain": "V/K",
+    "set-point offset": "V",
     "tick": "s",
     "segments": "segments",
     "segment length": "ticks",
@@ -48,6 +50,7 @@ NEEDED: dict[str, tuple[str, ...]] = {
     "set-points": (
         "set-point range", "set-point step", "tick", "segments", "segment length", "baseline range", "ramp rate",
     ),
+    "temperatures": ("set-point range", "update rate"),
 }  # fmt: skip
 
 INTERVALS = ("output range", "set-point range", "baseline range", "segment length")
@@ -135,7 +138,7 @@ def _faults(table: DeviceTable) -> list[str]:
         except RecordError as problem:
             found.append(f"{where}: {problem}")
             continue
-        if record.quantity not in INTERVALS and not all(
+        if record.quantity not in (*INTERVALS, "set-point offset") and not all(
             number > 0 for number in (record.value, record.low, record.high) if number is not None
         ):
             found.append(f"{where}: must be above 0")

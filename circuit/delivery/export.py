@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
+from thermicon.circuit.delivery.formats import Format, FormatError
+from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.delivery.prevent import must_prevent
 from thermicon.circuit.delivery.realise import realise
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.sidecar import sidecar, sidecar_text
@@ -147,7 +149,7 @@ def pack(
             raise FormatError(f"{name}: {unsafe[0]}")
         drive = form.file_name(one.realised)
         beside = f"{form.stem(name)}.json"
-        if form.name == psychopy.FORMAT.name and drive.casefold() in psychopy.SET_FILES:
+        if drive.casefold() in form.set_files:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
@@ -159,7 +161,7 @@ def pack(
             files[drive] = form.write(one.realised)
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
-        named.append((one.realised, drive, beside))
-    if form.name == psychopy.FORMAT.name and named:
-        files.update(psychopy.set_files(named))
+        named.append(Played(one.realised, drive, beside))
+    if form.player is not None and named:
+        files.update(form.player(named, must_prevent([one.verdict.to_dict() for one in ready])))
     return files

@@ -13,14 +13,15 @@ import numpy as np
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.regulated import realise_setpoints, traces_of_setpoints
-from thermicon.circuit.delivery.samples import current_of, rate_of, sample, within
+from thermicon.circuit.delivery.samples import current_of, led, rate_of, sample, within
 from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.temperatures import designed_until, follow_samples, realise_temperatures
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import bank_of, run_follow
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, design
+from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.circuit.solver.simulate import duration_s, simulate_current
 from thermicon.circuit.solver.steady import hold
@@ -41,17 +42,19 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     """
     if device.driven_by == "set-points":
         return realise_setpoints(icon, rig, device, tail_s, rate_Hz)
+    if device.driven_by == "temperatures":
+        return realise_temperatures(icon, rig, device, tail_s, rate_Hz)
     end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
-    possible = _led(plan if narrow is rig else design(icon, narrow, end), end, rate)
+    possible = led(plan if narrow is rig else design(icon, narrow, end), end, rate)
     model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     samples, told = sample(device, rig, possible, rate, (model.time_s, model.display_C))
     asked, least, most = plan.drive.current_A, narrow.driver.current_min_A, narrow.driver.current_max_A
     if asked.min() < least - 1e-9 or asked.max() > most + 1e-9:
         told = (_narrower(device, rig, narrow), *told)
-    designed = designed_until(_led(plan, end, rate), (len(samples.codes) - 1) / rate)
+    designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     found = Realised(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
@@ -76,15 +79,11 @@ def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tu
         designed, delivered, _ = traces_of_setpoints(realised.icon, rig, realised.device, played, end_s, rate_Hz)
         return designed, delivered
     designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
-    drive = current_of(realised.device, rig, played.until(end_s))
+    if realised.device.driven_by == "temperatures":
+        drive = follow_samples(rig, played.until(end_s))
+    else:
+        drive = current_of(realised.device, rig, played.until(end_s))
     return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
-
-
-def designed_until(drive: Drive, end_s: float) -> Drive:
-    """The same drive with its last current held until a time in s."""
-    if end_s <= drive.time_s[-1] + 1e-9:
-        return drive
-    return Drive(np.append(drive.time_s, end_s), np.append(drive.current_A, drive.current_A[-1]), drive.held)
 
 
 def _narrower(device: Device, rig: Rig, narrow: Rig) -> str:
@@ -100,17 +99,6 @@ def _narrower(device: Device, rig: Rig, narrow: Rig) -> str:
         f"{device.name}: asks for {signed(held.current_min_A)} … {signed(held.current_max_A)} A at most, the driver "
         f"would give {signed(wide.current_min_A)} … {signed(wide.current_max_A)} A; {cure}"
     )
-
-
-def _led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
-    """The design behind one update of rest, with the rest again from its end on."""
-    lead, drive = 1.0 / rate_Hz, plan.drive
-    if drive.held:
-        kept = drive.time_s[:-1] < end_s - 1e-9
-        times, currents = drive.time_s[:-1][kept], drive.current_A[:-1][kept]
-        return Drive([0.0, *(times + lead), end_s + lead], [plan.rest_A, *currents, plan.rest_A], held=True)
-    times, currents = drive.time_s + lead, drive.current_A
-    return Drive([0.0, *times], [plan.rest_A, *currents])
 
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:

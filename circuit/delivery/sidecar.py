@@ -127,7 +127,7 @@ def _predicted(realised: Realised) -> dict[str, object]:
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
     scale = samples.scale
-    unit = "duty" if scale.unit == "1" else scale.unit
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
     ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
     return {
         "samples": len(samples.codes),
