@@ -133,6 +133,8 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
+    if one.spread is not None:
+        yield f"{realised.icon.name}: {one.spread}"
     for warning in (*realised.told, *one.verdict.cautions):
         yield f"warning: {realised.icon.name}: {warning}"
 

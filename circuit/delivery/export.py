@@ -13,6 +13,7 @@ from thermicon.circuit.delivery.prevent import must_prevent
 from thermicon.circuit.delivery.realise import realise
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.sidecar import sidecar, sidecar_text
+from thermicon.circuit.delivery.spread import OpenLoopSpread, open_loop_spread
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.difference import Difference
@@ -71,6 +72,7 @@ class Prepared:
     verdict: Verdict
     apart: Difference
     refusals: tuple[Refusal, ...]
+    spread: OpenLoopSpread | None = None
 
 
 def prepare(
@@ -100,7 +102,7 @@ def prepare(
     if realised.outcome is not None and not realised.outcome.reached:
         against.append(Refusal("unreachable", realised.outcome.reason or "the target is missed"))
     against += [Refusal("lossy", text) for text in apart.losses()]
-    return Prepared(realised, verdict, apart, tuple(against))
+    return Prepared(realised, verdict, apart, tuple(against), open_loop_spread(realised))
 
 
 def check_names(names: Sequence[str], form: Format) -> None:
@@ -155,7 +157,9 @@ def pack(
             )
         over = [str(refusal) for refusal in one.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        content = sidecar(one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over)
+        content = sidecar(
+            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over, one.spread
+        )
         files[beside] = sidecar_text(content)  # first, so that no drive is ever without its sidecar
         try:
             files[drive] = form.write(one.realised)

@@ -15,6 +15,7 @@ from thermicon.circuit.delivery.formats.form import Format, events_in
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.spread import OpenLoopSpread
 from thermicon.circuit.delivery.thermode import lag_of
 from thermicon.circuit.records import Record
 from thermicon.circuit.safety.summary import summarise
@@ -33,11 +34,12 @@ def sidecar(
     safety: Mapping[str, object],
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
+    spread: OpenLoopSpread | None = None,
 ) -> dict[str, Any]:
     """Return all there is to know of one exported drive; units are in the names.
 
     `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
-    that was not.
+    that was not. `spread` is what a module that was not measured may do under an open loop.
     """
     icon, rig, outcome = realised.icon, realised.rig, realised.outcome
     text, told = str(icon), [*rig.warnings, *realised.told]
@@ -67,6 +69,7 @@ def sidecar(
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(realised),
         "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "open_loop_spread": None if spread is None else spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
         "safety": dict(safety),

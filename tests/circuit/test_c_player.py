@@ -76,9 +76,10 @@ int main(int argc, char **argv) {
         if (ended >= 0 && turn == ended + 1990) answer = thermicon_play(&player, icon);
         if (ended >= 0 && turn == ended + 2010 && thermicon_play(&player, icon) == THERMICON_OK) plays += 1;
     }
-    printf("begun %d first %d began %ld ended %ld early %d again %d plays %d state %d fault %d out %.3f coldest %.2f\\n",
-           begun, (int)first_try, plays_began, ended, early, answer, (int)plays, (int)player.state, (int)player.fault,
-           (double)p.out, (double)coldest);
+    printf("begun %d first %d began %ld ended %ld ", begun, (int)first_try, plays_began, ended);
+    printf("early %d again %d plays %d ", early, answer, (int)plays);
+    printf("state %d fault %d out %.3f ", (int)player.state, (int)player.fault, (double)p.out);
+    printf("coldest %.2f ", (double)coldest);
     printf("largest %.3f\\n", (double)largest_out);
     return 0;
 }
@@ -175,7 +176,7 @@ def test_set_points_are_centi_degrees(loop: Path) -> None:
     header = (loop.parent / "double_dip.h").read_text()
     assert "static const float double_dip_step = 0.01f;" in header
     codes = header.split("{")[1].split("}")[0]
-    assert [int(code) for code in codes.split(",") if code.strip()][0] == 3200
+    assert int(codes.split(",")[0]) == 3200
     player = (loop.parent / "thermicon_player.h").read_text()
     assert "#define THERMICON_WATCHDOG_S 0.4f" in player
     assert "@" not in player
