@@ -21,9 +21,14 @@ from thermicon.circuit.studies.meshstudy import Mesh, MeshStudy, mesh_study
 from thermicon.circuit.solver.nearest import Nearest, nearest_reachable
 from thermicon.circuit.solver.batch import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
 from thermicon.circuit.safety.exposure import cem43_min, henriques
-from thermicon.circuit.safety.limits import Check, SafetyVerdict, judge_safety
-from thermicon.circuit.safety.scenarios import Corner, Futures, corners_of, play_out
+from thermicon.circuit.safety.checks import Check
+from thermicon.circuit.safety.limits import SafetyVerdict, judge_safety
+from thermicon.circuit.safety.corners import Corner, corners_of
+from thermicon.circuit.safety.scenarios import Futures, play_out
 from thermicon.circuit.safety.gate import Gate, gate
+from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
+from thermicon.circuit.safety.session import Play, Session
+from thermicon.circuit.safety.sessionplay import play_session
 from thermicon.circuit.safety.summary import Summary, summarise
 from thermicon.circuit.delivery.netlist import netlist
 from thermicon.circuit.delivery.devicefile import DeviceError
@@ -34,7 +39,8 @@ from thermicon.circuit.delivery.realise import Realised, realise
 from thermicon.circuit.solver.difference import Difference, difference
 from thermicon.circuit.delivery.events import Event, events_of
 from thermicon.circuit.delivery.worstcase import worst_case
-from thermicon.circuit.delivery.export import Prepared, Refusal, Verdict, pack, prepare
+from thermicon.circuit.delivery.export import Prepared, Verdict, pack, prepare
+from thermicon.circuit.delivery.refusal import Refusal
 
 __all__ = [
     "InputError",
@@ -96,6 +102,11 @@ __all__ = [
     "play_out",
     "Gate",
     "gate",
+    "SessionError",
+    "SessionPlan",
+    "Play",
+    "Session",
+    "play_session",
     "Summary",
     "summarise",
     "netlist",

@@ -5,28 +5,80 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
+
+from thermicon.icons.cleaning import clean, clean_line, first_control
+from thermicon.icons.handed import NotRegular, TooLarge, read_limited
+
+TOO_DEEP = "nested too deeply; two or three levels are all that is needed"
+DEEPEST, MOST_KEYS_A_LINE, MOST_DIGITS = 10, 50, 19
+"""Levels of tables, parts of a dotted key, and digits of a whole number: far more than any file of ours has."""
+
+LONGEST_NAME, LONGEST_LINE = 200, 2000
+"""Characters of a name, and of any other text of one line: room for a sentence, not for a file within a file."""
+
+
+LONGEST_QUOTE = 62
+"""Characters of a value that a message quotes."""
+
+TEXT_FAULT = "text"
+"""Type of pydantic's error for a text that may not stand where it does."""
 
 
 class InputError(Exception):
-    """Bad input, told in plain words: what, where, value, limit, unit, cure."""
+    """Bad input, told in plain words: what, where, value, limit, unit, cure; its text is safe to show on a terminal."""
+
+    def __init__(self, *texts: object) -> None:
+        super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
+
+
+def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str | None:
+    """Return what keeps a text from being a name or title, or None: it is one line without control characters.
+
+    >>> line_fault("dac-16"), line_fault("\x1b[2J")
+    (None, 'holds the control character U+001B; remove it')
+    """
+    if bad := first_control(text, allowed):
+        return f"holds the control character {bad}; remove it"
+    if len(text) > longest:
+        return f"has {len(text):,} characters; at most {longest:,} are taken"
+    return None
+
+
+def one_line(text: str) -> str:
+    """Return a text that is one line without control characters; as a validator of a table's field it says why not."""
+    return _checked(text, line_fault(text))
+
+
+def paragraph(text: str) -> str:
+    """Return a text that may have several lines and tabs, but no other control characters."""
+    return _checked(text, line_fault(text, 10 * LONGEST_LINE, "\n\t"))
+
+
+def _checked(text: str, fault: str | None) -> str:
+    if fault:
+        from pydantic_core import PydanticCustomError
+
+        raise PydanticCustomError(TEXT_FAULT, "{fault}", {"fault": fault})
+    return text
+
+
+def quoted(value: object) -> str:
+    """Return a value as messages quote it: as Python writes it, shortened where it is long.
+
+    >>> quoted("a" * 100), quoted(0.17)
+    ("'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…'", '0.17')
+    """
+    text = repr(value)
+    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 2]}…{text[-1]}"
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> str:
     """Return the text of `path`, or raise `error` with a sentence that says what is wrong with the file.
 
-    `what` names the kind of file in the message ("rig file"); files over `limit_MB` are refused before they are read.
+    `what` names the kind of file in the message ("rig file"); of files over `limit_MB` no more than that is read.
     """
-    try:
-        if path.is_dir():
-            raise error(f"{path}: this is a directory, not a {what}")
-        size = path.stat().st_size
-        if size > limit_MB * 1e6:
-            raise error(f"{path}: {size / 1e6:.0f} MB is too large for a {what}; the limit is {limit_MB:g} MB")
-        data = path.read_bytes()
-    except FileNotFoundError:
-        raise error(f"{path}: no such {what}") from None
-    except OSError as problem:
-        raise error(f"{path}: cannot be read ({problem.strerror or problem})") from None
+    data = read_bytes(path, what, limit_MB, error)
     if not data.strip():
         raise error(f"{path}: the file is empty; a {what} was expected")
     if b"\0" in data:
@@ -35,6 +87,76 @@ def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = 
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
         raise error(f"{path}: not UTF-8 text (byte {problem.start}); save the {what} as UTF-8") from None
+
+
+def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> bytes:
+    """Return what is in a regular file of at most `limit_MB`, or raise `error` with a sentence on what is there."""
+    try:
+        return read_limited(path, int(limit_MB * 1e6))
+    except NotRegular as found:
+        if found.kind == "folder":
+            raise error(f"{path}: this is a directory, not a {what}") from None
+        raise error(f"{path}: {found}; save what it gives as a {what}, and name that") from None
+    except TooLarge as found:
+        raise error(
+            f"{path}: {found.size / 1e6:.0f} MB is too large for a {what}; the limit is {limit_MB:g} MB"
+        ) from None
+    except FileNotFoundError:
+        raise error(f"{path}: no such {what}") from None
+    except (OSError, ValueError) as problem:
+        raise error(f"{path}: cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
+
+
+def read_toml(text: str, where: str, error: type[InputError] = InputError) -> dict[str, Any]:
+    """Return a TOML text as a dictionary, or raise `error` that says which line is wrong.
+
+    Tables within tables beyond what Python's reader follows, and whole numbers beyond 64 bits (TOML's own range), are
+    errors as well.
+    """
+    import tomllib
+
+    if len(text) > MOST_KEYS_A_LINE and (line := _endless_key(text)):
+        raise error(
+            f"{where}:{line}: a key of more than {MOST_KEYS_A_LINE} parts; a key has two or three, as in skin.site"
+        )
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise error(f"{where}: not a valid TOML file: {problem}") from None
+    except RecursionError:
+        raise error(f"{where}: tables and lists are {TOO_DEEP}") from None
+    except ValueError:  # whole numbers of more than 4,300 digits
+        raise error(f"{where}: a whole number has thousands of digits; numbers have at most {MOST_DIGITS}") from None
+    if fault := _unreadable(document):
+        raise error(f"{where}: {fault}")
+    return document
+
+
+def _endless_key(text: str) -> int | None:
+    """Number of the line with a key of absurdly many parts, which takes tomllib as its square."""
+    for number, line in enumerate(text.splitlines(), 1):
+        key, equals, _ = line.partition("=")
+        if (equals or key.lstrip().startswith("[")) and key.count(".") > MOST_KEYS_A_LINE:
+            return number
+    return None
+
+
+def _unreadable(document: dict[str, Any]) -> str | None:
+    """What no table of ours could hold: nested deeper than they are, or whole numbers beyond 64 bits."""
+    open_: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in document.items()]
+    while open_:
+        key, value, depth = open_.pop()
+        if depth > DEEPEST:
+            return f"{clean_line(key[:60])}: {TOO_DEEP}"
+        if isinstance(value, dict):
+            open_ += [(f"{key}.{name}", inner, depth + 1) for name, inner in value.items()]
+        elif isinstance(value, list):
+            open_ += [(f"{key}.{place}", inner, depth + 1) for place, inner in enumerate(value)]
+        elif isinstance(value, int) and not -(2**63) <= value < 2**63:
+            return (
+                f"{clean_line(key[:60])}: a whole number of more than 64 bits; write it as a decimal number, as in 1e20"
+            )
+    return None
 
 
 def signed(value: float, form: str = "g") -> str:

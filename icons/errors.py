@@ -3,6 +3,8 @@
 import unicodedata
 from dataclasses import dataclass
 
+from thermicon.icons.cleaning import clean
+
 TITLES: dict[str, str] = {
     # the file as a whole
     "E001": "no such file",
@@ -128,7 +130,7 @@ class CueError:
             rows.append(f"  {self.help}")
         if self.suggestion is not None:
             rows.append(f"  did you mean:  {self.suggestion}")
-        return "\n".join(rows)
+        return clean("\n".join(rows))
 
 
 class CueErrors(ValueError):

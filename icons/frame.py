@@ -1,10 +1,10 @@
 """What icons carry besides statements: the frame they are meant in, and metadata; and what names and texts may be."""
 
 import re
-import unicodedata
 from dataclasses import dataclass
 from typing import get_args
 
+from thermicon.icons.cleaning import first_control
 from thermicon.icons.faults import Control, fault
 
 _WORD = r"[^\W\d_](?:[^\W_]|-)*"
@@ -27,8 +27,8 @@ def text_fault(text: str) -> str | None:
     """Return what keeps a text out of metadata, or None: it must show something and hold no control characters."""
     if not text.strip():
         return "the text is empty"
-    bad = next((char for char in text if unicodedata.category(char) in ("Cc", "Cs") and char not in "\n\t"), None)
-    return f"the text holds the control character U+{ord(bad):04X}" if bad else None
+    bad = first_control(text, "\n\t")
+    return f"the text holds the control character {bad}" if bad else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,8 @@ from thermicon.icons.source import Edit, Finding, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.
 _TRIES = 150_000
+# An error takes as long to describe as some forty characters to read.
+_AN_ERROR = 40
 _LONGEST_LINE = 200
 _MOST_CURES = 4
 
@@ -62,6 +64,7 @@ class _Suggester:
             text = source.text[: cure.start] + cure.text + source.text[cure.end :]
             tried = Source(source.file, text)
             analysis = analyse(tried)
+            self.budget -= _AN_ERROR * (len(analysis.findings) + analysis.more)
             left = [found for found in analysis.findings if tried.place(found.start)[0] == line]
             if not left and len(analysis.findings) + analysis.more <= self.count:
                 return tried.lines[line - 1].strip() or None

@@ -1,9 +1,9 @@
 """Run the grammar over a whole file and carry on behind every error, so that all of them are found in one go."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from itertools import islice
 from typing import TYPE_CHECKING, Any
@@ -286,18 +286,13 @@ class _Reader:
             state.value_stack.pop()
         return not self.takes("_NEWLINE")
 
+    def accepts(self) -> frozenset[str]:
+        """Return the kinds of tokens that the parser could take now."""
+        return _accepted(tuple(self.parser.parser_state.state_stack))
+
     def takes(self, kind: str) -> bool:
-        """Tell whether the parser could take a token now: what ``accepts`` does, for one kind and without copies."""
-        states = self.parser.parser_state.parse_conf.states
-        stack = list(self.parser.parser_state.state_stack)
-        while (entry := states[stack[-1]].get(kind)) is not None:
-            rule = entry[1]
-            if isinstance(rule, int):
-                return True
-            if rule.expansion:
-                del stack[-len(rule.expansion) :]
-            stack.append(states[stack[-1]][rule.origin.name][1])
-        return False
+        """Tell whether the parser could take a token of this kind now."""
+        return _takes(self.parser.parser_state.state_stack, kind)
 
     def refuse_depth(self, brace: int) -> None:
         what = f"blocks are nested more than {DEEPEST} deep"
@@ -340,7 +335,32 @@ class _Reader:
         if len(self.findings) >= MOST_ERRORS:
             self.more += 1
             return ""
-        accepts = frozenset(self.parser.accepts())
-        finding = diagnose(Case(pieces, index, at, accepts, where, self.names, self.listing))
+        finding = diagnose(Case(pieces, index, at, self.accepts(), where, self.names, self.listing))
         self.findings.append(finding)
         return finding.code
+
+
+@lru_cache(maxsize=4096)
+def _accepted(stack: tuple[int, ...]) -> frozenset[str]:
+    """Kinds of tokens that a stack of parser states could take: as lark's ``accepts``, without copies of the parser."""
+    entries = _states()[stack[-1]]
+    return frozenset(kind for kind in entries if kind.isupper() and _takes(stack, kind))
+
+
+def _takes(stack: Sequence[int], kind: str) -> bool:
+    states = _states()
+    left = list(stack)
+    while (entry := states[left[-1]].get(kind)) is not None:
+        rule = entry[1]
+        if isinstance(rule, int):
+            return True
+        if rule.expansion:
+            del left[-len(rule.expansion) :]
+        left.append(states[left[-1]][rule.origin.name][1])
+    return False
+
+
+@cache
+def _states() -> Any:
+    """The table of the parser: what each state does with each kind of token."""
+    return grammar().parse_interactive("").parser_state.parse_conf.states

@@ -1,10 +1,12 @@
 """Read cue files and the icon sets that ship with the package."""
 
+import errno
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from thermicon.icons.errors import whole_file
+from thermicon.icons.handed import NotRegular, TooLarge, read_limited
 from thermicon.icons.iconset import IconSet
 from thermicon.icons.parse import parse
 from thermicon.icons.source import MOST_BYTES, MOST_JSON_BYTES
@@ -71,22 +73,28 @@ def file_bytes(source: str | Path) -> bytes | None:
     """
     name = str(source)
     path = Path(source)
+    most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
     try:
-        if path.is_dir() and name not in library_names():
-            raise whole_file(
-                "E002", name, "a set is one file", f"name a .cue file in it, such as {path / 'my-set.cue'}"
-            )
-        if not path.is_file():
+        if path.is_dir() and name in library_names():
             return None
-        size = path.stat().st_size
-        most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
-        if size > most:
-            help = f"a cue file has at most {most:,} bytes; split the set"
-            raise whole_file("E004", name, f"{size:,} bytes", help)
-        return path.read_bytes()
+        return read_limited(path, most)
+    except FileNotFoundError:
+        return None
+    except NotRegular as found:
+        if found.kind == "folder":
+            help = f"name a .cue file in it, such as {path / 'my-set.cue'}"
+            raise whole_file("E002", name, "a set is one file", help) from None
+        raise whole_file("E003", name, str(found), "save what it gives as a file, and name that") from None
+    except TooLarge as found:
+        help = f"a cue file has at most {most:,} bytes; split the set"
+        raise whole_file("E004", name, str(found), help) from None
     except OSError as error:
+        if error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG):
+            return None
         help = "check that it is there and that you may read it"
         raise whole_file("E003", name, f"the system says: {error.strerror or error}", help) from None
+    except ValueError:  # a zero byte in the name
+        return None
 
 
 def _folder() -> Traversable:

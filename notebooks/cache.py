@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import os
 import shutil
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from thermicon.circuit.userfolder import cache_folder, private_folder
 from thermicon.notebooks.outputs import check_folder
 
 LONG_PAIRS = 30_000
@@ -23,7 +23,7 @@ def kept(asked: Path | None, pairs: int, what: str) -> Iterator[Path | None]:
     """A folder for finished parts: the one asked for, which stays, or for long work one in the user's cache.
 
     That one is named after `what` is done and goes when it is done; what runs that never ended left there goes after
-    two weeks. None for short work, and where the cache cannot be written.
+    two weeks. None for short work, and where the cache cannot be written or others can write it too.
     """
     if asked is not None:
         check_folder(asked)
@@ -32,15 +32,14 @@ def kept(asked: Path | None, pairs: int, what: str) -> Iterator[Path | None]:
     if pairs < LONG_PAIRS:
         yield None
         return
-    parts = cache_folder() / "parts"
-    own = parts / hashlib.sha256(what.encode("utf-8")).hexdigest()[:32]
+    own = cache_folder() / "parts" / hashlib.sha256(what.encode("utf-8")).hexdigest()[:32]
     try:
-        own.mkdir(parents=True, exist_ok=True)
+        private_folder(own)
         os.utime(own)
     except OSError:
         yield None
         return
-    _forget_stale(parts)
+    _forget_stale(own.parent)
     yield own
     shutil.rmtree(own, ignore_errors=True)
 
@@ -50,14 +49,3 @@ def _forget_stale(parts: Path) -> None:
         with suppress(OSError):
             if time.time() - entry.stat().st_mtime > STALE_S:
                 shutil.rmtree(entry, ignore_errors=True)
-
-
-def cache_folder() -> Path:
-    """The user's cache folder for this program: THERMICON_CACHE, or where the system keeps such things."""
-    if own := os.environ.get("THERMICON_CACHE"):
-        return Path(own)
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "thermicon"
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches" / "thermicon"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thermicon"

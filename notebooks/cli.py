@@ -14,7 +14,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks import handing, hardware, lab, searching, validation, whatif
+from thermicon.notebooks import handing, hardware, lab, searching, session, validation, whatif
 from thermicon.notebooks.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import (
@@ -267,6 +267,7 @@ app.command("explain")(handing.explain_command)
 app.command("sensitivity")(whatif.sensitivity_command)
 app.command("validate")(validation.validate_command)
 app.command("export")(hardware.export_command)
+app.command("session")(session.session_command)
 app.command("devices")(hardware.devices_command)
 app.command("lab")(lab.lab_command)
 

@@ -94,8 +94,9 @@ def written(icons: IconSet, suffix: str, icon: str | None = None) -> str:
 
 def has_comments(file: str) -> bool:
     """Tell whether a cue file has comments, which no set keeps."""
-    path = Path(file)
-    if not path.is_file() or path.suffix.lower() in (".json", ".csv"):
+    from thermicon.icons.shipped import file_bytes
+
+    if Path(file).suffix.lower() in (".json", ".csv") or (data := file_bytes(file)) is None:
         return False
-    text = path.read_text(encoding="utf-8", errors="replace")
+    text = data.decode("utf-8", errors="replace")
     return any(match.group() == "#" for match in _TEXT_OR_COMMENT.finditer(text))

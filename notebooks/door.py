@@ -51,7 +51,7 @@ class Commands(TyperGroup):
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
         except Exception as error:
-            if not is_ours(error):
+            if isinstance(error, typer.BadParameter) or not is_ours(error):
                 raise
             fail(str(error))
         else:
@@ -84,6 +84,14 @@ def into_nowhere(stream: TextIO) -> None:
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, stream.fileno())
     os.close(nowhere)
+
+
+class Missing(typer.BadParameter):
+    """An argument or option that is needed here, though another form of the command does without it."""
+
+    def format_message(self) -> str:
+        """The words of the command line's own error."""
+        return f"Missing {self.message}."
 
 
 def usage(message: str, option: str) -> typer.BadParameter:

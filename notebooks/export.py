@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,22 +10,14 @@ import typer
 
 from thermicon.notebooks.cues import pick, read_set, warn_of_site
 from thermicon.notebooks.door import REFUSED, note
-from thermicon.notebooks.outputs import check_folder, write_together
+from thermicon.notebooks.exportfolder import check_export_folder
+from thermicon.notebooks.exporting import Ready, others, prepare_icons, write
 from thermicon.notebooks.progress import progress_bar
 from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device, Realised, Rig
-    from thermicon.circuit.delivery.export import Prepared, Refusal
-    from thermicon.circuit.delivery.formats import Format
-    from thermicon.icons import Icon
-    from thermicon.perception import FeltChange
-
-AFTER_S = 10.0
-"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
-
-MOST_COMPARED = 60
-"""In a larger set d′ is looked at only among the icons that are exported, and among more than these not at all."""
+    from thermicon.circuit import Realised, Rig
+    from thermicon.circuit.delivery.export import Prepared
 
 CAUTION = (
     "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
@@ -37,82 +29,32 @@ def export_file(
     file: str, to: str, device: str | None, icon: str | None, rig: Rig, tail_s: float, force: bool, folder: Path
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
-    from thermicon.circuit import Device
-    from thermicon.circuit.delivery.export import check_names, pack
+    from thermicon.circuit.delivery.export import check_names
     from thermicon.circuit.delivery.formats import load_format
 
     form = load_format(to)
-    played = Device.load(device or form.device)
-    check_folder(folder)
+    check_export_folder(folder)
     whole = read_set([file])
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, rig)
-    ready = prepare_all(chosen, rig, played, form, tail_s)
-    felt = compare_felt(ready, others(whole, chosen), rig, played, tail_s)
-    losses = {change.icon: change.losses() for change in felt}
-    tell(ready)
-    if refused(ready, losses, force):
+    with progress_bar("realising") as progress:
+        ready = prepare_icons(chosen, others(whole, chosen), rig, device, to, step=progress, tail_s=tail_s)
+    for warning in ready.warnings:
+        note(warning)
+    tell(ready.prepared)
+    if refused(ready, force):
         note(CAUTION)
         note("nothing was written")
         raise typer.Exit(REFUSED)
-    files = pack(ready, form, felt={change.icon: change.to_dict() for change in felt}, losses=losses)
-    write_together(files, folder, replace=force)
-    drives = "1 drive with its sidecar" if len(ready) == 1 else f"{len(ready)} drives with their sidecars"
-    note(f"wrote {drives} into {folder}: {', '.join(_shown(list(files)))}")
+    written = write(ready, folder, overwrite=force, insist=force)
+    count = len(ready.prepared)
+    drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
+    note(f"wrote {drives} into {folder}: {', '.join(_shown(written.names))}")
+    if written.gone:
+        note(f"removed from {folder}, since their sidecars now describe other drives: {', '.join(written.gone)}")
     note(f"to play: {form.how}")
     note(CAUTION)
-
-
-def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
-    """The icons of a set that are not exported but compared with; none where the set is large."""
-    names = {icon.name for icon in chosen}
-    left = [icon for icon, _ in zip(whole, range(MOST_COMPARED + 1), strict=False) if icon.name not in names]
-    return left if len(left) + len(chosen) <= MOST_COMPARED else []
-
-
-def prepare_all(icons: Sequence[Icon], rig: Rig, device: Device, form: Format, tail_s: float) -> list[Prepared]:
-    """Realise and judge every icon."""
-    from thermicon.circuit.delivery.export import prepare
-
-    ready = []
-    with progress_bar("realising") as progress:
-        for done, icon in enumerate(icons, 1):
-            ready.append(prepare(icon, rig, device, form, tail_s=tail_s))
-            if progress is not None:
-                progress(done, len(icons))
-    return ready
-
-
-def compare_felt(
-    ready: Sequence[Prepared],
-    rest: Sequence[Icon],
-    rig: Rig,
-    device: Device,
-    tail_s: float,
-    warn: Callable[[str], None] = note,
-) -> tuple[FeltChange, ...]:
-    """What the device changes of the exported icons for a nominal person, beside the others of the set."""
-    from thermicon.circuit.delivery.realise import realise, traces_until
-    from thermicon.circuit.inputs import InputError
-    from thermicon.perception import judge_delivered
-
-    everyone = [one.realised for one in ready]
-    for icon in rest:
-        try:
-            everyone.append(realise(icon, rig, device, tail_s=tail_s))
-        except InputError as problem:
-            warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
-    end = max(realised.end_s for realised in everyone) + AFTER_S
-    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
-    if len(groups) > 1:
-        warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
-    felt: list[FeltChange] = []
-    for group in groups:
-        traces = [traces_until(realised, end) for realised in group]
-        names = [realised.icon.name for realised in group]
-        felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
-    return tuple(felt[: len(ready)])
 
 
 def tell(ready: Sequence[Prepared]) -> None:
@@ -140,25 +82,13 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-    for warning in (*realised.told, *one.verdict.cautions):
+    for warning in one.warnings:
         yield f"warning: {realised.icon.name}: {warning}"
 
 
-def refusals(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]]) -> list[tuple[str, Refusal]]:
-    """Every reason against exporting, with the name of its icon; `losses` are what perception adds."""
-    from thermicon.circuit.delivery.export import Refusal
-
-    names = [one.realised.icon.name for one in ready]
-    return [
-        (name, refusal)
-        for name, one in zip(names, ready, strict=True)
-        for refusal in (*one.refusals, *(Refusal("lossy", text) for text in losses.get(name, ())))
-    ]
-
-
-def refused(ready: Sequence[Prepared], losses: Mapping[str, Sequence[str]], force: bool) -> bool:
+def refused(ready: Ready, force: bool) -> bool:
     """Say why icons are refused, and whether any is."""
-    found = refusals(ready, losses)
+    found = ready.against
     for name, refusal in found:
         stops = not (force and refusal.forcible)
         note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")

@@ -1,13 +1,14 @@
-"""What the export view computes: icons as a device delivers them, what speaks against it, and the files."""
+"""An export from icons to files, for command line and workbench: realised, judged, compared, packed, written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.notebooks.outputs import OutputError, check_folder, write_together
+from thermicon.notebooks.exportfolder import HOW, publish
+from thermicon.notebooks.outputs import OutputError
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Prepared, Refusal, Rig
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
     from thermicon.perception import FeltChange
 
 FORMAT = "csv"
+
+AFTER_S = 10.0
+"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
+
+MOST_COMPARED = 60
+"""In a larger set d′ is looked at only among the icons that are exported, and among more than these not at all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +42,35 @@ class Ready:
 
     @property
     def against(self) -> list[tuple[str, Refusal]]:
-        """Every reason against writing, with the icon that it is about."""
-        from thermicon.notebooks.export import refusals
+        """Every cause against writing, with the icon that it is about.
 
-        return refusals(self.prepared, self.losses)
+        What perception loses is reported where nothing else is refused, since it follows from the rest.
+        """
+        from thermicon.circuit.delivery.refusal import Refusal
+
+        found = []
+        for one in self.prepared:
+            name, causes = one.realised.icon.name, one.refusals
+            felt = self.losses.get(name, ())
+            if felt and not causes:
+                more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
+                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device that is finer or faster"),)
+            found += [(name, refusal) for refusal in causes]
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What an export put into its folder, and which older files went because their sidecars describe new drives."""
+
+    folder: Path
+    names: tuple[str, ...]
+    gone: tuple[str, ...] = ()
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """Where the files are."""
+        return tuple(self.folder / name for name in self.names)
 
 
 def formats_for(device: Device) -> tuple[str, ...]:
@@ -67,48 +99,81 @@ def prepare_icons(
     device: str | None = None,
     form: str = FORMAT,
     step: Callable[[int, int], None] | None = None,
+    tail_s: float = 0.0,
 ) -> Ready:
-    """Realise and judge icons beside the ``rest`` of their set, as ``thermicon export`` does; ``step`` after each.
+    """Realise and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
 
+    ``tail_s`` is followed after the last corner.
     Raises InputError where the device cannot play an icon, or not in this format.
     """
     from thermicon.circuit import Device, prepare
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.notebooks.export import compare_felt
 
     made = load_format(form)
     played = Device.load(device or made.device)
     prepared = []
     for done, icon in enumerate(icons, 1):
-        prepared.append(prepare(icon, rig, played, made))
+        prepared.append(prepare(icon, rig, played, made, tail_s=tail_s))
         if step is not None:
             step(done, len(icons))
     warned: list[str] = []
-    felt = compare_felt(prepared, rest, rig, played, 0.0, warned.append)
+    felt = compare_felt(prepared, rest, rig, played, tail_s, warned.append)
     return Ready(made, played, tuple(prepared), felt, tuple(warned))
 
 
-def write(ready: Ready, folder: Path, overwrite: bool = False, insist: bool = False) -> tuple[Path, ...]:
-    """Write drives and sidecars, all or none, and return their paths.
+def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
+    """The icons of a set that are not exported but compared with; none where the set is large."""
+    names = {icon.name for icon in chosen}
+    left = [icon for icon, _ in zip(whole, range(MOST_COMPARED + 1), strict=False) if icon.name not in names]
+    return left if len(left) + len(chosen) <= MOST_COMPARED else []
+
+
+def compare_felt(
+    ready: Sequence[Prepared],
+    rest: Sequence[Icon],
+    rig: Rig,
+    device: Device,
+    tail_s: float,
+    warn: Callable[[str], None],
+) -> tuple[FeltChange, ...]:
+    """What the device changes of the exported icons for a nominal person, beside the others of the set."""
+    from thermicon.circuit.delivery.realise import realise, traces_until
+    from thermicon.circuit.inputs import InputError
+    from thermicon.perception import judge_delivered
+
+    everyone = [one.realised for one in ready]
+    for icon in rest:
+        try:
+            everyone.append(realise(icon, rig, device, tail_s=tail_s))
+        except InputError as problem:
+            warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
+    end = max(realised.end_s for realised in everyone) + AFTER_S
+    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
+    if len(groups) > 1:
+        warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
+    felt: list[FeltChange] = []
+    for group in groups:
+        traces = [traces_until(realised, end) for realised in group]
+        names = [realised.icon.name for realised in group]
+        felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
+    return tuple(felt[: len(ready)])
+
+
+def write(ready: Ready, folder: Path, overwrite: bool = False, insist: bool = False, how: str = HOW) -> Written:
+    """Write drives and sidecars, all or none, and say which.
 
     Raises OutputError where that is refused: what is unsafe always, what is lossy or not reached unless ``insist``,
-    files that are there unless ``overwrite``.
+    files that are there unless ``overwrite``, which ``how`` tells a person how to ask for.
     """
     from thermicon.circuit import pack
 
     stops = [f"{name}: {refusal}" for name, refusal in ready.against if not (insist and refusal.forcible)]
     if stops:
         raise OutputError("; ".join(stops))
-    check_folder(folder)
     files = pack(
         ready.prepared,
         ready.form,
         felt={change.icon: change.to_dict() for change in ready.felt},
         losses=ready.losses,
     )
-    there = [name for name in files if (folder / name).exists()]
-    if there and not overwrite:
-        more = f" and {len(there) - 1} more" if len(there) > 1 else ""
-        raise OutputError(f"{folder / there[0]}{more} exists already and is kept; tick overwrite to replace it")
-    write_together(files, folder, replace=overwrite)
-    return tuple(folder / name for name in files)
+    return Written(folder, tuple(files), publish(files, folder, overwrite, how))

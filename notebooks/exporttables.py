@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from thermicon.notebooks.export import CAUTION, steps_of, told_of
@@ -12,8 +11,8 @@ from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared
-    from thermicon.circuit.safety.limits import Check
-    from thermicon.notebooks.exporting import Ready
+    from thermicon.circuit.safety.checks import Check
+    from thermicon.notebooks.exporting import Ready, Written
     from thermicon.perception import FeltChange
 
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
@@ -85,11 +84,12 @@ def _check(check: Check) -> str:
     return f'<tr class="{kind}">' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
 
 
-def written_html(ready: Ready, paths: Sequence[Path]) -> str:
-    """Which files were written, and how they are played."""
+def written_html(ready: Ready, written: Written) -> str:
+    """Which files were written, which older ones had to go, and how the drives are played."""
     drives = len(ready.prepared)
-    head = f"wrote {drives} {'drive' if drives == 1 else 'drives'} with sidecars into {paths[0].parent.resolve()}"
-    names = "".join(f"<li>{escape(path.name)}</li>" for path in paths)
+    head = f"wrote {drives} {'drive' if drives == 1 else 'drives'} with sidecars into {written.folder.resolve()}"
+    names = "".join(f"<li>{escape(name)}</li>" for name in written.names)
+    names += "".join(f"<li>removed, its sidecar describes another drive: {escape(name)}</li>" for name in written.gone)
     played = f"to play: {escape(ready.form.how)}"
     return (
         f'<div class="th-good">{escape(head)}</div><ul class="th th-code">{names}</ul>'

@@ -109,12 +109,12 @@ class ExportView:
             raise OutputError("the drives are not ready yet")
         folder = Path(self.folder.value.strip() or ".").expanduser()
         try:
-            paths = write(self.ready, folder, self.overwrite.value, self.insist.value)
+            written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
         except (OutputError, ValueError) as wrong:
             self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
             self._say("")
             return
-        self.said["written"].value = written_html(self.ready, paths)
+        self.said["written"].value = written_html(self.ready, written)
         self._say("")
 
     def _forget_result(self) -> None:

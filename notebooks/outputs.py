@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import signal
 import threading
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
+
+from thermicon.notebooks.drafts import draft_of
 
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
@@ -74,21 +75,20 @@ def complete_or_absent(path: Path) -> Iterator[Path]:
     if goal.exists() and not goal.is_file():
         yield goal  # a pipe or a device: nothing to replace
         return
-    draft = goal.with_name(f".{goal.stem}.{os.getpid()}.part{goal.suffix.lower()}")
     try:
-        yield draft
-        draft.replace(goal)
+        with draft_of(goal) as draft:
+            yield draft
+            draft.replace(goal)
     except OSError as error:
         raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
-    finally:
-        draft.unlink(missing_ok=True)
 
 
 def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = False) -> None:
-    """Write files into a folder, which is made if missing: all of them are there when this returns, or none is.
+    """Write files into a folder, which is made if missing: all of them are there when this returns, or none.
 
     Every file is written under a hidden name, flushed to the disk, and renamed when all are. What exists already is an
-    error before anything is written, unless ``replace``. What a process that was killed left behind is removed.
+    error before anything is written, unless ``replace``. A process that is killed may leave some of them; for a folder
+    that must never be mixed there is ``exportfolder.publish``.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -96,17 +96,16 @@ def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = Fal
     ...     sorted(found.name for found in Path(folder).iterdir())
     ['a.csv', 'a.json']
     """
-    made, drafts = not folder.exists(), {}
+    made = not folder.exists()
     placed: list[Path] = []
     try:
-        with stopped_cleanly():
+        with stopped_cleanly(), ExitStack() as held:
             folder.mkdir(exist_ok=True)
             there = [name for name in files if (folder / name).exists()]
             if there and not replace:
                 more = f" and {len(there) - 1} more" if len(there) > 1 else ""
                 raise OutputError(f"{folder / there[0]}{more} exists already and is kept; --force replaces it")
-            _sweep(folder)
-            drafts = {name: folder / f".{name}.{os.getpid()}.part" for name in files}
+            drafts = {name: held.enter_context(draft_of(folder / name)) for name in files}
             for name, draft in drafts.items():
                 with draft.open("wb") as file:
                     file.write(files[name])
@@ -120,7 +119,7 @@ def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = Fal
     except OSError as error:
         raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
     finally:
-        for left in (*drafts.values(), *placed):
+        for left in placed:
             left.unlink(missing_ok=True)
         if made:
             with contextlib.suppress(OSError):
@@ -142,19 +141,3 @@ def stopped_cleanly() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _sweep(folder: Path) -> None:
-    """Remove drafts of processes that are gone."""
-    if os.name != "posix":
-        return
-    for draft in folder.glob(".*.part"):
-        found = re.fullmatch(r"\..+\.(\d+)\.part", draft.name)
-        if found is None:
-            continue
-        try:
-            os.kill(int(found[1]), 0)
-        except ProcessLookupError:
-            draft.unlink(missing_ok=True)
-        except (OSError, OverflowError):
-            continue

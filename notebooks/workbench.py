@@ -44,7 +44,7 @@ class Workbench:
         text: str | Path | Icon | IconSet | None = None,
         rig: str | Path | Rig = "thenar",
         icon: str | None = None,
-        folder: str | Path = ".",
+        folder: str | Path = "drives",
     ) -> None:
         from thermicon.circuit import Rig
 

@@ -19,7 +19,7 @@ from thermicon.perception.receptors import Array
 from thermicon.perception.task import Task
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
 
 RATE_HZ = 25.0
@@ -55,10 +55,18 @@ class CarryOver:
 
 
 def carry_over(
-    icons: Sequence[Icon], rig: Rig, end_s: float, gap_s: float, observer: Observer | None = None
+    icons: Sequence[Icon],
+    rig: Rig,
+    end_s: float,
+    gap_s: float,
+    observer: Observer | None = None,
+    *,
+    tracking: str | None = None,
 ) -> CarryOver:
     """Let the nominal person feel every icon of a set after every other, each followed for `end_s`.
 
+    What an icon leaves behind depends on who holds the gap: the driver brings the skin or the display back to its
+    baseline, or, with `tracking` `replay`, the resting current flows and nothing corrects what it leaves.
     Raises `ValueError` for a gap below 0, without icons, and for an end before that of the longest icon.
 
     >>> from thermicon.circuit import Rig
@@ -80,11 +88,12 @@ def carry_over(
     person = Observer.load() if observer is None else observer
     waits = [max(1, round((lasted + gap_s) * RATE_HZ)) for lasted in lasting]
     rows = round(end_s * RATE_HZ) + 1
-    traces = simulate_all(list(icons), rig, end_s=(max(waits) + rows) / RATE_HZ, rate_Hz=RATE_HZ)
+    last = (max(waits) + rows) / RATE_HZ
+    traces = simulate_all(list(icons), rig, end_s=last, rate_Hz=RATE_HZ)
+    leaving = [_replayed(icon, rig, last) for icon in icons] if tracking == "replay" else traces
     dt, _ = uniform_clock(traces[0].time_s)
-    cold, warm = (
-        np.array([getattr(trace, name) for trace in traces]) for name in ("cold_receptor_C", "warm_receptor_C")
-    )
+    cold, warm = (_at_receptors(traces, channel) for channel in ("cold", "warm"))
+    sources = [(_at_receptors(leaving, channel), alone) for channel, alone in (("cold", cold), ("warm", warm))]
 
     def felt(at_cold: Array, at_warm: Array) -> Array:
         return np.stack(perceive_many(at_cold, at_warm, dt, person, area_m2=rig.contact.area_m2, site=rig.site))
@@ -92,7 +101,7 @@ def carry_over(
     alone = felt(cold[:, :rows], warm[:, :rows])
     apart = np.empty((len(NORMS), len(icons), len(icons)))
     for before, wait in enumerate(waits):
-        after = felt(*(_after(received, before, wait, rows) for received in (cold, warm)))[..., wait:]
+        after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
         pairs = np.stack([alone, after], axis=2)
         found = differences(pairs[0], pairs[1], dt, person)
         apart[:, before] = [found[norm][:, 0, 1] for norm in NORMS]
@@ -101,14 +110,19 @@ def carry_over(
 
 
 def prepared(
-    task: Task, icons: Sequence[Icon], rig: Rig, end_s: float, counted: Sequence[int] = ()
+    task: Task,
+    icons: Sequence[Icon],
+    rig: Rig,
+    end_s: float,
+    counted: Sequence[int] = (),
+    tracking: str | None = None,
 ) -> tuple[Task, CarryOver | None]:
     """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
     asked = task.asked()
     if asked.plain:
         return asked, None
     played = tuple(counted or range(len(icons)))
-    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s)
+    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s, tracking=tracking)
     return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
 
 
@@ -122,8 +136,25 @@ def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
     return tuple(tuple(float(value) for value in row) for row in values)
 
 
-def _after(received: Array, before: int, wait: int, rows: int) -> Array:
-    """Every icon begun `wait` rows into one of them, (icons, wait + rows)."""
-    whole = np.repeat(received[before : before + 1, : wait + rows], len(received), axis=0)
+def _replayed(icon: Icon, rig: Rig, end_s: float) -> Trace:
+    """The current of an icon open loop, and then its resting current until `end_s`, as exported drives are played."""
+    from thermicon.circuit import Drive, design, duration_s, simulate_current
+
+    plan = design(icon, rig, duration_s(icon, rig))
+    times, currents = plan.drive.time_s, plan.drive.current_A
+    if plan.drive.held:
+        drive = Drive([*times, end_s], [*currents[:-1], plan.rest_A, plan.rest_A], held=True)
+    else:
+        drive = Drive([*times, times[-1] + 1e-3, end_s], [*currents, plan.rest_A, plan.rest_A])
+    return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=plan.start_C)
+
+
+def _at_receptors(traces: Sequence[Trace], channel: str) -> Array:
+    return np.array([getattr(trace, f"{channel}_receptor_C") for trace in traces])
+
+
+def _after(left: Array, received: Array, wait: int, rows: int) -> Array:
+    """Every icon (icons, rows) begun `wait` rows into what another one leaves behind (rows,): (icons, wait + rows)."""
+    whole = np.repeat(left[np.newaxis, : wait + rows], len(received), axis=0)
     whole[:, wait:] += received[:, :rows] - received[:, :1]
     return whole

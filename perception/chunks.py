@@ -10,13 +10,12 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from importlib.metadata import PackageNotFoundError, version
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.program import DRIVES
+from thermicon.circuit.program import code_digest as digest_of
 from thermicon.perception.confusion import SAMPLES
 from thermicon.perception.intervals import EVERY, PEOPLE
 from thermicon.perception.judge import Played, feel, judge
@@ -177,29 +176,6 @@ def _crowd(people: int, seed: int) -> People:
     return draw_people(people, seed)
 
 
-@lru_cache(maxsize=1)
 def code_digest() -> str:
     """Hash of the version and of all that this version computes with: chunks of another are of no use to it."""
-    digest = hashlib.sha256(own_version().encode("utf-8"))
-    for package in ("thermicon.icons", "thermicon.circuit", "thermicon.perception"):
-        for name, content in _sources(files(package), ""):
-            digest.update(name.encode("utf-8") + content)
-    return digest.hexdigest()
-
-
-def _sources(folder: Traversable, within: str) -> Iterator[tuple[str, bytes]]:
-    """Name below a package and content of every file that decides what is computed, rooms and data included."""
-    for entry in sorted(folder.iterdir(), key=lambda one: one.name):
-        name = f"{within}/{entry.name}"
-        if entry.is_dir():
-            yield from _sources(entry, name)
-        elif entry.name.endswith((".py", ".toml", ".csv", ".lark")):
-            yield name, entry.read_bytes()
-
-
-def own_version() -> str:
-    """Version of the package as installed."""
-    try:
-        return version("thermicon")
-    except PackageNotFoundError:
-        return "unknown"
+    return digest_of((*DRIVES, "thermicon.perception"))

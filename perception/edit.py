@@ -158,7 +158,7 @@ class _Search:
             return middle
 
         def of_set(icons: Sequence[Icon], end_s: float) -> Array:
-            return medians(icons, end_s, prepared(task, icons, self.rig, end_s, task.counted)[0])
+            return medians(icons, end_s, prepared(task, icons, self.rig, end_s, task.counted, tracking)[0])
 
         before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:

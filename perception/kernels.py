@@ -9,8 +9,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
+
+from thermicon.circuit.compiled import kernel
 
 SQRT_HALF = math.sqrt(0.5)
 INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
@@ -169,8 +170,8 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
 
 
 Loop = Callable[..., None]
-_compile: Any = numba.njit(cache=True, nogil=True)
-_vector: Any = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "nsz"})
+_compile: Any = kernel(nogil=True)
+_vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
 cumulative: Callable[[float], float] = _compile(_cumulative)
 drive: Loop = _compile(_drive)
 sensation: Loop = _compile(_sensation)

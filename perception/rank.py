@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.program import own_version
 from thermicon.perception.carryover import CarryOver, among, prepared
 from thermicon.perception.choose import Choice, choose
-from thermicon.perception.chunks import RATE_HZ, Work, own_version
+from thermicon.perception.chunks import RATE_HZ, Work
 from thermicon.perception.coverage import outside_data
 from thermicon.perception.edits import with_edits
 from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K
@@ -105,7 +106,7 @@ def rank(
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if against(trace) is None]
-    task, left = prepared(task, members, rig, end, fine)
+    task, left = prepared(task, members, rig, end, fine, tracking)
     work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
     report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
     percepts = [perceive(trace, observer) for trace in traces]

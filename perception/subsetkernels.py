@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 
+from thermicon.circuit.compiled import kernel
 from thermicon.perception.receptors import Array
 
 
@@ -141,7 +141,7 @@ def _all_subsets(
             best[:] = chosen
 
 
-_compile: Any = numba.njit(cache=True, nogil=True)
+_compile: Any = kernel(nogil=True)
 valued: Callable[[float, float, float, int], float] = _compile(_valued)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
 score_of: Callable[[Array, Array, Array, Any], tuple[float, float]] = _compile(_score_of)

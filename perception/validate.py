@@ -129,7 +129,7 @@ def assemble(
     trials: int,
 ) -> ValidationReport:
     """Judge evidence that is there already."""
-    from thermicon.perception.chunks import own_version
+    from thermicon.circuit.program import own_version
 
     sections = []
     for target in targets:

@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import InputError, nearest, signed
+from thermicon.circuit.inputs import (
+    LONGEST_NAME,
+    TEXT_FAULT,
+    InputError,
+    nearest,
+    one_line,
+    paragraph,
+    quoted,
+    read_toml,
+    signed,
+)
 from thermicon.circuit.records import Record, RecordError
 
 
@@ -57,6 +66,27 @@ INTERVALS = ("output range", "set-point range", "baseline range", "segment lengt
 """Quantities that need a low and a high end."""
 
 
+Text = Annotated[str, AfterValidator(one_line)]
+
+LIMITS: dict[str, tuple[float, float]] = {
+    "output range": (-1000.0, 1000.0),  # V or A: far beyond what moves heat through a module on skin
+    "resolution": (1, 32),  # converters end at 32 bits (delta-sigma)
+    "update rate": (1e-3, 1e12),  # the fastest arbitrary waveform generators make some 2.6e11 samples a second
+    "buffer length": (1, 1e12),
+    "carrier frequency": (1e-2, 1e7),  # switching converters end at some MHz
+    "slew rate": (1e-6, 1e15),  # the fastest amplifiers slew some 1e10 V/s
+    "set-point range": (-100.0, 200.0),
+    "set-point step": (1e-4, 10.0),
+    "tick": (1e-3, 10.0),
+    "segments": (1, 1e6),
+    "segment length": (1, 1e6),
+    "baseline range": (-100.0, 200.0),
+    "ramp rate": (1e-3, 1e5),
+}
+"""What any number of a quantity may be, in its unit: wider than hardware, so that a slip is told and no file takes all
+memory."""
+
+
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
@@ -64,13 +94,13 @@ class _Table(BaseModel):
 class RecordTable(_Table):
     """One sourced number of a device."""
 
-    quantity: str
-    unit: str
-    source: str
+    quantity: Text
+    unit: Text
+    source: Text
     value: float | None = None
     low: float | None = None
     high: float | None = None
-    conditions: str = ""
+    conditions: Text = ""
     confidence: Literal["high", "medium", "low", ""] = ""
 
 
@@ -78,8 +108,8 @@ class DeviceTable(_Table):
     """A whole device file."""
 
     format: Literal[1]
-    name: Annotated[str, Field(min_length=1)]
-    title: Annotated[str, Field(min_length=1)]
+    name: Annotated[Text, Field(min_length=1, max_length=LONGEST_NAME)]
+    title: Annotated[Text, Field(min_length=1)]
     driven_by: DrivenBy
     codes: Literal["two's complement", "symmetric", "from zero"] = "two's complement"
     levels: Literal["fixed", "waveform"] = "fixed"
@@ -87,16 +117,13 @@ class DeviceTable(_Table):
     streams: bool = False
     dc_coupled: bool = False
     played: bool = False
-    note: str = ""
-    record: Annotated[list[RecordTable], Field(min_length=1)]
+    note: Annotated[str, AfterValidator(paragraph)] = ""
+    record: Annotated[list[RecordTable], Field(min_length=1, max_length=100)]
 
 
 def read_device_table(text: str, where: str) -> DeviceTable:
     """Return the checked table of a device file's text, or raise DeviceError with all its faults at once."""
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise DeviceError(f"{where}: not a valid TOML file: {problem}") from None
+    document = read_toml(text, where, DeviceError)
     try:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:
@@ -138,10 +165,7 @@ def _faults(table: DeviceTable) -> list[str]:
         except RecordError as problem:
             found.append(f"{where}: {problem}")
             continue
-        if record.quantity not in (*INTERVALS, "set-point offset") and not all(
-            number > 0 for number in (record.value, record.low, record.high) if number is not None
-        ):
-            found.append(f"{where}: must be above 0")
+        found += [f"{where}: {fault}" for fault in _limit_faults(record)]
     missing = [quantity for quantity in NEEDED[table.driven_by] if quantity not in stated]
     found += [
         f"a device driven by {table.driven_by} needs a record of its {quantity}, in "
@@ -174,6 +198,20 @@ def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
     )
 
 
+def _limit_faults(record: RecordTable) -> list[str]:
+    """What numbers of a record no device has, a sentence each with the limit."""
+    least, most = LIMITS[record.quantity]
+    numbers = {"value": record.value, "low": record.low, "high": record.high}
+    found = [
+        f"{name} = {signed(number)} {record.unit}: must be {signed(least)} to {signed(most)} {record.unit}"
+        for name, number in numbers.items()
+        if number is not None and not least <= number <= most
+    ]
+    if record.quantity == "resolution" and not found and any(n is not None and n != int(n) for n in numbers.values()):
+        found.append("must be a whole number of bits")
+    return found
+
+
 def _interval_fault(record: RecordTable) -> str | None:
     """What is wrong with the two ends of a record, in a sentence with the cure."""
     low, high = record.low, record.high
@@ -190,7 +228,9 @@ def _interval_fault(record: RecordTable) -> str | None:
 def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
     key = ".".join(str(part) for part in error["loc"])
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    said = f"{key} = {value!r}" if isinstance(value, (int, float, str, bool)) else key
+    said = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
+    if kind == TEXT_FAULT:
+        return f"{said}: {context['fault']}"
     if kind == "extra_forbidden":
         table = RecordTable if error["loc"][0] == "record" else DeviceTable
         return f"{key}: unknown key; {nearest(str(error['loc'][-1]), table.model_fields)}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Protocol
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.formats import Format, FormatError
@@ -12,7 +12,8 @@ from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.prevent import must_prevent
 from thermicon.circuit.delivery.realise import realise
 from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.sidecar import sidecar, sidecar_text
+from thermicon.circuit.delivery.refusal import Refusal, refusals_of
+from thermicon.circuit.delivery.sidecar import sealed, sidecar, sidecar_text
 from thermicon.circuit.delivery.spread import OpenLoopSpread, open_loop_spread
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.rig import Rig
@@ -45,24 +46,6 @@ class Verdict(Protocol):
 
 Gate = Callable[[Realised], Verdict]
 
-_SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
-
-
-@dataclass(frozen=True, slots=True)
-class Refusal:
-    """Why a cue is not exported. What is unsafe cannot be forced."""
-
-    kind: Literal["unsafe", "unreachable", "lossy"]
-    text: str
-
-    @property
-    def forcible(self) -> bool:
-        """Whether a person may insist."""
-        return self.kind != "unsafe"
-
-    def __str__(self) -> str:
-        return f"{_SAID[self.kind]}: {self.text}"
-
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
@@ -73,6 +56,16 @@ class Prepared:
     apart: Difference
     refusals: tuple[Refusal, ...]
     spread: OpenLoopSpread | None = None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is to be known of the delivery, then what is amber; not again what it is refused for."""
+        narrowed = self.realised.narrowed
+        told = self.realised.told
+        if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
+            told = tuple(text for text in told if text != narrowed.text)
+        refused = [refusal.text for refusal in self.refusals]
+        return (*(text for text in told if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
 
 
 def prepare(
@@ -96,13 +89,12 @@ def prepare(
     realised = realise(icon, rig, device, tail_s=tail_s)
     verdict = gate(realised)
     apart = realised.apart
-    against = []
-    if verdict.colour == "red":
-        against.append(Refusal("unsafe", verdict.reason or "the gate says red"))
-    if realised.outcome is not None and not realised.outcome.reached:
-        against.append(Refusal("unreachable", realised.outcome.reason or "the target is missed"))
-    against += [Refusal("lossy", text) for text in apart.losses()]
-    return Prepared(realised, verdict, apart, tuple(against), open_loop_spread(realised))
+    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart), open_loop_spread(realised))
+
+
+def _bare(warning: str) -> str:
+    """A warning without the name of the device before it."""
+    return warning.partition(": ")[2] or warning
 
 
 def check_names(names: Sequence[str], form: Format) -> None:
@@ -143,29 +135,47 @@ def pack(
     Raises FormatError where two cues would get the same name, or one is unsafe.
     """
     check_names([one.realised.icon.name for one in ready], form)
-    files: dict[str, bytes] = {}
-    named = []
+    drives = {}
     for one in ready:
         name = one.realised.icon.name
         if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
             raise FormatError(f"{name}: {unsafe[0]}")
         drive = form.file_name(one.realised)
-        beside = f"{form.stem(name)}.json"
         if drive.casefold() in form.set_files:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
-        over = [str(refusal) for refusal in one.refusals]
-        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        content = sidecar(
-            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over, one.spread
-        )
-        files[beside] = sidecar_text(content)  # first, so that no drive is ever without its sidecar
         try:
-            files[drive] = form.write(one.realised)
+            drives[name] = drive, form.write(one.realised)
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
-        named.append(Played(one.realised, drive, beside))
-    if form.player is not None and named:
-        files.update(form.player(named, must_prevent([one.verdict.to_dict() for one in ready])))
-    return files
+    shared: dict[str, bytes] = {}
+    if form.player is not None and ready:
+        names = [one.realised.icon.name for one in ready]
+        played = [
+            Played(one.realised, drives[name][0], beside(name, form)) for one, name in zip(ready, names, strict=True)
+        ]
+        shared = form.player(played, must_prevent([one.verdict.to_dict() for one in ready]))
+    files: dict[str, bytes] = {}
+    for one in ready:
+        name = one.realised.icon.name
+        drive, content = drives[name]
+        over = [str(refusal) for refusal in one.refusals]
+        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
+        about = sidecar(
+            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
+            drive=content, set_files=shared, spread=one.spread,
+        )  # fmt: skip
+        files[beside(name, form)] = sidecar_text(sealed(about))
+        files[drive] = content
+    return {**files, **shared}
+
+
+def beside(name: str, form: Format) -> str:
+    """Name of the sidecar of an icon.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> beside("double-dip", load_format("c-array"))
+    'double_dip.json'
+    """
+    return f"{form.stem(name)}.json"

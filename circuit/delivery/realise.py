@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.realised import Realised
+from thermicon.circuit.delivery.realised import Narrowed, Realised
 from thermicon.circuit.delivery.regulated import realise_setpoints, traces_of_setpoints
-from thermicon.circuit.delivery.samples import current_of, led, rate_of, sample, within
+from thermicon.circuit.delivery.samples import Samples, current_of, led, rate_of, sample, within
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.delivery.temperatures import designed_until, follow_samples, realise_temperatures
 from thermicon.circuit.inputs import signed
@@ -21,14 +21,18 @@ from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import bank_of, run_follow
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.inverse import Design, design
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.circuit.solver.simulate import duration_s, simulate_current
 from thermicon.circuit.solver.steady import hold
 from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
 
-__all__ = ["Realised", "designed_until", "followed", "realise", "start_of", "traces_until"]
+BRIDGE_ROUNDS = 3
+"""Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
+
+
+__all__ = ["Narrowed", "Realised", "designed_until", "followed", "realise", "start_of", "traces_until"]
 
 
 def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> Realised:
@@ -48,28 +52,48 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
-    possible = led(plan if narrow is rig else design(icon, narrow, end), end, rate)
+    best = plan if narrow is rig else design(icon, narrow, end)
+    possible = led(best, end, rate)
     model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    samples, told = sample(device, rig, possible, rate, (model.time_s, model.display_C))
-    asked, least, most = plan.drive.current_A, narrow.driver.current_min_A, narrow.driver.current_max_A
-    if asked.min() < least - 1e-9 or asked.max() > most + 1e-9:
-        told = (_narrower(device, rig, narrow), *told)
+    samples, told = _sampled(device, rig, possible, rate, model)
+    narrowed = _narrowed(device, rig, narrow, plan, best)
+    if narrowed is not None:
+        told = (narrowed.text, *told)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     found = Realised(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
-        model, plan.outcome, told,
+        model, plan.outcome, told, None, narrowed,
     )  # fmt: skip
     return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
 
 
+def _sampled(
+    device: Device, rig: Rig, possible: Drive, rate_Hz: float, model: Trace
+) -> tuple[Samples, tuple[str, ...]]:
+    """The codes of a drive; those of a bridge also make up for the heat that its hotter hot plate lets back."""
+    hotter = np.zeros_like(model.time_s)
+    samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    if device.driven_by != "duty" or device.duty_rule != "equal heat":
+        return samples, told
+    for _ in range(BRIDGE_ROUNDS):
+        drive = current_of(device, rig, samples)
+        hot = simulate_current(drive, rig, start_C=_start_of(device, rig, samples))
+        hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
+        samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    return samples, told
+
+
 def start_of(realised: Realised) -> Array | None:
     """State in °C from which a delivered drive starts; None: the steady state of its first current."""
-    played, device = realised.played, realised.device
+    return _start_of(realised.device, realised.rig, realised.played)
+
+
+def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
     if device.driven_by != "duty" or isinstance(played, Setpoints):
         return None
     low, high = device.interval("output range")
-    return steady_of(realised.rig, float(played.command[0]), min(-low, high))
+    return steady_of(rig, float(played.command[0]), min(-low, high))
 
 
 def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
@@ -79,26 +103,41 @@ def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tu
         designed, delivered, _ = traces_of_setpoints(realised.icon, rig, realised.device, played, end_s, rate_Hz)
         return designed, delivered
     designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
-    if realised.device.driven_by == "temperatures":
-        drive = follow_samples(rig, played.until(end_s))
-    else:
-        drive = current_of(realised.device, rig, played.until(end_s))
+    until = played.until(end_s)
+    by_loop = realised.device.driven_by == "temperatures"
+    drive = _cut(follow_samples(rig, until) if by_loop else current_of(realised.device, rig, until), end_s)
     return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
 
 
-def _narrower(device: Device, rig: Rig, narrow: Rig) -> str:
-    wide, held = rig.driver, narrow.driver
-    cure = "use another device"
+def _cut(drive: Drive, end_s: float) -> Drive:
+    """A held drive that ends at a time in s: its last sample may end a little later than what it is compared with."""
+    if drive.time_s[-1] <= end_s + 1e-9:
+        return drive
+    kept = drive.time_s < end_s - 1e-9
+    return Drive(np.append(drive.time_s[kept], end_s), np.append(drive.current_A[kept], drive.current_A[-1]), held=True)
+
+
+def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
+    """What a device's range lacks for a design, and the cure; None where the range is wide enough."""
+    asked, held = plan.drive.current_A, narrow.driver
+    if asked.min() >= held.current_min_A - 1e-9 and asked.max() <= held.current_max_A + 1e-9:
+        return None
+    most = max(held.current_max_A, -held.current_min_A)
+    peak = float(asked[np.argmax(np.abs(asked))])
+    low, high = device.interval("output range")
+    through = f" ({signed(low)} … {signed(high)} A)"
+    cure = f"use a device of {abs(peak):.3g} A or more"
     if device.driven_by == "volts":
-        gain = wide.transconductance_A_per_V * max(
-            wide.current_max_A / held.current_max_A,
-            wide.current_min_A / held.current_min_A if held.current_min_A else 1,
-        )
-        cure = f"raise driver.transconductance_A_per_V to {gain:.3g}, if the current source can"
-    return (
-        f"{device.name}: asks for {signed(held.current_min_A)} … {signed(held.current_max_A)} A at most, the driver "
-        f"would give {signed(wide.current_min_A)} … {signed(wide.current_max_A)} A; {cure}"
+        gain = rig.driver.transconductance_A_per_V
+        least = gain * max(asked.max() / held.current_max_A, asked.min() / (held.current_min_A or -np.inf))
+        through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
+        least = np.ceil(100 * least - 1e-6) / 100
+        cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
+    text = (
+        f"{device.name} plays {signed(held.current_min_A)} … {signed(held.current_max_A)} A{through}, the design asks "
+        f"for up to {signed(peak, '.3g')} A; {cure}"
     )
+    return Narrowed(text, most, best.outcome)
 
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:

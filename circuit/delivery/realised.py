@@ -16,13 +16,26 @@ from thermicon.icons import Icon
 
 
 @dataclass(frozen=True, slots=True)
+class Narrowed:
+    """A device whose range is smaller than a design asks for: in words, the most it plays in A, and what that misses.
+
+    `outcome` says whether the best design within the range reaches the target; None where the cue prescribes current.
+    """
+
+    text: str
+    most_A: float
+    outcome: Outcome | None
+
+
+@dataclass(frozen=True, slots=True)
 class Realised:
     """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
 
     The device gets the best that its range allows: a design within that range. `played` is what goes into files,
     `drives` the currents designed and delivered, None for a thermode, which has none; `trace` what the delivery does,
     `designed_trace` the same without the device. `prompt_trace` is the delivery of a thermode without its lag: a
-    constant lag is a delay and not a loss. `outcome` says whether the design reaches its target.
+    constant lag is a delay and not a loss. `outcome` says whether the design reaches its target,
+    `narrowed` where the range of the device is too small for it.
     """
 
     icon: Icon
@@ -38,6 +51,7 @@ class Realised:
     outcome: Outcome | None
     warnings: tuple[str, ...]
     prompt_trace: Trace | None = None
+    narrowed: Narrowed | None = None
 
     def __repr__(self) -> str:
         return (

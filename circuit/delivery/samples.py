@@ -20,6 +20,9 @@ from thermicon.circuit.solver.pwm import duty_of, switched
 DENSEST_HZ = 10_000.0
 """From here on a drive has a row for each change and not for each sample; the sum is the same."""
 
+MOST_SAMPLES = 10_000_000
+"""Samples, or switching cycles of a bridge, of one drive: with their traces they fill half a gigabyte."""
+
 Codes = npt.NDArray[np.int64]
 
 
@@ -61,6 +64,7 @@ def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
     A slower device gets every k-th update, a faster one repeats each; a bridge a whole number of its cycles. One that
     cannot hold so many samples gets fewer. Raises DeviceError where it then falls below its slowest rate.
     """
+    carrier = 0.0
     if device.driven_by == "duty":
         carrier = device.most("carrier frequency")
         rate, low = carrier / math.ceil(carrier / requested_Hz - 1e-9), 0.0
@@ -82,24 +86,34 @@ def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
             f"{device.name}: {length_s:g} s at {requested_Hz:g} Hz are {needed} samples, it holds {most:g} and plays "
             f"{low:g} Hz at the slowest; shorten the icon or use another device"
         )
+    _check_count(device, f"{length_s:g} s at {max(rate, carrier):g} Hz", math.ceil(length_s * max(rate, carrier)))
     return rate
 
 
+def _check_count(device: Device, what: str, count: int) -> None:
+    if count > MOST_SAMPLES:
+        raise DeviceError(
+            f"{device.name}: {what} are {count:,} samples, at most {MOST_SAMPLES:,} are computed; shorten the icon or "
+            f"use a slower device"
+        )
+
+
 def sample(
-    device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates_C: tuple[Array, Array]
+    device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates: tuple[Array, Array, Array]
 ) -> tuple[Samples, tuple[str, ...]]:
     """Return the codes that stand for a designed drive, and sentences on what the device cannot give.
 
     Each sample is the mean of the designed current over its period, so that no charge is lost, limited by the device's
-    slew rate and range, rounded to the nearest code. `plates_C`: times in s and display temperature of the design, for
-    a bridge.
+    slew rate and range, rounded to the nearest code. `plates`, for a bridge: times in s, display temperature in °C of
+    the design, and how many K hotter than in the design the hot plate is.
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
+    _check_count(device, "the fewest that it plays", least)
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
-    wanted = _command(device, rig, current, edges, plates_C)
+    wanted = _command(device, rig, current, edges, plates)
     told = []
     limit = device.most("slew rate")
     limited = _slewed(wanted, limit / rate_Hz)
@@ -164,11 +178,11 @@ def _means(drive: Drive, edges: Array) -> Array:
     return means
 
 
-def _command(device: Device, rig: Rig, current: Array, times: Array, plates_C: tuple[Array, Array]) -> Array:
+def _command(device: Device, rig: Rig, current: Array, times: Array, plates: tuple[Array, Array, Array]) -> Array:
     if device.driven_by == "duty":
         low, high = device.interval("output range")
-        cold = np.interp(times, plates_C[0], plates_C[1])
-        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold)
+        cold, hotter = (np.interp(times, plates[0], column) for column in plates[1:])
+        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold, hotter)
     return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
 
 

@@ -13,6 +13,9 @@ from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.rig.skin import Array
 
+MOST_SEGMENTS = 1_000_000
+"""Segments that are made before they are counted against the device's own limit."""
+
 
 @dataclass(frozen=True, slots=True)
 class Setpoints:
@@ -68,12 +71,18 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
 def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[tuple[int, int], ...]:
     step, tick = device.most("set-point step"), device.most("tick")
     fastest, longest = device.most("ramp rate"), int(device.most("segment length"))
-    begin, before, found = 0, round(levels[0] / step), []
+    begin, before = 0, round(levels[0] / step)
+    found: list[tuple[int, int]] = []
     for (_, _), (time, level) in pairwise(zip(times, levels, strict=True)):
         goal = round(level / step)
         least = max(1, math.ceil(abs(goal - before) * step / fastest / tick - 1e-9))
         until = max(round(time / tick), begin + least)  # what a ramp is late, the next segment makes up for
         count = -(-(until - begin) // longest)
+        if len(found) + count > MOST_SEGMENTS:
+            raise DeviceError(
+                f"{device.name}: more than {MOST_SEGMENTS:,} segments of at most {longest} ticks of {tick:g} s are "
+                f"needed; shorten the icon, or use another device"
+            )
         ends = [begin + (until - begin) * (k + 1) // count for k in range(count)]
         for end in ends:
             share = (end - begin) / (until - begin)

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
-from importlib.metadata import version
+from dataclasses import asdict, fields
 from typing import Any
 
 from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.digests import digest, digest_of_content, plain
 from thermicon.circuit.delivery.formats.form import Format, events_in
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.delivery.spread import OpenLoopSpread
 from thermicon.circuit.delivery.thermode import lag_of
+from thermicon.circuit.program import own_version, this_program
 from thermicon.circuit.records import Record
 from thermicon.circuit.safety.summary import summarise
 from thermicon.circuit.solver.difference import Difference, loss_table
@@ -34,34 +33,43 @@ def sidecar(
     safety: Mapping[str, object],
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
+    *,
+    drive: bytes,
+    set_files: Mapping[str, bytes],
     spread: OpenLoopSpread | None = None,
 ) -> dict[str, Any]:
     """Return all there is to know of one exported drive; units are in the names.
 
     `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
-    that was not. `spread` is what a module that was not measured may do under an open loop.
+    that was not. `drive` and `set_files` are the bytes of the files that belong to it, named here by their digests.
+    `spread` is what a module that was not measured may do under an open loop.
     """
-    icon, rig, outcome = realised.icon, realised.rig, realised.outcome
+    icon, rig, outcome, device = realised.icon, realised.rig, realised.outcome, _device(realised.device)
     text, told = str(icon), [*rig.warnings, *realised.told]
     if not realised.device.played:
         told.append(f"{realised.device.name}: no such device was ever driven by thermicon")
     return {
-        "thermicon": version("thermicon"),
+        "thermicon": own_version(),
+        "program": this_program(),
         "what_it_is_not": NO_CLEARANCE,
         "format": {
             **{"name": form.name, "source": form.source, "how_to_play": form.how},
             **(form.facts(realised) if form.facts else {}),
         },
         "file": form.file_name(realised),
+        "drive_sha256": digest(drive),
+        "set_files": {name: digest(content) for name, content in set_files.items()},
         "columns": [asdict(column) for column in form.columns(realised)],
         "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "rig_sha256": digest(rig.document.encode("utf-8")),
         "rig": {
             "name": rig.name,
-            "content_hash": hashlib.sha256(rig.document.encode("utf-8")).hexdigest(),
+            "content_hash": digest(rig.document.encode("utf-8")),
             "changes": list(rig.changes),
             "document": json.loads(rig.document),
         },
-        "device": _device(realised.device),
+        "device_sha256": digest_of_content(device),
+        "device": device,
         "update_rate_Hz": {"requested": realised.requested_Hz, "realised": realised.rate_Hz},
         "played": _played(realised),
         "events": [_event(event, icon.frame.control) for event in events_in(realised)],
@@ -86,15 +94,17 @@ def sidecar_text(content: Mapping[str, Any]) -> bytes:
     >>> sidecar_text({"a": float("nan")})
     b'{\\n  "a": null\\n}\\n'
     """
-    return (json.dumps(_plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
+    return (json.dumps(plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
 
 
-def _plain(content: Any) -> Any:
-    if isinstance(content, Mapping):
-        return {str(key): _plain(value) for key, value in content.items()}
-    if isinstance(content, (list, tuple)):
-        return [_plain(value) for value in content]
-    return None if isinstance(content, float) and not math.isfinite(content) else content
+def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a sidecar with the SHA-256 of its own text, which is that of the file without this key.
+
+    >>> sealed({"a": 1})["sidecar_sha256"][:8]
+    '5e36b656'
+    """
+    bare = {key: value for key, value in content.items() if key != "sidecar_sha256"}
+    return {**bare, "sidecar_sha256": digest(sidecar_text(bare))}
 
 
 def _event(event: Any, control: str) -> dict[str, object]:
@@ -110,6 +120,8 @@ def _played(realised: Realised) -> dict[str, object]:
             "tick_s": played.tick_s,
             "step_K": played.step_K,
             "baseline_C": float(played.level_C[0]),
+            "least_level_C": float(played.level_C.min()),
+            "greatest_level_C": float(played.level_C.max()),
             "icon_begins_at_s": 0.0,
             "duration_s": realised.file_s,
             "lag_s": lag_of(realised.device),
@@ -143,16 +155,21 @@ def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
         f"low_level_{unit}": ends[0],
         f"high_level_{unit}": ends[1],
         f"rest_{unit}": float(samples.command[0]),
+        f"least_command_{unit}": float(samples.command.min()),
+        f"greatest_command_{unit}": float(samples.command.max()),
     }
 
 
 def _device(device: Device) -> dict[str, object]:
-    named = {key: getattr(device, key) for key in ("name", "title", "driven_by", "played", "note")}
+    named = {field.name: getattr(device, field.name) for field in fields(device) if field.name != "records"}
     return {**named, "records": [_record(record) for record in device.records]}
 
 
 def _record(record: Record) -> dict[str, object]:
-    known = {key: getattr(record, key) for key in ("quantity", "unit", "value", "low", "high", "source", "confidence")}
+    known = {
+        key: getattr(record, key)
+        for key in ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
+    }
     return {key: value for key, value in known.items() if value not in (None, "")}
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of

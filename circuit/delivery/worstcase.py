@@ -16,9 +16,9 @@ from thermicon.circuit.delivery.realise import Realised, followed
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.safety.checks import Check
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.gate import Gate, gate
-from thermicon.circuit.safety.limits import Check
-from thermicon.circuit.safety.scenarios import corners_of
 
 REACHED = "every set-point reached"
 

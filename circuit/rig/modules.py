@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -16,7 +17,18 @@ from thermicon.circuit.rig.module import Peltier
 if TYPE_CHECKING:
     from thermicon.circuit.rig.rigfile import ModuleTable
 
-COLUMNS = ("module", "origin", "couples", "footprint_mm", "t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")
+COLUMNS = (
+    "module",
+    "origin",
+    "couples",
+    "footprint_mm",
+    "plate_J_per_K",
+    "t_hot_C",
+    "i_max_A",
+    "v_max_V",
+    "q_max_W",
+    "dt_max_K",
+)
 PARAMETERS = {"seebeck_V_per_K": "V/K", "resistance_ohm": "Ω", "thermal_resistance_K_per_W": "K/W"}
 """The three parameters of a module in a rig file, with their units."""
 MOST_RESIDUAL = 0.10
@@ -42,6 +54,63 @@ def module_table() -> Table:
 def module_names() -> tuple[str, ...]:
     """Names of the shipped modules, in alphabetical order."""
     return tuple(sorted({str(record.get("module")) for record in module_table()}))
+
+
+@dataclass(frozen=True, slots=True)
+class Build:
+    """What a shipped module is like beside its parameters: face cm², plate J/K a side (None: not on record), Imax A."""
+
+    face_cm2: float | None
+    plate_J_per_K: float | None
+    i_max_A: float
+
+
+def build_of(name: str) -> Build:
+    """Return the build of a shipped module; raises RecordError with the nearest name.
+
+    >>> build_of("TEC1-12706")
+    Build(face_cm2=16.0, plate_J_per_K=4.6, i_max_A=6.4)
+    >>> build_of("QC-17-1.0-2.5AS").face_cm2 is None
+    True
+    """
+    record = _records(name)[0]
+    printed = dict(record.extra)
+    size, plate = printed.get("footprint_mm"), printed.get("plate_J_per_K")
+    face = math.prod(float(side) for side in str(size).split("x")) / 100.0 if size else None
+    return Build(face, float(plate) if plate else None, float(record.get("i_max_A")))
+
+
+def unlike_before(
+    name: str, area_cm2: float, limit_A: float, plates: tuple[float, float], stated: Collection[str]
+) -> list[str]:
+    """Return what of a rig was chosen for another module and stays, a sentence each, where its module is replaced.
+
+    `area_cm2` in contact, `limit_A` of the driver, `plates` (hot, cold) in J/K; `stated` keys were set along with it.
+    """
+    build, found = build_of(name), []
+    keys = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
+    if build.plate_J_per_K is None and not set(keys) <= set(stated):
+        found.append(
+            f"module {name}: its plates are not on record, so those of the rig stay, {plates[0]:g} (hot) and "
+            f"{plates[1]:g} J/K (cold); set {' and '.join(keys)}"
+        )
+    if build.face_cm2 is not None and area_cm2 > 1.01 * build.face_cm2:
+        found.append(
+            f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {build.face_cm2:g} cm²; set "
+            f"contact.area_cm2 to at most that"
+        )
+    elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < 0.99 * build.face_cm2):
+        face = "not on record" if build.face_cm2 is None else f"{build.face_cm2:g} cm²"
+        found.append(
+            f"module {name}: its face is {face}, and contact.area_cm2 stays the {area_cm2:g} cm² of the rig; set it to "
+            f"what touches"
+        )
+    if limit_A > build.i_max_A:
+        found.append(
+            f"module {name}: driver.current_limit_A = {limit_A:g} A is above its Imax of {build.i_max_A:g} A, past "
+            f"which more current cools less; set it to at most that"
+        )
+    return found
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
@@ -107,8 +176,10 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
             sheets = load_module(table.name)
         except RecordError as problem:
             raise ValueError(f"module.name = {problem}") from None
-        origin = _records(table.name)[0]
+        origin, plate = _records(table.name)[0], build_of(table.name).plate_J_per_K
         what = f"{table.name}, {origin.source} (confidence {origin.confidence})"
+        if plate is not None and plates == (plate, plate):
+            what += f", plates of {plate:g} J/K a side (assumed from its footprint)"
         if origin.get("origin") != "datasheet":
             warnings.append(f"module {table.name}: its figures are {origin.source}; expect them within 10 %")
     else:

@@ -85,14 +85,19 @@ class Ambient:
 
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
-    """How far a rig may be from its file: contact resistance and gain as shares, ambient K, each to either side.
+    """How far a rig may be from its file, to either side: shares, and K of ambient and heat sink.
 
-    `reason` says how it is known that one is smaller than what is shipped.
+    `conductance_relative` is that of the module's legs, `plates_relative` of both plates' heat capacities. `reason`
+    says how it is known that one is smaller than what is shipped.
     """
 
     contact_resistance_relative: float
     ambient_K: float
     gain_relative: float
+    heat_sink_K: float
+    seebeck_relative: float
+    conductance_relative: float
+    plates_relative: float
     reason: str = ""
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from thermicon.circuit.inputs import nearest, read_text
 from thermicon.circuit.rig.about import about
 from thermicon.circuit.rig.module import Peltier
-from thermicon.circuit.rig.modules import ModuleOrigin, module_of
+from thermicon.circuit.rig.modules import ModuleOrigin, module_names, module_of, unlike_before
 from thermicon.circuit.rig.parts import (
     Ambient,
     Contact,
@@ -185,7 +185,15 @@ class Rig:
         found += self.limits.hidden
         if resting := self.limits.passed_at_rest(self.skin.rest_C):
             found.append(resting)
-        return (*found, *(() if self.pump is None else self.pump.origin.warnings))
+        origin = () if self.pump is None else self.pump.origin.warnings
+        return (*found, *origin, *self._left_from_another_module())
+
+    def _left_from_another_module(self) -> list[str]:
+        stated = dict(text.split("=", 1) for text in self.changes)
+        if (name := stated.get("module.name")) not in module_names():
+            return []
+        plates = (self.module.hot_plate_J_per_K, self.module.cold_plate_J_per_K)
+        return unlike_before(str(name), 1e4 * self.contact.area_m2, self.driver.current_max_A, plates, [*stated])
 
     @property
     def module_source(self) -> str:

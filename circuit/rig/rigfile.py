@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import InputError, nearest
+from thermicon.circuit.inputs import (
+    LONGEST_NAME,
+    TEXT_FAULT,
+    InputError,
+    nearest,
+    one_line,
+    paragraph,
+    quoted,
+    read_toml,
+)
 from thermicon.circuit.rig.modules import module_faults
 from thermicon.circuit.rig.rules import faults_of
 from thermicon.circuit.rig.uncertainty import uncertainty_faults
@@ -20,9 +28,33 @@ class RigError(InputError):
     """A rig that cannot be: every finding on a line of its own, with key, value, limit, unit and cure."""
 
 
-Positive = Annotated[float, Field(gt=0)]
-NotNegative = Annotated[float, Field(ge=0)]
 Celsius = Annotated[float, Field(ge=-20, le=120)]
+Name = Annotated[str, Field(min_length=1), AfterValidator(one_line)]
+Text = Annotated[str, AfterValidator(one_line)]
+Paragraph = Annotated[str, AfterValidator(paragraph)]
+
+# Parts of the circuit may be idealised (no resistance, no end of capacity); beyond this, sums lose all their digits.
+Ideal = Annotated[float, Field(ge=1e-15, le=1e15)]
+# A current source that heats or cools skin gives some amperes and volts, never thousands.
+Amperes = Annotated[float, Field(ge=1e-6, le=1000)]
+Volts = Annotated[float, Field(ge=1e-6, le=1000)]
+# Times of a loop or a sensor: an icon lasts an hour at most.
+Lag = Annotated[float, Field(ge=0, le=3600)]
+Gain = Annotated[float, Field(ge=0, le=1e6)]
+Millimetres = Annotated[float, Field(ge=1e-4, le=200)]
+# Air at the least, diamond (2,200 W/(m·K)) at the most.
+Conductivity = Annotated[float, Field(ge=1e-3, le=1e4)]
+# Air (1.2 kg/m³) to osmium (22,590 kg/m³); 1 to 20,000 J/(kg·K), where hydrogen has 14,300.
+Density = Annotated[float, Field(ge=0.1, le=3e4)]
+HeatCapacity = Annotated[float, Field(ge=1, le=2e4)]
+# The best perfused organ, the kidney, has some 0.07 /s.
+Perfusion = Annotated[float, Field(ge=0, le=1)]
+# Still air has some 5, boiling water some 1e5 W/(m²·K).
+Film = Annotated[float, Field(ge=1e-3, le=1e6)]
+
+Positive = Annotated[float, Field(gt=0)]
+MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
+"""Layers of a skin model have a handful, rigs a few probes; every one costs time in each step."""
 
 
 class _Table(BaseModel):
@@ -32,24 +64,24 @@ class _Table(BaseModel):
 class DatasheetTable(_Table):
     """What a module's maker prints for one hot-side temperature."""
 
-    i_max_A: Positive
-    v_max_V: Positive
+    i_max_A: Amperes
+    v_max_V: Volts
     dt_max_K: Annotated[float, Field(gt=0, le=150)]
     t_hot_C: Celsius
-    q_max_W: Positive | None = None
+    q_max_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
 
 class ModuleTable(_Table):
     """The Peltier module, given by three parameters, data sheets or a shipped name, and its two plates."""
 
-    seebeck_V_per_K: Positive | None = None
-    resistance_ohm: Positive | None = None
-    thermal_resistance_K_per_W: Positive | None = None
+    seebeck_V_per_K: Ideal | None = None
+    resistance_ohm: Ideal | None = None
+    thermal_resistance_K_per_W: Ideal | None = None
     datasheet: list[DatasheetTable] | None = None
-    name: Annotated[str, Field(min_length=1)] | None = None
+    name: Name | None = None
     extraction: Literal["three", "four"] | None = None
-    hot_plate_J_per_K: Positive
-    cold_plate_J_per_K: Positive
+    hot_plate_J_per_K: Ideal
+    cold_plate_J_per_K: Ideal
 
     @model_validator(mode="after")
     def _one_way(self) -> ModuleTable:
@@ -62,20 +94,20 @@ class HeatSinkTable(_Table):
     """What the hot plate sits on."""
 
     temperature_C: Celsius
-    resistance_K_per_W: Positive
-    capacity_J_per_K: Positive | None = None
-    kp_W_per_K: NotNegative | None = None
-    ki_W_per_Ks: NotNegative | None = None
-    power_limit_W: Positive | None = None
+    resistance_K_per_W: Ideal
+    capacity_J_per_K: Ideal | None = None
+    kp_W_per_K: Gain | None = None
+    ki_W_per_Ks: Gain | None = None
+    power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
 
 class DriverTable(_Table):
     """The current source and its limits."""
 
-    transconductance_A_per_V: Positive = 0.1
-    current_limit_A: Positive
-    current_min_A: float | None = None
-    voltage_limit_V: Positive
+    transconductance_A_per_V: Annotated[float, Field(ge=1e-6, le=1000)] = 0.1
+    current_limit_A: Amperes
+    current_min_A: Annotated[float, Field(ge=-1000)] | None = None
+    voltage_limit_V: Volts
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
 
@@ -89,18 +121,18 @@ class ContactTable(_Table):
 class ControllerTable(_Table):
     """A closed loop on a display thermistor."""
 
-    lag_s: NotNegative = 0.0
-    kp_A_per_K: NotNegative
-    ki_A_per_Ks: NotNegative = 0.0
-    kd_As_per_K: NotNegative = 0.0
+    lag_s: Lag = 0.0
+    kp_A_per_K: Gain
+    ki_A_per_Ks: Gain = 0.0
+    kd_As_per_K: Gain = 0.0
 
 
 class ThermodeTable(_Table):
     """A thermode in the place of module, heat sink, driver and controller: it shows the set-points it is given."""
 
     slew_K_per_s: Positive
-    lag_s: NotNegative = 0.0
-    resolution_K: NotNegative = 0.0
+    lag_s: Lag = 0.0
+    resolution_K: Annotated[float, Field(ge=0, le=10)] = 0.0
     lowest_C: Celsius
     highest_C: Celsius
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
@@ -110,50 +142,50 @@ class AmbientTable(_Table):
     """The air that bare skin rests in."""
 
     temperature_C: Celsius
-    film_W_per_m2K: Positive
+    film_W_per_m2K: Film
 
 
 class LayerTable(_Table):
     """One layer of tissue."""
 
-    name: Annotated[str, Field(min_length=1)]
-    thickness_mm: Annotated[float, Field(gt=0, le=200)]
-    conductivity_W_per_mK: Positive
-    density_kg_per_m3: Positive
-    heat_capacity_J_per_kgK: Positive
-    perfusion_per_s: NotNegative = 0.0
+    name: Name
+    thickness_mm: Millimetres
+    conductivity_W_per_mK: Conductivity
+    density_kg_per_m3: Density
+    heat_capacity_J_per_kgK: HeatCapacity
+    perfusion_per_s: Perfusion = 0.0
 
 
 class SkinTable(_Table):
     """The skin under the display, surface first."""
 
-    site: str
+    site: Text
     rest_C: Annotated[float, Field(ge=10, le=45)]
-    cold_receptor_mm: Positive
-    warm_receptor_mm: Positive
+    cold_receptor_mm: Millimetres
+    warm_receptor_mm: Millimetres
     depth_from: Literal["surface", "stratum corneum"] = "surface"
     deep_C: Celsius | None = None
     elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
-    layer: Annotated[list[LayerTable], Field(min_length=1)]
+    layer: Annotated[list[LayerTable], Field(min_length=1, max_length=MOST_LAYERS)]
 
 
 class BloodTable(_Table):
     """Blood that perfuses the layers."""
 
-    density_kg_per_m3: Positive
-    heat_capacity_J_per_kgK: Positive
+    density_kg_per_m3: Density
+    heat_capacity_J_per_kgK: HeatCapacity
 
 
 class ProbeTable(_Table):
     """A point whose temperature is recorded; what an insulated probe leaves out is filled from records."""
 
-    name: str
+    name: Text
     place: Literal["display", "interface", "skin", "insulated skin"]
-    depth_mm: NotNegative = 0.0
-    lag_s: NotNegative = 0.0
-    lateral_mm: Positive | None = None
-    width_mm: Positive | None = None
-    insulation_m2K_per_W: Positive | None = None
+    depth_mm: Annotated[float, Field(ge=0, le=200)] = 0.0
+    lag_s: Lag = 0.0
+    lateral_mm: Millimetres | None = None
+    width_mm: Millimetres | None = None
+    insulation_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1e3)] | None = None
 
 
 class UncertaintyTable(_Table):
@@ -162,7 +194,11 @@ class UncertaintyTable(_Table):
     contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
     ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
     gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
-    reason: str = ""
+    heat_sink_K: Annotated[float, Field(ge=0, le=20)] | None = None
+    seebeck_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
+    conductance_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
+    plates_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
+    reason: Text = ""
 
     @property
     def given(self) -> dict[str, float]:
@@ -195,7 +231,7 @@ class SafetyTable(_Table):
     hot_plate_highest_C: Celsius | None = None
     thermal_dose_min_CEM43: Positive | None = None
     henriques_integral: Positive | None = None
-    reason: str = ""
+    reason: Text = ""
 
     @property
     def changes(self) -> dict[str, float]:
@@ -214,9 +250,9 @@ class RigTable(_Table):
     """A whole rig file."""
 
     format: Literal[1]
-    name: Annotated[str, Field(min_length=1)]
-    title: str = ""
-    notes: list[str] = Field(default_factory=list)
+    name: Annotated[Name, Field(max_length=LONGEST_NAME)]
+    title: Text = ""
+    notes: Annotated[list[Paragraph], Field(max_length=MOST_NOTES)] = Field(default_factory=list)
     module: ModuleTable | None = None
     heat_sink: HeatSinkTable | None = None
     driver: DriverTable | None = None
@@ -226,10 +262,10 @@ class RigTable(_Table):
     ambient: AmbientTable
     skin: SkinTable
     blood: BloodTable
-    probe: list[ProbeTable] = Field(default_factory=list)
+    probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)
     uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
     safety: SafetyTable = Field(default_factory=SafetyTable)
-    source: dict[str, str] = Field(default_factory=dict)
+    source: dict[Text, Paragraph] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _one_display(self) -> RigTable:
@@ -302,10 +338,7 @@ def unit_of(key: str) -> str:
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Return the TOML text as a dictionary, or raise RigError that says which line is wrong."""
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise RigError(f"{where}: not a valid TOML file: {problem}") from None
+    return read_toml(text, where, RigError)
 
 
 def read_table(document: Mapping[str, Any], where: str) -> RigTable:
@@ -366,16 +399,20 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
     key = ".".join(str(part) for part in error["loc"])
     unit = unit_of(key)
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    said = f"{key} = {value!r}" if isinstance(value, (int, float, str, bool)) else key
+    said = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
     if kind == "extra_forbidden":
         plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
         return unknown_key(plain).replace(plain + ":", key + ":", 1)
+    if kind == TEXT_FAULT:
+        return f"{said}: {context['fault']}"
     if kind == "value_error":  # said by a table itself, in whole sentences
         return str(context["error"])
     if kind == "missing":
         return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
     if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
         limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
+        if kind == "greater_than_equal" and 0 < limit < 0.01 and value <= 0:
+            kind, limit = "greater_than", 0
         words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
         return f"{said}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
     if kind == "finite_number":

@@ -63,6 +63,7 @@ class Limits:
 
     rules: tuple[Rule, ...]
     reason: str = ""
+    session_s: float = 1800.0
 
     def __repr__(self) -> str:
         return f"Limits({len(self.rules)} rules, {'; '.join(self.changed) or 'as shipped'})"

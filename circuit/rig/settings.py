@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from thermicon.circuit.rig.modules import PARAMETERS
+from thermicon.circuit.rig.modules import PARAMETERS, build_of, module_names
 from thermicon.circuit.rig.rigfile import RigError, parse_toml, rig_keys, unknown_key
 
 _OPTIONAL = ("controller", "uncertainty", "safety")
@@ -31,11 +31,16 @@ def read_settings(settings: Iterable[str]) -> dict[str, object]:
 
 
 def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
-    """Set dotted keys in the document; a module that changes drops its source and the way it was given before."""
+    """Set dotted keys in the document; a module that changes drops its source and the way it was given before.
+
+    A module by name brings its plates, where they are on record.
+    """
     for key, value in changes.items():
         if key in ("module.datasheet", "module.name") and value is not None:
             for way in (*PARAMETERS, "datasheet", "name"):
                 document["module"].pop(way, None)
+        if key == "module.name" and value in module_names() and (plate := build_of(str(value)).plate_J_per_K):
+            document["module"].update(hot_plate_J_per_K=plate, cold_plate_J_per_K=plate)
     for key, value in changes.items():
         put(document, key, value)
 
@@ -85,7 +90,7 @@ def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
 
 def _item(items: list[dict[str, Any]], part: str, key: str) -> int:
     names = [str(item.get("name", f"hot side at {item.get('t_hot_C')} °C")) for item in items]
-    if part.isdigit() and int(part) < len(items):
+    if part.isascii() and part.isdigit() and len(part) < 5 and int(part) < len(items):
         return int(part)
     if part in names:
         return names.index(part)

@@ -18,6 +18,10 @@ _WORDS = {
     "contact_resistance_relative": ("contact resistance", 100.0, "%"),
     "ambient_K": ("ambient", 1.0, "K"),
     "gain_relative": ("gain", 100.0, "%"),
+    "heat_sink_K": ("heat sink", 1.0, "K"),
+    "seebeck_relative": ("Seebeck coefficient", 100.0, "%"),
+    "conductance_relative": ("thermal conductance", 100.0, "%"),
+    "plates_relative": ("plates", 100.0, "%"),
 }
 
 
@@ -31,7 +35,8 @@ def uncertainty_of(given: Mapping[str, float], reason: str = "") -> Uncertainty:
     """Return the uncertainty of a rig; what is not given is as shipped.
 
     >>> uncertainty_of({"ambient_K": 5.0})
-    Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, reason='')
+    Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, heat_sink_K=1.0,
+                seebeck_relative=0.05, conductance_relative=0.1, plates_relative=0.2, reason='')
     """
     return Uncertainty(**{**_shipped(), **given}, reason=reason.strip())
 
@@ -67,6 +72,15 @@ def surer(one: Uncertainty) -> tuple[str, ...]:
         for key, (words, scale, unit) in _WORDS.items()
         if getattr(one, key) < _shipped()[key]
     )
+
+
+def stated(one: Uncertainty) -> str:
+    """All uncertainties in words, for the head of a verdict.
+
+    >>> stated(uncertainty_of({}))[:60]
+    'contact resistance ±30 %, ambient ±3 K, gain ±10 %, heat sin'
+    """
+    return ", ".join(f"{words} ±{scale * getattr(one, key):g} {unit}" for key, (words, scale, unit) in _WORDS.items())
 
 
 @cache

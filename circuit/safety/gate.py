@@ -1,24 +1,41 @@
-"""The gate of safety: a drive held against every rule, in the worst case of the rig and of what follows the cue."""
+"""The gate of safety: a drive checked against every rule, in the worst case of the rig, of what follows and of how
+often it is played.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+
+import numpy as np
 
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.uncertainty import surer
-from thermicon.circuit.safety.limits import Check, as_dict, checks_of, colour_of, findings_of
-from thermicon.circuit.safety.scenarios import ENDING_S, ENDINGS, play_out
+from thermicon.circuit.rig.uncertainty import stated, surer
+from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, worst_of
+from thermicon.circuit.safety.demands import Demands
+from thermicon.circuit.safety.endings import ENDING_S, ENDINGS
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.repeated import (
+    LONGEST_PAUSE_S,
+    Repeated,
+    Repeating,
+    check_pause,
+    plays_in,
+    shortest_pause_s,
+)
+from thermicon.circuit.safety.repetition import Cycle
+from thermicon.circuit.safety.scenarios import rest_of
+from thermicon.circuit.safety.single import Single
+from thermicon.circuit.safety.tally import Tally
+from thermicon.circuit.solver.batch_inputs import State
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.steady import steady_state
 
 WHAT_IT_IS_NOT = (
-    "This is a calculation, no medical or ethical clearance. Hardware that touches people needs a temperature cut-off "
-    "of its own that works without any software."
+    "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
+    "cut-off of its own that works without any software."
 )
 
 
@@ -26,9 +43,10 @@ WHAT_IT_IS_NOT = (
 class Gate:
     """The verdict on one drive.
 
-    `checks` has every rule once, in the scenario that goes farthest; times count from the drive's first row. `after_C`
-    is the skin of the rig as given, 60 s after the last sample, for each of ENDINGS; `drift_C` where zero current takes
-    it in the end. Exposure is that of one playing.
+    `checks` has every rule once, in the scenario that goes farthest; times count from the first row of that play.
+    `after_C` is the skin of the rig as given, 60 s after the last sample, for each ending; `drift_C` where zero
+    current takes it in the end, None for a device without a current. `repeated` is the verdict on playing it again and
+    again, which `checks` include; `demands` is what the hardware must prevent.
     """
 
     rig_name: str
@@ -37,8 +55,10 @@ class Gate:
     limits: Limits
     scenarios: int
     checks: tuple[Check, ...]
-    after_C: tuple[float, ...]
-    drift_C: float
+    after_C: dict[str, float]
+    drift_C: float | None
+    repeated: Repeated
+    demands: Demands
 
     def __repr__(self) -> str:
         return f"Gate({self.colour}: {len(self.checks)} rules in {self.scenarios} scenarios on {self.rig_name})"
@@ -61,7 +81,11 @@ class Gate:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence; None where there is none."""
-        return next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
+        found = next((finding for finding in self.findings if finding.severity == "hard"), None)
+        if found is None:
+            return None
+        again = found in self.repeated.checks
+        return f"{found}; {self.repeated.cure}" if again else str(found)
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -83,8 +107,11 @@ class Gate:
             "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(surer(self.uncertainty))},
             "scenarios": self.scenarios,
             "ending_s": ENDING_S,
-            "skin_after_ending_C": dict(zip(ENDINGS, self.after_C, strict=True)),
+            "skin_after_ending_C": dict(self.after_C),
             "skin_in_the_end_at_zero_current_C": self.drift_C,
+            "repeated": self.repeated.to_dict(),
+            "recovery_s": self.repeated.recovery_s,
+            "shortest_pause_s": self.repeated.shortest_pause_s,
             "findings": [as_dict(finding) for finding in self.findings],
             "checks": [as_dict(check) for check in self.checks],
         }
@@ -97,62 +124,148 @@ def gate(
     rest_A: float | None = None,
     bridge_A: float | None = None,
     limits: Limits | None = None,
+    pause_s: float | None = None,
 ) -> Gate:
-    """Hold a drive against every rule of safety, on the rig and in all corners of its uncertainty, and 60 s beyond.
+    """Check a drive against every rule of safety, on the rig and in all corners of its uncertainty.
 
     The drive is what the hardware gets, played open loop: one that ends in the middle of a ramp, as a design does,
-    leaves that current on, and is judged so. `rest_A` in A has been held for ever before; None: the drive's first
-    current. `bridge_A`: the current that a bridge switches, which makes `rest_A` and the last current of the drive
-    means. `limits` takes the place of the rig's. Raises RigError where there is no rest to start from, DriveError for a
-    rest that cannot be.
+    leaves that current on, and is judged so. It is followed through its endings (60 s of its last value, zero current,
+    no power; zero current without limit of time), played again and again, and with single faults.
 
+    Parameters
+    ----------
+    drive
+        What the hardware gets.
+    rig
+        The rig as given; its uncertainty makes the corners.
+    rest_A
+        Current in A that has been held before, and is held in the pauses; None: the drive's first current.
+    bridge_A
+        The current that a bridge switches, which makes `rest_A` and the last current of the drive means.
+    limits
+        In the place of the rig's.
+    pause_s
+        Time between plays, 0 to 600 s; None: the recovery time.
+
+    Raises
+    ------
+    RigError
+        Where there is no rest to start from.
+    DriveError
+        For a rest that cannot be.
+    PauseError
+        For a pause that cannot be.
+
+    Examples
+    --------
     >>> from thermicon.circuit import design
     >>> from thermicon.icons import load_library
     >>> rig = Rig.load("thenar")
     >>> plan = design(load_library("six-icons")["cooling-step"], rig, 8.0)
     >>> gate(plan.drive, rig, rest_A=plan.rest_A)
-    Gate(red: 22 rules in 27 scenarios on thenar)
+    Gate(red: 22 rules in 195 scenarios on thenar)
     >>> ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
-    >>> gate(ended, rig, rest_A=plan.rest_A)
-    Gate(green: 22 rules in 27 scenarios on thenar)
+    >>> gate(ended, rig, rest_A=plan.rest_A).safe
+    True
+
     """
+    return gate_set(
+        [(drive, rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s
+    )[0]
+
+
+def gate_set(
+    drives: Sequence[tuple[Drive, float]],
+    rig: Rig,
+    *,
+    bridge_A: float | None = None,
+    limits: Limits | None = None,
+    pause_s: float | None = None,
+) -> tuple[Gate, ...]:
+    """Check drives, each with its rest in A, that may be played again and again in any order; as `gate` does.
+
+    Each is judged by itself, and between the bounds on what any sequence of all of them can come to. Without a pause,
+    that is the longest recovery time among them.
+    """
+    from threadpoolctl import threadpool_limits
+
+    check_pause(pause_s)
+    with threadpool_limits(limits=1, user_api="blas"):  # matrices of 50 rows: threads would only wait for each other
+        return _gated(drives, rig, bridge_A, limits, pause_s)
+
+
+def _gated(
+    drives: Sequence[tuple[Drive, float]],
+    rig: Rig,
+    bridge_A: float | None,
+    limits: Limits | None,
+    pause_s: float | None,
+) -> tuple[Gate, ...]:
+    ensemble = Ensemble.of(rig, bridge_A)
     held = rig.limits if limits is None else limits
-    futures = play_out(drive, rig, rest_A=rest_A, bridge_A=bridge_A)
-    columns, names = futures.columns, futures.names
-    skin = columns["skin_C"][:: len(futures.corners), -1]
+    singles = [Single.of(ensemble, drive, rest, held) for drive, rest in drives]
+    known = [single.recovery_s for single in singles]
+    pause = pause_s
+    if pause is None:
+        pause = LONGEST_PAUSE_S if None in known else max(time for time in known if time is not None)
+    start = State(np.mean([single.start.nodes_C for single in singles], axis=0), singles[0].start.sink)
+    cycles = [Cycle(ensemble, single.drive, single.rest_A, pause) for single in singles]
+    repeating = Repeating(ensemble, cycles, start, held)
+    tallies = repeating.tallies(pause)
+    shortest = shortest_pause_s(repeating)
+    repeats = []
+    for single, own, cycle in zip(singles, tallies, cycles, strict=True):
+        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, held.session_s)
+        repeats.append(Repeated(pause, single.recovery_s, shortest, plays, held.session_s, checks))
+    every = [
+        check for checks in (*(one.checks for one in singles), *(one.checks for one in repeats)) for check in checks
+    ]
+    display = [check.value for check in every if check.quantity == "display"]
+    reach = (min(display), max(display))
+    return tuple(
+        _gate(single, repeated, own, reach) for single, repeated, own in zip(singles, repeats, tallies, strict=True)
+    )
+
+
+def _gate(single: Single, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Gate:
+    rig = single.ensemble.rig
     return Gate(
         rig.name,
-        futures.end_s,
+        float(single.drive.time_s[-1]),
         rig.uncertainty,
-        held,
-        len(names),
-        checks_of(held, futures.time_s, columns, names),
-        tuple(float(value) for value in skin),
-        network_of(rig).read(steady_state(network_of(rig), 0.0), "skin_C"),
+        single.limits,
+        len(single.ensemble.corners) * len(ENDINGS),
+        worst_of([single.checks, repeated.checks]),
+        {ending: float(single.after_C[ending][0]) for ending in ENDINGS},
+        single.drift_C,
+        repeated,
+        single.demands(repeated, played, reach_C),
     )
 
 
 def _lines(one: Gate) -> Iterator[str]:
-    unsure = one.uncertainty
+    unsure, again = one.uncertainty, one.repeated
     yield (
         f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
-        f"{one.scenarios} scenarios (contact resistance ±{100 * unsure.contact_resistance_relative:g} %, ambient "
-        f"±{unsure.ambient_K:g} K, gain ±{100 * unsure.gain_relative:g} %; {', '.join(ENDINGS)})"
+        f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
     )
+    yield f"played again and again: {again.text}"
     table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:
         yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for value, ending in zip(one.after_C, ENDINGS, strict=True))
+    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in one.after_C.items())
     yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
+    if one.drift_C is not None:
+        yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
     if one.limits.changed:
         yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
     if one.limits.loosened:
         yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
     if claims := surer(unsure):
         yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    yield "exposure is that of one playing; a session adds up its playings"
+    for fault in one.demands.faults:
+        yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
     yield WHAT_IT_IS_NOT
 
 

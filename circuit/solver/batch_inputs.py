@@ -108,6 +108,35 @@ def run_forward(
 
     `extra` adds further readings after them, the same states and weights for every rig: starts (k,), weights (k, 3).
     """
+    return run_on(bank, rig_of, cue_of, intervals, State.settled(state), probes, extra)[0]
+
+
+@dataclass(frozen=True, slots=True)
+class State:
+    """Where lanes stand: `nodes_C` (lanes, n + 3) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
+
+    A sink is its temperature in °C, the integral of its loop in K·s, and its power now and at rest in W; NaN where it
+    has not begun.
+    """
+
+    nodes_C: Array
+    sink: Array
+
+    @staticmethod
+    def settled(nodes_C: Array) -> State:
+        """States whose heat sinks rest at their set-points."""
+        return State(nodes_C, np.full((len(nodes_C), 4), np.nan))
+
+    def take(self, lanes: Index) -> State:
+        """The states of some lanes, in that order."""
+        return State(self.nodes_C[lanes], self.sink[lanes])
+
+
+def run_on(
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = PROBES,
+    extra: tuple[Index, Array] | None = None,
+) -> tuple[Array, State]:  # fmt: skip
+    """`run_forward` from states that may be in the middle of something; returns also the states at the end."""
     from thermicon.circuit.solver import kernel, kernel_batch
 
     which = [PROBES.index(probe) for probe in probes]
@@ -118,16 +147,18 @@ def run_forward(
         places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
         weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
     out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
+    sinks, final = state.sink.copy(), np.zeros_like(state.nodes_C)
 
     def work(part: Index) -> None:
         run = kernel.forward if part.ndim == 1 else kernel_batch.forward
         run(
             part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state, out,
+            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state.nodes_C,
+            sinks, out, final,
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of))
-    return out
+    return out, State(final, sinks)
 
 
 def run_follow(

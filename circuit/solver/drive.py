@@ -11,10 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, read_text
+from thermicon.circuit.inputs import InputError, quoted, read_text
 from thermicon.circuit.rig.skin import Array
+from thermicon.icons.cleaning import clean_line
 
 COLUMNS = ("time_s", "current_A")
+MOST_MB, LONGEST_CELL = 200, 60
+
+SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
+"""Closest rows in s, far below what any driver switches and far above where numbers end; longest drive in s,
+four months; largest current in A, far above what any module takes."""
 
 
 class DriveError(InputError):
@@ -54,6 +60,17 @@ class Drive:
             raise DriveError(
                 f"row {row + 1}: time {times[row]:g} s does not come after {times[row - 1]:g} s; times must increase"
             )
+        if times[-1] > LONGEST_S:
+            raise DriveError(f"the last row is at {times[-1]:g} s; a drive lasts {LONGEST_S:g} s at most")
+        if (np.diff(times) < SHORTEST_S).any():
+            row = int(np.flatnonzero(np.diff(times) < SHORTEST_S)[0]) + 1
+            raise DriveError(
+                f"row {row + 1}: time {times[row]:.12g} s comes {times[row] - times[row - 1]:.2g} s after the row "
+                f"before; rows are at least {SHORTEST_S:g} s apart, since no driver switches faster"
+            )
+        if (np.abs(currents) > MOST_A).any():
+            row = int(np.argmax(np.abs(currents)))
+            raise DriveError(f"row {row + 1}: current {currents[row]:g} A; at most {MOST_A:g} A either way are played")
 
     def __repr__(self) -> str:
         low, high = self.current_A.min(), self.current_A.max()
@@ -82,8 +99,31 @@ class Drive:
 def read_drive(path: str | Path, hold: bool = False) -> Drive:
     """Return the drive of a CSV file with columns `time_s,current_A`; raises DriveError naming the line at fault."""
     where = Path(path)
-    rows = list(csv.reader(io.StringIO(read_text(where, "drive file", 200, DriveError))))
-    header = [name.strip() for name in rows[0]] if rows else []
+    text = read_text(where, "drive file", MOST_MB, DriveError)
+    # Lines may end as on Windows or on an old Macintosh; a reader made for one of them stumbles over the others.
+    rows = csv.reader(io.StringIO(text.replace("\r\n", "\n").replace("\r", "\n")))
+    try:
+        header = [name.strip() for name in next(rows, [])]
+        places = _places(header, where)
+        values: list[list[float]] = []
+        for row in rows:
+            if not any(cell.strip() for cell in row):
+                continue
+            place = f"{where}:{rows.line_num}"
+            values.append([_number(row, at, place, name) for at, name in zip(places, COLUMNS, strict=True)])
+    except csv.Error as problem:
+        raise DriveError(
+            f"{where}:{rows.line_num}: this row cannot be read ({problem}); a row is two short numbers"
+        ) from None
+    try:
+        times, currents = np.array(values).reshape(-1, 2).T
+        return Drive(times, currents, hold)
+    except DriveError as problem:
+        raise DriveError(f"{where}: {problem}") from None
+
+
+def _places(header: list[str], where: Path) -> list[int]:
+    """Places of the two columns in the header; DriveError where one is missing."""
     missing = [name for name in COLUMNS if name not in header]
     if "duty" in header and "current_A" in missing:
         raise DriveError(
@@ -92,23 +132,12 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
             f"this one does is in the sidecar beside it, under predicted"
         )
     if missing:
+        found = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
         raise DriveError(
             f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "
-            f"(found {', '.join(header[:6]) or 'nothing'})"
+            f"(found {found or 'nothing'})"
         )
-    places = [header.index(name) for name in COLUMNS]
-    values: list[list[float]] = []
-    for line, row in enumerate(rows[1:], start=2):
-        if not any(cell.strip() for cell in row):
-            continue
-        values.append(
-            [_number(row, place, f"{where}:{line}", name) for place, name in zip(places, COLUMNS, strict=True)]
-        )
-    try:
-        times, currents = np.array(values).reshape(-1, 2).T
-        return Drive(times, currents, hold)
-    except DriveError as problem:
-        raise DriveError(f"{where}: {problem}") from None
+    return [header.index(name) for name in COLUMNS]
 
 
 def _number(row: list[str], place: int, where: str, column: str) -> float:
@@ -116,7 +145,7 @@ def _number(row: list[str], place: int, where: str, column: str) -> float:
     try:
         value = float(cell)
     except ValueError:
-        raise DriveError(f"{where}: {column} is {cell!r}, not a number") from None
+        raise DriveError(f"{where}: {column} is {quoted(cell)}, not a number") from None
     if not math.isfinite(value):
-        raise DriveError(f"{where}: {column} is {cell}; it must be a finite number")
+        raise DriveError(f"{where}: {column} is {clean_line(cell[:LONGEST_CELL])}; it must be a finite number")
     return value

@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
 
+from thermicon.circuit.compiled import kernel
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.circuit.solver import plate
 
-compiled = njit(cache=True, nogil=True, fastmath={"contract"}, error_model="numpy")
+compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 greatest_cooling = compiled(plate.greatest_cooling_A)
 current_for_heat = compiled(plate.current_for_heat_A)
 
@@ -63,7 +63,7 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
     whole[4] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
 
 
-@njit(cache=True, nogil=True, fastmath={"contract", "reassoc"})
+@kernel(nogil=True, fastmath={"contract", "reassoc"})
 def weighed(n, upper, lower, x):
     """Weighted sum of the lumps: the part of the first lump, after an implicit step, that the cold plate has not."""
     total = 0.0
@@ -155,12 +155,14 @@ def load(n, state, p, x):
 
 @compiled
 def forward(
-    lanes, rig_of, cue_of, edges, start_A, end_A, row_of, count, plates, cap, g, perf, places, weights, state, out
-):
+    lanes, rig_of, cue_of, edges, start_A, end_A, row_of, count, plates, cap, g, perf, places, weights, state, sinks,
+    out, final,
+):  # fmt: skip
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
     `start_A`, `end_A` (interval, cue): current at both ends of an interval; `row_of` (interval + 1,): row to write at
-    an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row).
+    an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row). `final` (lane, n + 3) gets the state at the end;
+    `sinks` (lane, 4) has each lane's heat sink as in `settle`, or NaN to start it at its set-point, and gets the last.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -176,7 +178,10 @@ def forward(
             offset[q] = (weights[r, q, 0] + weights[r, q, 1] + weights[r, q, 2]) * p[7]
             for j in range(3):
                 at[q, j] = place_of(places[r, q] + j, n)
-        settle(state[lane, 0], p, sink)
+        if math.isnan(sinks[lane, 0]):
+            settle(state[lane, 0], p, sink)
+        else:
+            sink[:] = sinks[lane]
         factored, since, before, first = -1.0, 0.0, start_A[0, c], 0.0
         for k in range(edges.size):
             row = row_of[k]
@@ -207,6 +212,9 @@ def forward(
                 done += step
                 since += step
             before = last
+        sinks[lane] = sink
+        for k in range(n + 3):
+            final[lane, k] = x[place_of(k, n)] + p[7]
 
 
 @compiled

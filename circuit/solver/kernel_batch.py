@@ -141,7 +141,7 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
 @compiled
 def forward(
     blocks, rig_of, cue_of, edges, start_A, end_A, row_of, count, bank_plates, bank_cap, bank_g, bank_perf, places,
-    weights, state, out,
+    weights, state, sinks, out, final,
 ):  # fmt: skip
     """`kernel.forward` for blocks (blocks, LANES) of lanes; a lane may stand in for padding more than once."""
     most = bank_cap.shape[1] + 1
@@ -156,6 +156,10 @@ def forward(
     for b in range(blocks.shape[0]):
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
+        for lane in range(LANES):
+            if not math.isnan(sinks[block[lane], 0]):
+                for j in range(4):
+                    sink[lane, j] = sinks[block[lane], j]
         for q in range(probes):
             same[q] = True
             for lane in range(LANES):
@@ -209,6 +213,12 @@ def forward(
                 advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
                 done += step
                 since += step
+        for lane in range(LANES):
+            for j in range(4):
+                sinks[block[lane], j] = sink[lane, j]
+            for i in range(count[rig_of[block[lane]]] + 2):
+                final[block[lane], i] = x[i, lane]
+            final[block[lane], count[rig_of[block[lane]]] + 2] = p[7, lane]
 
 
 @compiled

@@ -7,10 +7,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import njit
+
+from thermicon.circuit.compiled import kernel
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def lagged(time_s, value, lag_s, out):
     """Fill `out` (rows,) with a first-order lag of `value`, settled at first; exact where it is linear between rows."""
     out[0] = value[0]
@@ -20,7 +21,7 @@ def lagged(time_s, value, lag_s, out):
         out[k + 1] = value[k + 1] - behind + (out[k] - value[k] + behind) * math.exp(-step / lag_s)
 
 
-@njit(cache=True, nogil=True)
+@kernel(nogil=True)
 def beside(time_s, display, lumps, cap, g, perf, across, deep, state, upper, share, out):
     """Step a passive column of n lumps by the trapezoidal rule, and fill `out` (rows,) with one reading of it.
 

@@ -30,7 +30,8 @@ SMALL = 1e-6
 class SkinModes:
     """A skin column as n modes: `rate_per_s` (n,), `drive_per_s` (n,) of a display of 1 K, readings of FELT.
 
-    A reading is `reading @ z + direct · u + offset_C`, with modes z and display u in K above the deep node.
+    A reading is `reading @ z + direct · u + offset_C`, with modes z and display u in K above the deep node. `lumps`
+    (n, n) makes temperatures of lumps, in K above the deep node, of modes, and `unlumps` modes of those.
     """
 
     deep_C: float
@@ -39,6 +40,8 @@ class SkinModes:
     reading: Array
     direct: Array
     offset_C: Array
+    lumps: Array
+    unlumps: Array
 
     def steady(self, display_C: float) -> Array:
         """Modes (n,) that a display held at a temperature leads to."""
@@ -161,10 +164,11 @@ def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, A
     weights = np.zeros((len(rows), len(capacity) + 3))
     for row, (start, three) in enumerate(rows):
         weights[row, start : start + 3] = three
-    lumps, direct = weights[:, SKIN:-1], weights[:, COLD]
+    below, direct = weights[:, SKIN:-1], weights[:, COLD]
     offset = weights.sum(axis=1) * network.deep_C  # zero for heat flows
     assert not weights[:, HOT].any()
-    return SkinModes(network.deep_C, rates, first * vectors[0] / root[0], lumps @ shape, direct, offset)
+    unlumps = vectors.T * root
+    return SkinModes(network.deep_C, rates, first * vectors[0] / root[0], below @ shape, direct, offset, shape, unlumps)
 
 
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:

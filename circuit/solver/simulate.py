@@ -20,7 +20,7 @@ from thermicon.circuit.solver.steady import check_sink, hold, steady_state
 from thermicon.circuit.solver.trace import Outcome, Trace
 from thermicon.icons import Icon
 
-MOST_ROWS = 20_000_000
+MOST_ROWS = 10_000_000
 HOTTEST_C = 1000.0
 """Above this a run is not of skin and solder any more, but of a wrong number."""
 

@@ -13,9 +13,11 @@ from thermicon.circuit.studies.meshstudy import Mesh, mesh_study
 from thermicon.circuit.studies.paper import (
     ControlledCue,
     Thermistors,
+    coldest_display_C,
     controlled_cue,
     cooling_step,
     dermis_change,
+    emulator_rig,
     miss_by_limit,
     printed,
     thermistors,
@@ -42,7 +44,7 @@ class Difference:
 
 
 def account() -> tuple[Difference, ...]:
-    """Play the paper's cue on the rigs `shani2021` and `thenar`, and say point by point where we and it part.
+    """Play the paper's cue on its own rig (limits lifted) and on `thenar`, and say point by point where we differ.
 
     >>> for point in account():
     ...     print(point.topic, "-", "agrees" if point.agrees else "differs")
@@ -55,11 +57,11 @@ def account() -> tuple[Difference, ...]:
     mesh - differs
     depth of the receptors - differs
     """
-    rig, palm = Rig.load("shani2021"), Rig.load("thenar")
+    rig, palm = emulator_rig(), Rig.load("thenar")
     cue = controlled_cue(rig)
     return (
         _shape(cue),
-        _current(rig),
+        _current(Rig.load(rig.name)),
         _directions(rig, cue),
         _rest(rig, palm),
         _receptors(rig),
@@ -92,8 +94,10 @@ def _current(rig: Rig) -> Difference:
         "the drive that makes the skin's step is found and played; no limit is given.",
         f"at {rig.driver.current_max_A:g} A the skin misses by {misses[0]:.2f} K, at the module's own {own:g} A by "
         f"{misses[1]:.2f} K; {hold(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
-        "The limit is our assumption. A corner in the skin's temperature asks for a current that grows without bound "
-        "as the corner gets sharper, and the printed slab's standing flux takes a part of what there is.",
+        f"The limit is derived: with it held the display settles at {coldest_display_C(rig):.1f} °C, and the paper "
+        f"says about {printed().one('lowest contact temperature').central:g} °C at the lowest. A corner in the skin's "
+        "temperature asks for a current that grows without bound as the corner gets sharper, and the printed slab's "
+        "standing flux takes a part of what there is.",
     )
 
 

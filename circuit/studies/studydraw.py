@@ -103,7 +103,7 @@ def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     reached = np.array(misses.reached)
     for which, face, label in ((reached, COOL, "reached"), (~reached, "white", "missed")):
         ax.plot(misses.limit_A[which], misses.miss_K[which], "o", color=COOL, mfc=face, label=label)
-    ax.axvline(misses.shipped_A, color=DISPLAY, lw=1.2, ls="--", label=f"this rig's {misses.shipped_A:g} A (assumed)")
+    ax.axvline(misses.shipped_A, color=DISPLAY, lw=1.2, ls="--", label=f"this rig's {misses.shipped_A:g} A")
     ax.axvline(own, color=LIMIT, lw=1.6, ls=":", label=f"the module's own {own:g} A")
     ax.set_ylim(bottom=0)
     tidy(ax, misses.limit_A, "largest miss (K)")

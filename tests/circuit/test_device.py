@@ -46,11 +46,11 @@ def test_every_number_of_a_shipped_device_has_a_source_and_none_was_played(name:
 
 @pytest.mark.parametrize(
     ("name", "milliamperes"),
-    [("dac-12", 0.488281), ("dac-14", 0.12207), ("dac-16", 0.0305176), ("pwm-h-bridge-8", 14.84)],
+    [("dac-12", 0.732422), ("dac-14", 0.183105), ("dac-16", 0.0457764), ("pwm-h-bridge-10", 1.46484)],
 )
 def test_steps_are_as_large_as_arithmetic_says(name: str, milliamperes: float) -> None:
     device = Device.load(name)
-    per_unit = 0.1 if device.driven_by == "volts" else 1.9
+    per_unit = 0.15 if device.driven_by == "volts" else 1.5
     assert device.scale(1.0).step * per_unit * 1e3 == pytest.approx(milliamperes, rel=1e-3)
 
 
@@ -84,7 +84,7 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
         (('"data sheet"', '" "'), r"record\.1 \(resolution\): the record has no source: add source"),
         (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a finite number without quotes or unit"),
         (("value = 12", "bits = 12"), r"record\.1\.bits: unknown key; known: "),
-        (("value = 12", "value = 0"), r"record\.1 \(resolution\): must be above 0"),
+        (("value = 12", "value = 0"), r"record\.1 \(resolution\): value = 0 bit: must be 1 to 32 bit"),
         (('unit = "Hz"', 'unit = "kHz"'), r"record\.2 \(update rate\): unit = 'kHz': must be Hz"),
         (('"update rate"', '"updat rate"'), r"record\.2 \(updat rate\): no such quantity; did you mean update rate"),
         (('"update rate"', '"slew rate"'), r"a device driven by amperes needs a record of its update rate, in Hz"),

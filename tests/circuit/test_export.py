@@ -12,9 +12,12 @@ from typing import Any
 import pytest
 
 from thermicon.circuit import Device, Prepared, Realised, Rig, Verdict, gate, judge_safety, prepare, realise, worst_case
-from thermicon.circuit.delivery.export import Refusal, pack
+from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
+from thermicon.circuit.program import code_digest
+from thermicon.circuit.records import Record
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -28,6 +31,13 @@ COLD = parse(
 
 def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
     return prepare(SIX[name], rig, Device.load(device), load_format(form))
+
+
+def coarse_bridge() -> Device:
+    """The bridge with 8 bits, the sign included: too coarse to hold a baseline."""
+    bridge = Device.load("pwm-h-bridge-10")
+    kept = tuple(record for record in bridge.records if record.quantity != "resolution")
+    return replace(bridge, records=(*kept, Record("resolution", "bit", "test", value=8)))
 
 
 def sidecar_of(one: Prepared, form: str = "csv", **more: Any) -> dict[str, Any]:
@@ -54,17 +64,63 @@ def test_what_is_unsafe_is_refused_and_cannot_be_packed() -> None:
         pack([one], CSV)
 
 
-def test_what_is_not_reached_is_refused_with_the_reason() -> None:
+def test_what_is_not_reached_is_refused_with_the_reason_and_what_it_takes() -> None:
     rig = RIG.with_(**{"driver.current_limit_A": 0.5})
-    refusal = next(each for each in ready(rig=rig).refusals if each.kind == "unreachable")
+    (refusal,) = ready(rig=rig).refusals
     assert str(refusal).startswith("NOT reached: misses its target by ")
     assert refusal.forcible
+    taken = float(re.search(r"it takes ±([\d.]+) A, and driver.current_limit_A is 0.5 A: ask for ", str(refusal))[1])  # type: ignore[index]
+    enough, less = (
+        prepare(SIX["cooling-step"], RIG.with_(**{"driver.current_limit_A": a}), Device.load("dac-16"), CSV).refusals
+        for a in (taken, taken - 0.05)
+    )
+    assert (enough, [each.kind for each in less]) == ((), ["unreachable"])
 
 
-def test_what_loses_too_much_is_refused_with_the_limit() -> None:
-    refusals = ready(device="pwm-h-bridge-8").refusals
-    assert {refusal.kind for refusal in refusals} == {"lossy"}
-    assert "over the stated 0.05 K" in str(refusals[0])
+def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_other() -> None:
+    weak = RIG.with_(**{"driver.transconductance_A_per_V": 0.05})
+    one = ready(rig=weak)
+    (refusal,) = one.refusals
+    assert re.match(
+        r"NOT reached: dac-16 plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
+        r"design asks for up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
+        str(refusal),
+    )
+    assert one.warnings == ()
+    dull = replace(one.realised, narrowed=replace(one.realised.narrowed, outcome=None))  # type: ignore[type-var]
+    (lossy,) = refusals_of(dull, one.verdict, one.apart)
+    assert re.search(r"^loses too much: dac-16 plays .* With that the \w+ receptor differs by ", str(lossy))
+
+
+def test_where_rig_and_device_are_too_weak_one_sentence_names_both() -> None:
+    rig = RIG.with_(**{"driver.current_limit_A": 0.5, "driver.transconductance_A_per_V": 0.02})
+    one = ready(rig=rig)
+    (refusal,) = one.refusals
+    assert "driver.current_limit_A is 0.5 A and dac-16 plays at most 0.2 A: ask for " in str(refusal)
+    assert not any("dac-16" in text for text in one.warnings)
+
+
+def test_what_the_papers_own_cue_takes_on_the_papers_own_rig_is_in_its_refusal() -> None:
+    cue = load_library("cooling-step-skin")["cooling-step"]
+    (refusal,) = prepare(cue, Rig.load("shani2021"), Device.load("dac-16"), CSV).refusals
+    assert str(refusal).startswith("NOT reached: misses its target by 2.12 K at 2.00 s")
+    assert "it takes ±1.9 A, and driver.current_limit_A is 1 A" in str(refusal)
+
+
+def test_no_current_is_named_where_none_helps() -> None:
+    frost = COLD["frost"]
+    assert needed_A(frost, RIG.with_(**{"driver.current_min_A": 0})) is None  # nothing that only cools returns so fast
+    text = "cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n"
+    assert needed_A(parse(text)["ramp"], RIG) is None
+
+
+def test_what_loses_too_much_is_refused_once_with_limit_cause_and_cure() -> None:
+    (refusal,) = prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV).refusals
+    assert re.match(
+        r"loses too much: the \w+ receptor differs by 0.\d+ K \(rms\) from the design \(the \w+ receptor by 0.\d+ K\), "
+        r"over the stated 0.05 K; pwm-h-bridge-10: its steps are 0.00781 of full duty; use a device that is finer",
+        str(refusal),
+    )
 
 
 def test_the_gate_is_given_and_its_word_is_final() -> None:
@@ -111,9 +167,9 @@ class TestWorstCase:
         assert worst_case(found) == gate(found.delivered, RIG)
 
     def test_a_bridge_rests_and_ends_with_means(self) -> None:
-        found = ready(device="pwm-h-bridge-8").realised
+        found = ready(device="pwm-h-bridge-10").realised
         (rest, *_) = found.played.command  # type: ignore[union-attr]
-        assert worst_case(found) == gate(found.delivered, RIG, rest_A=1.9 * float(rest), bridge_A=1.9)
+        assert worst_case(found) == gate(found.delivered, RIG, rest_A=1.5 * float(rest), bridge_A=1.5)
 
     def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
         found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").realised)
@@ -171,7 +227,7 @@ def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], 
 
 
 def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() -> None:
-    realised = ready("warming-step", "pwm-h-bridge-8").realised
+    realised = ready("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).realised
     assert realised.trace.beyond
     assert realised.told == realised.warnings == ()
 
@@ -201,6 +257,25 @@ class TestSidecar:
         assert told["update_rate_Hz"] == {"requested": 100.0, "realised": 100.0}
         assert told["seed"] is None
         assert told["what_it_is_not"] == NO_CLEARANCE
+
+    def test_it_is_bound_to_its_drive_rig_device_and_program(self) -> None:
+        one = ready(device="ni-analogue-output", form="psychopy")
+        files = pack([one], load_format("psychopy"))
+        told = json.loads(files["cooling-step.json"])
+        sha256 = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+        assert told["drive_sha256"] == sha256["cooling-step.csv"]
+        assert told["set_files"] == {name: sha256[name] for name in ("conditions.csv", "play_icons.py")}
+        assert told["rig_sha256"] == told["rig"]["content_hash"]
+        device = json.dumps(told["device"], sort_keys=True, ensure_ascii=False)
+        assert told["device_sha256"] == hashlib.sha256(device.encode()).hexdigest()
+        assert told["device"]["streams"] is one.realised.device.streams
+        assert told["program"] == {"version": version("thermicon"), "code_sha256": code_digest()}
+        assert (told["played"]["greatest_command_V"], told["played"]["least_command_V"]) == pytest.approx(
+            (one.realised.played.command.max(), one.realised.played.command.min())  # type: ignore[union-attr]
+        )
+        known = told.pop("sidecar_sha256")
+        bare = json.dumps(told, ensure_ascii=False, indent=2) + "\n"
+        assert known == hashlib.sha256(bare.encode()).hexdigest()
 
     def test_every_column_has_a_unit_and_a_meaning(self) -> None:
         columns = {column["name"]: column["unit"] for column in sidecar_of(ready())["columns"]}
@@ -256,10 +331,12 @@ class TestSidecar:
         assert "dac-16: no such device was ever driven by thermicon" in told["warnings"]
 
     def test_what_was_forced_says_so_and_why(self) -> None:
-        told = sidecar_of(ready(device="pwm-h-bridge-8"), losses={"cooling-step": ["d′ to x falls"]})
+        told = sidecar_of(
+            prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV), losses={"cooling-step": ["d′ to x falls"]}
+        )
         assert told["forced"] is True
         assert told["forced_over"][-1] == "loses too much: d′ to x falls"
-        assert len(told["forced_over"]) == 3
+        assert len(told["forced_over"]) == 2
 
     def test_the_whole_gate_is_in_it_with_the_reason_for_looser_limits(self) -> None:
         why = "approved by our own board for this one study"

@@ -32,8 +32,8 @@ from thermicon.circuit.delivery.netlist import netlist
 from thermicon.circuit.delivery.realise import followed
 from thermicon.circuit.delivery.worstcase import regulated_corners
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.limits import WATCHED
-from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.icons import Icon, parse
@@ -45,7 +45,8 @@ CLOSE = 3e-3
 WAYS = (
     ("dac-12", "csv"), ("dac-16", "csv"), ("ni-analogue-output", "csv"), ("dac-16", "spice-pwl"), ("dac-12", "c-array"),
     ("keysight-33500b", "keysight-arb"), ("rigol-dg1000z", "rigol-raf"), ("dc-coupled-audio", "wav"),
-    ("pwm-h-bridge-8", "csv"), ("pwm-h-bridge-8", "c-array"), ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "tcs2-serial"),
+    ("pwm-h-bridge-10", "csv"), ("pwm-h-bridge-10", "c-array"),
+    ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "tcs2-serial"),
 )  # fmt: skip
 
 HARD = {"skin_C": (15.0, 42.0), "cold_receptor_C": (15.0, 42.0), "display_C": (5.0, 45.0), "hot_plate_C": (None, 60.0)}

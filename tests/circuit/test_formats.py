@@ -45,7 +45,7 @@ def test_an_unknown_format_is_named_with_the_nearest() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "device"), [("tcs2-serial", "dac-16"), ("csv", "qst-tcs2"), ("wav", "pwm-h-bridge-8")]
+    ("name", "device"), [("tcs2-serial", "dac-16"), ("csv", "qst-tcs2"), ("wav", "pwm-h-bridge-10")]
 )
 def test_a_format_for_another_kind_of_device_is_refused(name: str, device: str) -> None:
     form, other = load_format(name), Device.load(device)
@@ -93,7 +93,7 @@ class TestCsv:
             assert np.abs(getattr(again, column) - getattr(found.trace, column)).max() < 1e-9, column
 
     def test_a_bridge_has_duties_and_no_current_to_replay(self, tmp_path: Path) -> None:
-        found, samples = played("csv", "pwm-h-bridge-8")
+        found, samples = played("csv", "pwm-h-bridge-10")
         rows = list(csv.DictReader(io.StringIO(load_format("csv").write(found).decode())))
         assert [float(row["duty"]) for row in rows] == samples.command.tolist()
         assert "current_A" not in rows[0]
@@ -262,7 +262,7 @@ class TestWav:
 class TestCArray:
     """Header files."""
 
-    @pytest.mark.parametrize("device", ["dac-12", "pwm-h-bridge-8"])
+    @pytest.mark.parametrize("device", ["dac-12", "pwm-h-bridge-10"])
     def test_a_compiler_reads_the_codes(self, device: str, tool: Callable[[str], str], tmp_path: Path) -> None:
         found, samples = played("c-array", device)
         form = load_format("c-array")

@@ -2,18 +2,21 @@
 
 import json
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, design, gate, hold, judge_safety, simulate, simulate_current
+from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
-from thermicon.circuit.safety.limits import WATCHED, checks_of
+from thermicon.circuit.safety.limits import checks_of
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
 SURE: dict[str, object] = {
-    **{f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")},
+    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"},
     "uncertainty.reason": "a test that needs the rig as given",
 }
 STRONG = {"driver.current_limit_A": 8.0, "driver.voltage_limit_V": 60.0, "heat_sink.resistance_K_per_W": 0.02,

@@ -18,8 +18,8 @@ import pytest
 from thermicon.circuit import Corner, Drive, Rig, RigError, design, gate, play_out, simulate_current, steady_state
 from thermicon.circuit.delivery.netlist import netlist
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.limits import WATCHED
 from thermicon.circuit.safety.scenarios import _everything
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.batch_inputs import Bank, Intervals, cut, run_forward
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.poweroff import unpowered

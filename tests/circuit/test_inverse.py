@@ -60,9 +60,10 @@ def test_a_miss_says_how_much_when_and_why() -> None:
         "misses its target by 1.31 K at 2.00 s, held back by the current limit from 0.00 s "
         "and lower current limit from 6.00 s"
     )
-    printed = simulate(step("skin"), SHANI)
-    assert printed.outcome is not None
-    assert printed.outcome.largest_miss_K == pytest.approx(0.73, abs=0.01)
+    for limit, miss in ((SHANI.driver.current_max_A, 2.12), (1.5, 0.73)):
+        printed = simulate(step("skin"), SHANI.with_(**{"driver.current_limit_A": limit}))
+        assert printed.outcome is not None
+        assert printed.outcome.largest_miss_K == pytest.approx(miss, abs=0.01)
 
 
 def test_a_drive_that_only_cools_cannot_return_the_skin() -> None:

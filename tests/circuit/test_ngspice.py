@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -151,7 +151,7 @@ def test_a_file_with_blanks_and_capitals_is_written(tool: Tool, tmp_path: Path) 
 
 def test_the_file_is_plain_text_that_both_programs_read() -> None:
     """Only ASCII, no control section unless asked for, and no function that only one of the two programs has."""
-    rig = Rig.load("thenar").with_(title="für °C\n.end")
+    rig = replace(Rig.load("thenar"), title="für °C\n.end")
     text = netlist(rig, CORNERS, title="größer × 2")
     assert text.isascii()
     lines = text.splitlines()

@@ -3,32 +3,63 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Drive, Rig, simulate_current, steady_state
+from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.studies.account import account
-from thermicon.circuit.studies.paper import controlled_cue, dermis_change, miss_by_limit, printed, thermistors
+from thermicon.circuit.studies.paper import (
+    coldest_display_C,
+    controlled_cue,
+    dermis_change,
+    emulator_rig,
+    miss_by_limit,
+    printed,
+    thermistors,
+)
 from thermicon.circuit.studies.studydraw import stacked_figure
 
 
 def test_whichever_is_controlled_is_the_clean_step() -> None:
-    for rig in ("shani2021", "thenar"):
-        wrong = controlled_cue(Rig.load(rig)).distortions
+    for rig in (emulator_rig(), Rig.load("thenar")):
+        wrong = controlled_cue(rig).distortions
         assert wrong["skin"][0] < 0.03 < 0.07 < wrong["skin"][1]
         assert wrong["display"][1] < 1e-4 < 0.07 < wrong["display"][0]
 
 
 def test_each_miss_is_stated() -> None:
-    cue = controlled_cue()
-    assert repr(cue).startswith(
-        "ControlledCue(shani2021; skin control: missed, 0.73 K off at most, display control: re"
+    free, cue = controlled_cue(), controlled_cue(Rig.load("shani2021"))
+    assert repr(free).startswith(
+        "ControlledCue(shani2021; skin control: reached, 0.07 K off at most, display control: re"
     )
-    titles = [cue.plot(control=control).get_title(loc="left") for control in ("skin", "display")]
-    assert titles[0].startswith("skin control; misses its target by 0.73 K at 2.00 s, held back by the\ncurrent limit")
+    assert repr(cue).startswith("ControlledCue(shani2021; skin control: missed, 2.1 K off at most, display control: mi")
+    titles = [one.plot(control=control).get_title(loc="left") for one, control in ((cue, "skin"), (free, "display"))]
+    assert titles[0].startswith("skin control; misses its target by 2.12 K at 2.00 s, held back by the\ncurrent limit")
     assert titles[1] == "display control; reached"
+
+
+def test_the_limit_is_that_of_the_lowest_temperature_that_the_paper_states() -> None:
+    claim, rig = printed().one("lowest contact temperature"), Rig.load("shani2021")
+    held = rig.driver.current_max_A
+    settled = simulate_current(Drive([0.0, 900.0], [held, held]), rig, rate_Hz=1.0).display_C[-1]
+    assert claim.low is not None
+    assert claim.high is not None
+    assert claim.low <= settled <= claim.high
+    assert settled == pytest.approx(coldest_display_C(rig), abs=1e-3)
+    # the plates' energy balance with pencil: what the module absorbs comes through contact, epidermis and dermis
+    net = network_of(rig)
+    state = steady_state(net, held)
+    cold, hot = (net.read(state, name) for name in ("display_C", "hot_plate_C"))
+    brought = (37.0 - cold) * 9e-4 / (5.4e-4 + 0.081e-3 / 0.24 + 2e-3 / 0.45)
+    assert rig.module.heat_absorbed_W(held, cold, hot) == pytest.approx(brought, rel=1e-6)
+    for other in (held - 0.1, held + 0.1):  # neither a tenth of an ampere less nor more is about 5 °C
+        there = coldest_display_C(rig.with_(**{"driver.current_limit_A": other}))
+        assert not claim.low <= there <= claim.high
+    assert held == pytest.approx(10.0 * rig.driver.transconductance_A_per_V)
+    assert rig.driver.transconductance_A_per_V == printed().one("driver gain").central
 
 
 def test_the_miss_falls_with_the_current_limit() -> None:
     found = miss_by_limit()
-    assert found.shipped_A == 1.5
+    assert found.shipped_A == 1.0
     assert (np.diff(found.miss_K) < 1e-6).all()
     at = dict(zip(found.limit_A.tolist(), found.miss_K.tolist(), strict=True))
     assert at[1.5] == pytest.approx(0.73, abs=0.01)
@@ -37,7 +68,7 @@ def test_the_miss_falls_with_the_current_limit() -> None:
     legend = found.plot().get_legend()
     assert legend is not None
     said = [text.get_text() for text in legend.get_texts()]
-    assert said == ["reached", "missed", "this rig's 1.5 A (assumed)", "the module's own 1.85 A"]
+    assert said == ["reached", "missed", "this rig's 1 A", "the module's own 1.85 A"]
 
 
 def test_a_drive_that_only_cools_misses_the_return_by_about_4_K() -> None:
@@ -54,7 +85,7 @@ def test_the_papers_dermis_numbers_belong_to_one_depth() -> None:
     assert seen.at(0.15e-3)[0] > 4.0
     assert np.isnan(seen.depth_of_m(100.0))
     assert seen.plot().get_xlabel() == "depth (mm)"
-    assert repr(seen).startswith("DermisChange(shani2021; 5.0 K at 0.15 mm, 1 K at 1.5")
+    assert repr(seen).startswith("DermisChange(shani2021; 5.1 K at 0.15 mm, 1 K at 1.5")
 
 
 def test_the_third_thermistor_depends_on_a_distance_nobody_printed() -> None:
@@ -64,7 +95,7 @@ def test_the_third_thermistor_depends_on_a_distance_nobody_printed() -> None:
     one, two = found.trace.probe("1"), found.trace.probe("2")
     assert np.array_equal(one, found.trace.display_C)
     assert two == pytest.approx((found.trace.skin_C + one) / 2, abs=1e-9)
-    assert repr(found).startswith("Thermistors(shani2021; #1 -8.6")
+    assert repr(found).startswith("Thermistors(shani2021; #1 -8.8")
     assert found.plot().get_ylabel() == "change (K)"
 
 

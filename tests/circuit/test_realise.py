@@ -20,11 +20,11 @@ from thermicon.circuit import (
     simulate_current,
 )
 from thermicon.circuit.delivery.realise import traces_until
-from thermicon.circuit.delivery.samples import rate_of
+from thermicon.circuit.delivery.samples import rate_of, within
 from thermicon.circuit.delivery.setpoints import setpoints_of
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.pwm import steady_of
+from thermicon.circuit.solver.pwm import duty_of, steady_of, switched
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, load_library, parse
 
@@ -70,9 +70,10 @@ def test_the_design_on_the_clock_of_the_file_is_the_design() -> None:
 
 
 def test_finer_steps_lose_less() -> None:
-    lost = [rms_K(realise(STEP, RIG, Device.load(f"dac-{bits}"))) for bits in (12, 14, 16)]
-    assert lost[0] > lost[1] > lost[2]
-    assert lost[2] < 1e-3
+    # half a step of rest, and what an ampere does to the resting skin: rounding may be lucky, never worse
+    for bits in (12, 14, 16):
+        step_A = 20.0 / 2**bits * RIG.driver.transconductance_A_per_V
+        assert rms_K(realise(STEP, RIG, Device.load(f"dac-{bits}"))) < 0.5 * step_A * 85.0
     assert rms_K(realise(STEP, RIG, Device.load("keysight-33500b"))) < 1e-3
 
 
@@ -83,15 +84,24 @@ def test_the_trace_is_that_of_the_delivered_drive() -> None:
 
 
 def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be() -> None:
-    step = load_library("six-icons")["cooling-step"]
-    found = realise(step, RIG, Device.load("dac-16"))
+    step, weak = load_library("six-icons")["cooling-step"], RIG.with_(**{"driver.transconductance_A_per_V": 0.1})
+    found = realise(step, weak, Device.load("dac-16"))
     assert found.warnings == (
-        "dac-16: asks for −1 … 1 A at most, the driver would give −1.5 … 1.5 A; raise "
-        "driver.transconductance_A_per_V to 0.15, if the current source can",
+        "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design asks for up to "
+        "1.11 A; raise that to 0.12 if the current source can, or use a device of more volts",
     )
     assert found.delivered.current_A.max() <= 1.0
     assert rms_K(found) < 0.01  # the display catches up after the corner
-    assert realise(step, RIG.with_(**{"driver.transconductance_A_per_V": 0.15}), Device.load("dac-16")).warnings == ()
+    assert realise(step, weak.with_(**{"driver.transconductance_A_per_V": 0.12}), Device.load("dac-16")).warnings == ()
+
+
+@pytest.mark.parametrize("name", ["thenar", "forearm", "hand-dorsum", "fingertip", "shani2021"])
+def test_the_default_converter_gives_every_shipped_rig_all_that_its_driver_can(name: str) -> None:
+    rig = Rig.load(name)
+    low, high = Device.load("dac-16").interval("output range")
+    gain = rig.driver.transconductance_A_per_V
+    assert (low * gain, high * gain) == pytest.approx((rig.driver.current_min_A, rig.driver.current_max_A))
+    assert within(Device.load("dac-16"), rig).driver == rig.driver
 
 
 def test_a_slew_rate_holds_the_command_back() -> None:
@@ -108,7 +118,7 @@ def test_a_slew_rate_holds_the_command_back() -> None:
         ("ni-analogue-output", 10_000.0, 8.0, 5_000.0),
         ("dc-coupled-audio", 100.0, 8.0, 48_000.0),
         ("rigol-dg1000z", 100.0, 600.0, 25.0),
-        ("pwm-h-bridge-8", 100.0, 8.0, 98.0),
+        ("pwm-h-bridge-10", 100.0, 8.0, 15_625 / 157),
     ],
 )
 def test_rates_are_what_the_device_can(name: str, requested: float, length: float, rate: float) -> None:
@@ -122,7 +132,7 @@ def test_a_slower_device_repeats_nothing_and_loses_no_charge() -> None:
     assert (found.requested_Hz, found.rate_Hz) == (100.0, 7.0)
     charge = float(np.sum(found.delivered.current_A[:-1] * np.diff(found.delivered.time_s)))
     designed = float(np.sum(found.designed.current_A[:-1] * np.diff(found.designed.time_s)))
-    assert charge == pytest.approx(designed, abs=len(played.codes) * played.scale.step * 0.1 / 7.0)
+    assert charge == pytest.approx(designed, abs=len(played.codes) * played.scale.step * 0.15 / 7.0)
 
 
 def test_a_cue_that_no_buffer_holds_is_refused() -> None:
@@ -136,9 +146,9 @@ def test_a_cue_that_no_buffer_holds_is_refused() -> None:
 def test_an_icon_in_amperes_is_sampled_by_means() -> None:
     icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
     found = realise(icon, RIG, Device.load("dac-16"))
-    rest = float(samples(found).command[0]) * 0.1
+    rest = float(samples(found).command[0]) * 0.15
     assert rest == pytest.approx(0.0824, abs=1e-3)
-    assert samples(found).command[1] * 0.1 == pytest.approx(rest + 0.005, abs=1e-4)
+    assert samples(found).command[1] * 0.15 == pytest.approx(rest + 0.005, abs=1e-4)
     assert rms_K(found) < 2e-3
 
 
@@ -162,20 +172,38 @@ class TestBridge:
 
     def test_a_fast_carrier_comes_to_rest_where_the_mean_and_its_square_say(self) -> None:
         still = Icon("still", parse("cue 1\nicon a { hold for 20 s }\n")["a"].statements)
-        found = realise(still, RIG, Device.load("pwm-h-bridge-8"))
-        ripple = 0.0521 * 305 * 1.9 / 490 / 2.6
+        found = realise(still, RIG, Device.load("pwm-h-bridge-10"))
+        ripple = 0.0521 * 305 * 1.5 / 490 / 2.6
         assert np.ptp(found.trace.display_C) < 2 * ripple
 
     def test_the_mean_current_does_not_hold_the_baseline_but_equal_heat_does(self) -> None:
-        bridge = Device.load("pwm-h-bridge-8")
+        bridge = Device.load("pwm-h-bridge-10")
         plain = realise(STEP, RIG, replace(bridge, duty_rule="mean current"))
         best = realise(STEP, RIG, bridge)
-        coarse = 0.5 * 3.8 / 256 * 82  # half a step of duty, and what an ampere does to the resting skin
+        coarse = 0.5 * 3.0 / 2048 * 85  # half a step of duty, and what an ampere does to the resting skin
         assert plain.trace.skin_C[0] - 32.0 > 2.0
         assert abs(best.trace.skin_C[0] - best.designed_trace.skin_C[0]) < coarse
 
+    def test_no_more_than_rounding_is_lost_though_the_hot_plate_is_warmer(self) -> None:
+        found = realise(STEP, RIG, Device.load("pwm-h-bridge-10"))
+        hotter = found.trace.hot_plate_C - found.designed_trace.hot_plate_C
+        assert hotter.max() > 0.1
+        # without it the heat that leaks back is left on the cold plate: tenths of a kelvin of skin
+        plain = duty_of("equal heat", np.array([0.08]), 1.5, RIG.module, np.array([31.0]))
+        more = duty_of("equal heat", np.array([0.08]), 1.5, RIG.module, np.array([31.0]), np.array([1.0]))
+        heat = (more - plain) * 1.5 * (0.0521 * (31.0 + 273.15) - 0.5 * 6.35 * 1.5)
+        assert heat[0] == pytest.approx(1.0 / 6.56)
+        assert rms_K(found) < 0.5 * 3.0 / 2048 * 85
+
+    def test_a_fast_carrier_is_simulated_slower_with_the_same_means(self) -> None:
+        duty = np.array([0.25, -0.5, 1.0, 0.0])
+        fast, slow = switched(duty, 100.0, 15_600.0, 1.5), switched(duty, 100.0, 500.0, 1.5)
+        assert np.array_equal(fast.time_s, slow.time_s)
+        assert len(slow.time_s) == 2 * 5 + 2 * 5 + 5 + 1
+        assert switched(duty, 1000.0, 4000.0, 1.5).time_s[1] == pytest.approx(0.25e-3)  # never below the updates
+
     def test_a_slow_cycle_ripples_the_plate(self) -> None:
-        bridge = Device.load("pwm-h-bridge-8")
+        bridge = Device.load("pwm-h-bridge-10")
         still = Icon("still", parse("cue 1\nicon a { hold for 5 s }\n")["a"].statements)
         fast, slow = (
             np.ptp(realise(still, RIG, changed(bridge, "carrier frequency", value=hertz)).trace.display_C[100:])
@@ -183,7 +211,7 @@ class TestBridge:
         )
         assert fast < 0.05
         # α·T·Ip flows for D of a 250 ms cycle into a plate of 2.6 J/K, the skin taking some of it
-        assert 0.1 < slow < 0.0521 * 305 * 1.9 * 0.25 / 2.6
+        assert 0.1 < slow < 0.0521 * 305 * 1.5 * 0.25 / 2.6
 
 
 class TestSetpoints:
@@ -293,7 +321,7 @@ class TestSetpoints:
         assert len(setpoints_of(self.THERMODE, times, levels, curve=True).segments) <= 999
 
 
-@pytest.mark.parametrize("name", ["dac-16", "pwm-h-bridge-8", "qst-tcs2"])
+@pytest.mark.parametrize("name", ["dac-16", "pwm-h-bridge-10", "qst-tcs2"])
 def test_traces_go_on_at_rest_after_the_end(name: str) -> None:
     found = realise(STEP, WIDE, Device.load(name))
     designed, delivered = traces_until(found, 20.0)

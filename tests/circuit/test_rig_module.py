@@ -6,7 +6,7 @@ import pytest
 
 from thermicon.circuit import Rig, RigError
 from thermicon.circuit.rig.datasheet import Datasheet, at_mean_C
-from thermicon.circuit.rig.modules import load_module, module_names
+from thermicon.circuit.rig.modules import build_of, load_module, module_names
 
 THENAR = Rig.load("thenar")
 TEC = {"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66, "t_hot_C": 25, "q_max_W": 50}
@@ -98,6 +98,47 @@ def test_every_shipped_module_serves_a_rig_by_name(name: str) -> None:
     assert "Qmax reproduced" in rig.module_source
     derived = [text for text in rig.warnings if "no datasheet was seen" in text]
     assert bool(derived) == (name == "TE-127-1.0-2.5")
+
+
+def test_a_module_by_name_brings_its_plates_unless_others_are_set_with_it() -> None:
+    named = THENAR.with_(**{"module.name": "TEC1-12706"})
+    assert (named.module.hot_plate_J_per_K, named.module.cold_plate_J_per_K) == (4.6, 4.6)
+    assert "plates of 4.6 J/K a side (assumed from its footprint)" in named.module_source
+    own = THENAR.with_(**{"module.name": "TEC1-12706", "module.cold_plate_J_per_K": 5.5})
+    assert (own.module.hot_plate_J_per_K, own.module.cold_plate_J_per_K) == (4.6, 5.5)
+    assert "plates of" not in own.module_source
+    assert named.with_(**{"module.datasheet": [TEC]}).module.hot_plate_J_per_K == 4.6
+
+
+def test_plates_on_record_are_alumina_over_the_footprint_with_half_the_legs() -> None:
+    alumina = 3.9 * 0.88 * 0.065  # J/(K·cm²) of a plate of 0.65 mm
+    legs = 2 * 127 * 0.1 * 0.1 * 0.25 * 7.7 * 0.154 / 2 / 9.0  # Bi2Te3 of the shipped rigs' module, half of it a side
+    for name in module_names():
+        build = build_of(name)
+        if build.face_cm2 is None:
+            assert build.plate_J_per_K is None
+            continue
+        assert build.plate_J_per_K == pytest.approx(0.29 * build.face_cm2, rel=0.02)
+        assert alumina + legs < build.plate_J_per_K / build.face_cm2 < 1.2 * (alumina + legs)  # the rest is copper
+
+
+def test_what_stays_from_another_module_is_said() -> None:
+    def said(name: str, rig: Rig = THENAR, **more: object) -> str:
+        return " ".join(rig.with_(**{"module.name": name, **more}).warnings)
+
+    assert said("CP1.0-127-06L") == ""  # of the same size
+    assert "its face is 16 cm², and contact.area_cm2 stays the 9 cm² of the rig; set it to what" in said(
+        "TM-127-1.4-4.0"
+    )
+    assert said("TM-127-1.4-4.0", **{"contact.area_cm2": 12}) == ""
+    wide = said("CP1.0-127-06L", **{"contact.area_cm2": 12})
+    assert "contact.area_cm2 = 12 cm² is more than its face of 9 cm²; set contact.area_cm2 to at most that" in wide
+    small = said("1MD04-003-08")
+    assert "its plates are not on record, so those of the rig stay, 2.6 (hot) and 2.6 J/K (cold); set " in small
+    assert "its face is not on record, and contact.area_cm2 stays the 9 cm²" in small
+    assert "driver.current_limit_A = 1.5 A is above its Imax of 1 A" in small
+    known = {"module.hot_plate_J_per_K": 0.1, "module.cold_plate_J_per_K": 0.1, "contact.area_cm2": 0.2}
+    assert said("1MD04-003-08", **known, **{"driver.current_limit_A": 0.8}) == ""
 
 
 def test_a_name_from_the_command_line_and_a_wrong_one() -> None:

@@ -1,5 +1,7 @@
 """What follows a cue: endings and corners against the single-lane kernel, an independent solver and closed forms."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -15,8 +17,9 @@ from thermicon.circuit import (
     simulate_current,
     steady_state,
 )
-from thermicon.circuit.safety.limits import WATCHED
-from thermicon.circuit.safety.scenarios import ENDINGS
+from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.safety.endings import ENDINGS
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.poweroff import sink_at_end_C
 from thermicon.circuit.solver.pwm import steady_of, switched
@@ -25,7 +28,7 @@ from thermicon.icons import load_library
 THENAR = Rig.load("thenar")
 WHY = {"uncertainty.reason": "a test that needs the rig as given"}
 SURE: dict[str, object] = {
-    **{f"uncertainty.{key}": 0 for key in ("contact_resistance_relative", "ambient_K", "gain_relative")}, **WHY,
+    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"}, **WHY,
 }  # fmt: skip
 OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
 CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
@@ -35,21 +38,28 @@ WITHIN_K = 1e-3
 
 def test_corners_are_those_of_the_box() -> None:
     corners = corners_of(THENAR)
-    assert len(corners) == 9
-    assert str(corners[-1]) == "contact resistance +30 %, ambient +3 K, gain +10 %"
-    assert corners[-1].rig.contact.resistance_m2K_per_W == pytest.approx(1.3 * 5.4e-4)
-    assert corners[-1].rig.ambient.temperature_C == 27.0
-    assert corners[-1].rig.skin.rest_C == 32.0
-    assert corners[-1].rig.blood_C == pytest.approx(THENAR.blood_C - 0.97, abs=0.01)
+    assert len(corners) == 65
+    assert str(corners[-1]) == (
+        "contact resistance +30 %, ambient −3 K, gain +10 %, heat sink +1 K, Seebeck coefficient +5 %, thermal "
+        "conductance +10 %, plates +20 %"
+    )
+    last = corners[-1].rig
+    assert last.contact.resistance_m2K_per_W == pytest.approx(1.3 * 5.4e-4)
+    assert (last.ambient.temperature_C, last.heat_sink.temperature_C, last.skin.rest_C) == (21.0, 41.0, 32.0)
+    assert last.blood_C == pytest.approx(THENAR.blood_C + 0.97, abs=0.01), "a cooler room takes warmer blood to rest"
+    assert last.module.seebeck_V_per_K == pytest.approx(1.05 * 0.0521)
+    assert last.module.thermal_resistance_K_per_W == pytest.approx(6.56 / 1.1)
+    assert last.module.cold_plate_J_per_K == pytest.approx(1.2 * 2.6)
     assert [str(corner) for corner in corners_of(THENAR.with_(**SURE))] == ["the rig as given"]
-    assert len(corners_of(THENAR.with_(**{"uncertainty.ambient_K": 0}, **WHY))) == 5
+    one = THENAR.with_(**SURE, **{"uncertainty.gain_relative": 0.1})
+    assert [str(corner) for corner in corners_of(one)] == ["the rig as given", "gain −10 %", "gain +10 %"]
 
 
 @pytest.mark.parametrize("held", [True, False])
 def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
     drive = Drive(CUE.time_s, CUE.current_A, held)
     found = play_out(drive, THENAR, rest_A=0.05)
-    assert found.values.shape == (4, 3, 9, len(found.time_s))
+    assert found.values.shape == (4, 3, 65, len(found.time_s))
     for c, corner in enumerate(found.corners):
         gain = 1.0 + corner.gain_relative
         start = steady_state(network_of(corner.rig), 0.05 * gain)

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigError, rig_names, simulate, steady_state
+from thermicon.circuit.delivery.refusal import needed_A
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.studies.paper import coldest_display_C
 from thermicon.icons import load_library
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
@@ -143,7 +145,10 @@ def test_what_shani2021_says_of_itself_is_so() -> None:
         f"(film 12 to 8 W/m²K) it would rest at {low:.1f} to {high:.1f} °C",
         f"misses by about {abs(cools.largest_miss_K):.0f} K",
         f"-0.5 A held brings the skin to {hot:.0f} °C here and to {hotter:.0f} °C on the thenar rig",
-        f"the paper's cue on the skin is missed by {abs(both.largest_miss_K):.2f} K",
+        f"at 1 A it is missed by {abs(both.largest_miss_K):.2f} K on the skin",
+        f"takes ±{needed_A(cue, SHANI):g} A here",
+        f"this display settles at {coldest_display_C(SHANI):.1f} °C on resting skin",
+        f"At 1.5 A it would settle at {coldest_display_C(SHANI.with_(**{'driver.current_limit_A': 1.5})):.1f} °C",
     ):
         assert words in said
 
@@ -165,5 +170,5 @@ def test_a_rig_tells_about_itself_in_plain_text(name: str) -> None:
 def test_notes_of_a_rig_file_are_kept() -> None:
     assert THENAR.notes == ()
     assert THENAR.with_(**{"notes": ["measured on a Monday"]}).notes == ("measured on a Monday",)
-    assert len(SHANI.notes) == len(set(SHANI.notes)) == 4
+    assert len(SHANI.notes) == len(set(SHANI.notes)) == 5
     assert list(itertools.chain(*(note.splitlines() for note in SHANI.notes))) == list(SHANI.notes)

@@ -15,7 +15,7 @@ from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.realise import traces_until
 from thermicon.circuit.delivery.spread import open_loop_spread
-from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")

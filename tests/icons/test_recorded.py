@@ -206,10 +206,10 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         from_csv("a\0b.csv")
     path = written(tmp_path, DIP)
 
-    def refuse(self: Path) -> bytes:
+    def refuse(*_: object, **__: object) -> bytes:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "read_bytes", refuse)
+    monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(ValueError, match="E003 unreadable file\n  the system says: Permission denied"):
         from_csv(path)
     monkeypatch.setattr("thermicon.icons.readings.MOST_MB", 1e-5)

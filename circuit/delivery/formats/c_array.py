@@ -14,10 +14,15 @@ from thermicon.circuit.delivery.formats.form import (
     samples_of,
 )
 from thermicon.circuit.delivery.realised import Realised
+from thermicon.icons.cleaning import clean_line
 
 A_LINE = 16
 CENTI_K = 0.01
 SMALLEST, LARGEST = -32768, 32767
+LONGEST_NS, MOST_CODES = 2**32 - 1, 2**32 - 1
+"""What the header's unsigned 32-bit numbers hold: a period of 4.29 s."""
+LEAST_EXACT = 1e-4
+"""A period in whole nanoseconds may play this much too fast or slow; beyond, the icon is another."""
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:
@@ -38,13 +43,15 @@ def write(realised: Realised) -> bytes:
         )
     if scale.lowest < SMALLEST or scale.highest > LARGEST:
         raise FormatError(f"c-array holds int16_t; {device.name} has codes of {scale.lowest} … {scale.highest}")
-    name, codes = identifier(realised.icon.name), samples.codes.tolist()
+    name, codes, period = identifier(realised.icon.name), samples.codes.tolist(), period_ns(samples.rate_Hz)
+    if len(codes) > MOST_CODES:
+        raise FormatError(f"c-array counts at most {MOST_CODES:,} codes; there are {len(codes):,}")
     times = round(scale.step / CENTI_K) if device.driven_by == "temperatures" else 1
     codes, step = [times * code for code in codes], scale.step / times
     rows = [", ".join(map(str, codes[k : k + A_LINE])) for k in range(0, len(codes), A_LINE)]
     unit = {"1": "duty", "°C": "degrees C, the set-point,"}.get(scale.unit, scale.unit)
     lines = [
-        f"/* {name} for {device.name.encode('ascii', 'replace').decode('ascii')}, written by thermicon.",
+        f"/* {name} for {in_comment(device.name)}, written by thermicon.",
         f"   {unit} = {scale.offset!r} + {step!r} * code. Put out one code every period and hold it.",
         "   The first code is the rest, the last marks the end and is the rest again.",
         f"   {PLAYER} plays it. */",
@@ -56,7 +63,7 @@ def write(realised: Realised) -> bytes:
         "#define PROGMEM",
         "#endif",
         "",
-        f"static const uint32_t {name}_period_ns = {round(1e9 / samples.rate_Hz)}UL;",
+        f"static const uint32_t {name}_period_ns = {period}UL;",
         f"static const uint32_t {name}_count = {len(codes)}UL;",
         f"static const float {name}_offset = {c_float(scale.offset)};",
         f"static const float {name}_step = {c_float(step)};",
@@ -68,14 +75,44 @@ def write(realised: Realised) -> bytes:
     return "\n".join(lines).encode("ascii")
 
 
+def period_ns(rate_Hz: float) -> int:
+    """Return the time of one code in whole nanoseconds; FormatError where 32 bits cannot hold it or it is not exact.
+
+    >>> period_ns(100.0)
+    10000000
+    """
+    period = round(1e9 / rate_Hz)
+    if period > LONGEST_NS:
+        raise FormatError(
+            f"c-array holds a period of at most {LONGEST_NS / 1e9:.2f} s (32 bits of nanoseconds); {rate_Hz:g} Hz is "
+            f"one of {1 / rate_Hz:.2f} s: use a device with a higher rate, or another format"
+        )
+    if period < 1 or abs(period * rate_Hz / 1e9 - 1) > LEAST_EXACT:
+        raise FormatError(
+            f"c-array holds a period in whole nanoseconds; {rate_Hz:g} Hz is one of {1e9 / rate_Hz:.4g} ns, which it "
+            f"would round by more than {LEAST_EXACT:.2%}: use a device with a lower rate, or another format"
+        )
+    return period
+
+
+def in_comment(text: str) -> str:
+    """Return a text that stands in a C comment and cannot end it, nor begin a line, an escape or a trigraph.
+
+    >>> in_comment("d */ #error"), in_comment("a\\b??/c")
+    ('d *_ #error', 'a_b__/c')
+    """
+    plain = "".join(char if " " <= char <= "~" else "?" for char in clean_line(text))
+    return plain.replace("*/", "*_").replace("/*", "_*").replace("\\", "_").replace("??", "__")
+
+
 def identifier(name: str) -> str:
-    """Return a name that C takes.
+    """Return a name that C takes, for its file too: one called stdint would stand in for the header of that name.
 
     >>> identifier("cooling-step")
     'cooling_step'
     """
     plain = re.sub(r"[^A-Za-z0-9_]", "_", name)
-    return plain if re.match(r"[A-Za-z]", plain) else f"icon_{plain}"
+    return plain if re.match(r"[A-Za-z]", plain) and plain.casefold() != "stdint" else f"icon_{plain}"
 
 
 FORMAT = Format(

@@ -21,6 +21,13 @@ PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)
 
 
+LONGEST_NAME = 200
+"""Bytes of a file's name: disks take 255, and drafts, sidecars and suffixes need some of them."""
+DEVICES_OF_WINDOWS = frozenset(
+    {"con", "prn", "aux", "nul", *(f"{port}{n}" for port in ("com", "lpt") for n in range(10))}
+)
+
+
 class FormatError(InputError):
     """A drive that cannot be written in a format; the text says why and what to use instead."""
 
@@ -74,7 +81,7 @@ class Format:
     def file_name(self, realised: Realised) -> str:
         """Name of the file of a drive."""
         suffix = self.suffix if self.suffix_by is None else self.suffix_by(realised)
-        return self.stem(realised.icon.name) + suffix
+        return check_name(self.stem(realised.icon.name) + suffix)
 
     def check(self, device: Device) -> None:
         """Raise FormatError where a device plays something else than this format holds."""
@@ -83,6 +90,22 @@ class Format:
                 f"{self.name} is for devices driven by {' or '.join(self.takes)}; {device.name} is driven by "
                 f"{device.driven_by}"
             )
+
+
+def check_name(name: str) -> str:
+    """Return a file's name that every disk takes; FormatError for one that is too long or belongs to Windows.
+
+    >>> check_name("cooling-step.csv")
+    'cooling-step.csv'
+    """
+    if len(name.encode("utf-8")) > LONGEST_NAME:
+        raise FormatError(
+            f"{name[:40]}…: a file's name has at most {LONGEST_NAME} bytes, this one {len(name.encode('utf-8'))}; give "
+            f"the icon a shorter name"
+        )
+    if name.partition(".")[0].casefold() in DEVICES_OF_WINDOWS:
+        raise FormatError(f"{name}: Windows keeps the name {name.partition('.')[0]} for a device; rename the icon")
+    return name
 
 
 def samples_of(realised: Realised) -> Samples:

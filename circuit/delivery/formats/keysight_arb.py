@@ -6,6 +6,8 @@ from thermicon.circuit.delivery.formats.form import Column, Format, FormatError,
 from thermicon.circuit.delivery.realised import Realised
 
 FULL = 32767
+DECIMALS, MOST_OFF = 6, 1e-4
+"""Decimals of the header's numbers, and the share by which these may change the sample rate."""
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:
@@ -27,9 +29,9 @@ def write(realised: Realised) -> bytes:
         "File Format:1.10",
         "Checksum:0",
         "Channel Count:1",
-        f"Sample Rate:{samples.rate_Hz:.6f}",
-        f"High Level:{high:.6f}",
-        f"Low Level:{low:.6f}",
+        f"Sample Rate:{in_header('sample rate', samples.rate_Hz, 'Hz', MOST_OFF * samples.rate_Hz)}",
+        f"High Level:{in_header('high level', high, 'V', scale.step)}",
+        f"Low Level:{in_header('low level', low, 'V', scale.step)}",
         "Marker Point:1",  # sync changes with the first sample of the icon
         'Data Type:"short"',
         'Filter:"OFF"',
@@ -37,6 +39,21 @@ def write(realised: Realised) -> bytes:
         "Data:",
     ]
     return ("\r\n".join([*header, *map(str, samples.codes.tolist())]) + "\r\n").encode("ascii")
+
+
+def in_header(what: str, value: float, unit: str, most_off: float) -> str:
+    """Return a number of the header, which has six decimals; FormatError where these are off by more than `most_off`.
+
+    >>> in_header("high level", 1.0, "V", 1e-5)
+    '1.000000'
+    """
+    text = f"{value:.{DECIMALS}f}"
+    if abs(float(text) - value) > most_off:
+        raise FormatError(
+            f"keysight-arb writes its {what} with {DECIMALS} decimals; {value:.6g} {unit} would be {text} {unit}: "
+            f"use another format, or a device with a wider range and a higher rate"
+        )
+    return text
 
 
 FORMAT = Format(

@@ -11,6 +11,8 @@ from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.icons import Corners
 
 ZONES = (1, 2, 3, 4, 5)
+MOST_OFF = 0.01
+"""Share by which three decimals may change a rate or a duration."""
 TRIGGER_CODE, TRIGGER_S = 255, 0.3
 """Trigger out with the stimulation, as pytcsii has it."""
 
@@ -84,10 +86,25 @@ def _lines(stimulus: Stimulus) -> Iterator[str]:
     yield from ("[step3_stimulation]", f"baseline={stimulus.baseline_C:.3f}")
     yield from (f"triggerVal={TRIGGER_CODE}", f"triggerDur={TRIGGER_S:.3f}", "")
     for zone in ZONES:
-        yield from (f"[step3_zone{zone}]", "enabled=1", f"duration={stimulus.duration_s:.3f}", "wait=0.000")
-        yield from (f"temperature={stimulus.target_C:.3f}", f"speed={stimulus.rise_K_per_s:.3f}")
-        yield f"return={stimulus.return_K_per_s:.3f}"
+        yield from (
+            f"[step3_zone{zone}]",
+            "enabled=1",
+            f"duration={_three('duration', stimulus.duration_s, 's')}",
+            "wait=0.000",
+        )
+        yield from (f"temperature={stimulus.target_C:.3f}", f"speed={_three('speed', stimulus.rise_K_per_s, 'K/s')}")
+        yield f"return={_three('return', stimulus.return_K_per_s, 'K/s')}"
         yield from ("pointToPointEnabled=0", "nbrPts=1", "sec1=1.000", f"deg1={stimulus.baseline_C:.3f}", "")
+
+
+def _three(what: str, value: float, unit: str) -> str:
+    """A number with the three decimals of the file; FormatError where these would say another number."""
+    if abs(round(value, 3) - value) > MOST_OFF * abs(value):
+        raise FormatError(
+            f"tcs2-protocol-ini writes its {what} with three decimals; {value:.3g} {unit} would become "
+            f"{value:.3f} {unit}: use tcs2-serial"
+        )
+    return f"{value:.3f}"
 
 
 FORMAT = Format(

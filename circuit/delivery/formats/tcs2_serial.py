@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, setpoints_in
+from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
 from thermicon.circuit.delivery.realised import Realised
+from thermicon.circuit.delivery.setpoints import Setpoints
 
 ZONES = "11111"
 ABOVE_K = 1.0
 """The greatest temperature of a stimulation (Om) is set this far above the highest set-point."""
+
+
+TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
+"""What the commands count in: segments last ticks of 10 ms, levels are tenths of a degree, each in three digits."""
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:
@@ -24,6 +29,7 @@ def columns(realised: Realised) -> tuple[Column, ...]:
 def write(realised: Realised) -> bytes:
     """Return the commands; the last, L, starts the stimulation."""
     setpoints = setpoints_in(realised)
+    _check(setpoints, realised.device.name)
     greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
     segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
     commands = [
@@ -34,6 +40,21 @@ def write(realised: Realised) -> bytes:
         "L",
     ]
     return ("\n".join(commands) + "\n").encode("ascii")
+
+
+def _check(setpoints: Setpoints, device: str) -> None:
+    """Raise FormatError where the commands would say something else than the set-points."""
+    if abs(setpoints.tick_s - TICK_S) > 1e-9 or abs(setpoints.step_K - STEP_K) > 1e-9:
+        raise FormatError(
+            f"tcs2-serial counts ticks of {TICK_S * 1e3:g} ms and steps of {STEP_K:g} K; {device} has "
+            f"{setpoints.tick_s * 1e3:g} ms and {setpoints.step_K:g} K: use qst-tcs2"
+        )
+    numbers = [setpoints.baseline, len(setpoints.segments), *(n for segment in setpoints.segments for n in segment)]
+    if wrong := [number for number in numbers if not 0 <= number <= LARGEST]:
+        raise FormatError(
+            f"tcs2-serial writes numbers of three digits, 0 to {LARGEST}; {wrong[0]} is needed for {device}: use "
+            f"levels from 0 to {LARGEST * STEP_K:g} °C, and segments and ticks up to {LARGEST}"
+        )
 
 
 FORMAT = Format(

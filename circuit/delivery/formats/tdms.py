@@ -18,6 +18,7 @@ from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage, volts_o
 from thermicon.circuit.delivery.realised import Realised
 
 GROUP = "thermicon"
+LARGEST = 2**31 - 1
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:
@@ -39,6 +40,11 @@ def write(realised: Realised) -> bytes:
     except ImportError:
         raise FormatError('tdms needs npTDMS, which is not installed: pip install "thermicon[hardware]"') from None
     samples, command = samples_of(realised), command_column(realised)
+    if samples.scale.highest > LARGEST or samples.scale.lowest < -LARGEST - 1:
+        raise FormatError(
+            f"tdms: codes are written in 32 bits, up to {LARGEST:,}; {realised.device.name} has "
+            f"{samples.scale.lowest:,} … {samples.scale.highest:,}: use csv"
+        )
     clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
     root = RootObject({"name": realised.icon.name, "author": f"thermicon {version('thermicon')}"})
     group = GroupObject(GROUP, {"device": realised.device.name, "rig": realised.rig.name})

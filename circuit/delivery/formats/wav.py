@@ -16,6 +16,9 @@ from thermicon.circuit.delivery.realised import Realised
 
 FULL = 32768
 
+MOST_FRAMES = 200_000_000
+"""Frames of one file: 400 MB, where the format's own 32 bits end at 4.3 GB."""
+
 FRAME_RATES_HZ = (48_000, 44_100, 96_000, 88_200, 192_000, 176_400, 32_000, 24_000, 22_050, 16_000, 11_025, 8_000)
 """Frames a second that sound interfaces play, the likeliest first."""
 
@@ -61,6 +64,11 @@ def write(realised: Realised) -> bytes:
             f"held level; use dc-coupled-audio, or another format"
         )
     frame_rate, each = frames(realised)
+    if (count := len(samples.codes) * each) > MOST_FRAMES:
+        raise FormatError(
+            f"wav: {count:,} frames at {frame_rate:,} a second; at most {MOST_FRAMES:,} are written, which is over an "
+            f"hour: shorten the icon or its tail"
+        )
     full = -samples.scale.lowest * samples.scale.step
     pcm = np.clip(np.rint(samples.command / full * FULL), -FULL, FULL - 1).astype("<i2")
     file = io.BytesIO()

@@ -1,0 +1,203 @@
+"""Compiled functions and where their machine code is kept: in a folder of this user alone, by what it was made from.
+
+numba's own cache lies beside the sources, knows nothing of a change in another file, and is a pickle: whoever can write
+it can run code as whoever reads it, and a damaged one ends every run. Here a file is named after everything that made
+it, begins with a hash of the rest, and is read only from a private folder. What cannot be read is compiled anew.
+"""
+
+# mypy: disable-error-code="no-untyped-call,misc,assignment,import-untyped"
+# numba's classes have no types.
+from __future__ import annotations
+
+import hashlib
+import logging
+import multiprocessing
+import pickle
+import platform
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core.caching import FunctionCache
+from numba.core.dispatcher import Dispatcher
+from numba.core.serialize import dumps
+
+from thermicon.circuit.userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+
+HASH_BYTES = 32
+STALE_S = 90 * 24 * 3600.0
+"""Machine code of versions that nobody has run for so long is removed."""
+
+Kernel = Callable[..., Any]
+
+
+def kernel(**options: Any) -> Callable[[Kernel], Any]:
+    """Return a decorator that compiles a function with options of `numba.njit`, and keeps its machine code safely.
+
+    >>> @kernel(nogil=True)
+    ... def twice(x):
+    ...     return 2 * x
+    >>> twice(21)
+    42
+    """
+
+    def decorate(function: Kernel) -> Any:
+        made = numba.njit(**options)(function)
+        made._cache = _KernelCache(function, repr(sorted(options.items(), key=str)))
+        return made
+
+    return decorate
+
+
+class _KernelCache(FunctionCache):
+    """numba's cache of one function, with another store and without its way of looking for a place."""
+
+    def __init__(self, function: Kernel, options: str) -> None:
+        self._name, self._py_func, self._options = repr(function), function, options
+        self._impl = _Reduced()
+        self._cache_file: Any = _Store(function, options)
+        self._cache_path = ""
+        self.enable()
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the compiled function for a signature, or None: whatever is wrong with it, to compile is the cure."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a compiled function; without a place for it, later runs compile it again."""
+        with suppress(Exception):
+            super().save_overload(sig, data)
+
+
+class _Reduced:
+    """What `FunctionCache` needs to know: how a compiled function becomes plain data, and comes back."""
+
+    class _Nowhere:
+        def ensure_cache_path(self) -> None:
+            """The store looks after its folder itself."""
+
+    locator = _Nowhere()
+
+    def reduce(self, compiled: Any) -> Any:
+        return compiled._reduce()
+
+    def rebuild(self, target_context: Any, payload: Any) -> Any:
+        from numba.core.compiler import CompileResult
+
+        return CompileResult._rebuild(target_context, *payload)
+
+    def check_cachable(self, compiled: Any) -> bool:
+        return not compiled.library.has_dynamic_globals and all(part.can_cache for part in compiled.lifted)
+
+
+class _Store:
+    """Files of one function, one for each signature and processor."""
+
+    def __init__(self, function: Kernel, options: str) -> None:
+        self.function, self.options = function, options
+
+    def load(self, key: Any) -> Any:
+        """Return what was saved under a key; None where nothing was, or where it is not as it was written."""
+        if (folder := kept_in()) is None or (data := read_private(self._path(folder, key))) is None:
+            return None
+        if hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
+            return None
+        return pickle.loads(data[HASH_BYTES:])
+
+    def save(self, key: Any, data: Any) -> None:
+        """Write plain data under a key."""
+        if (folder := kept_in()) is None:
+            return
+        content = dumps(data)
+        write_private(self._path(folder, key), hashlib.sha256(content).digest() + content)
+
+    def flush(self) -> None:
+        """Nothing is held back."""
+
+    def _path(self, folder: Path, key: Any) -> Path:
+        made_of = (source_digest(self.function), self.function.__module__, self.options, repr(key))
+        name = hashlib.sha256("\n".join(made_of).encode("utf-8")).hexdigest()
+        return folder / f"{self.function.__name__}-{name[:40]}"
+
+
+@cache
+def kept_in() -> Path | None:
+    """The folder of compiled code; None, and one line on stderr, where there is none that is safe to read from."""
+    tools = f"numba-{numba.__version__}-llvmlite-{llvmlite.__version__}-{sys.implementation.cache_tag}"
+    try:
+        folder = private_folder(cache_folder() / "compiled" / f"{tools}-{platform.machine()}")
+    except NotPrivate as problem:
+        if multiprocessing.parent_process() is None:
+            logging.getLogger("thermicon").warning(
+                "compiled code is not kept, so that every run compiles it anew: %s", problem
+            )
+        return None
+    _forget_stale(folder.parent)
+    return folder
+
+
+def _forget_stale(folder: Path) -> None:
+    with suppress(OSError):
+        for entry in folder.glob("*/*"):
+            if time.time() - max(entry.stat().st_atime, entry.stat().st_mtime) > STALE_S:
+                entry.unlink(missing_ok=True)
+
+
+def source_digest(function: Kernel) -> str:
+    """Hash of all that a function is compiled from: the files of it and of what it calls, and the constants it uses."""
+    files: dict[str, bytes] = {}
+    constants: list[str] = []
+    open_, seen = [function], {function}
+    while open_:
+        current = open_.pop()
+        path = current.__code__.co_filename
+        if path not in files:
+            files[path] = _file_digest(path) or current.__code__.co_code
+        for name, value in _used(current):
+            called = value.py_func if isinstance(value, Dispatcher) else value
+            if isinstance(called, FunctionType):
+                if called not in seen:
+                    seen.add(called)
+                    open_.append(called)
+            elif isinstance(value, np.ndarray):
+                constants.append(f"{name}={value.dtype}{value.shape}{value.tobytes()!r}")
+            elif not isinstance(value, ModuleType):
+                constants.append(f"{name}={value!r}")
+    digest = hashlib.sha256()
+    for path in sorted(files):
+        digest.update(files[path])
+    digest.update("\n".join(sorted(constants)).encode("utf-8"))
+    return digest.hexdigest()
+
+
+@cache
+def _file_digest(path: str) -> bytes | None:
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).digest()
+    except OSError:
+        return None  # typed at a prompt
+
+
+def _used(function: Any) -> Iterator[tuple[str, Any]]:
+    """Names that a function takes from its module or from around it, with their values."""
+    for cell_name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
+        yield cell_name, cell.cell_contents
+    for name in sorted(_names(function.__code__)):
+        if name in function.__globals__:
+            yield name, function.__globals__[name]
+
+
+def _names(code: CodeType) -> set[str]:
+    inner = [_names(constant) for constant in code.co_consts if isinstance(constant, CodeType)]
+    return {*code.co_names, *(name for names in inner for name in names)}

@@ -1,0 +1,56 @@
+"""Which program computed something: its version, and a digest of the source and data files that decide the numbers."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+DRIVES = ("thermicon.icons", "thermicon.circuit")
+"""Packages that decide the bytes of a drive and the verdict on it."""
+
+SUFFIXES = (".py", ".toml", ".csv", ".lark")
+
+
+@lru_cache(maxsize=4)
+def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
+    """Return the SHA-256 of the version and of every source and data file of some packages.
+
+    >>> len(code_digest()), code_digest() == code_digest(("thermicon.icons",))
+    (64, False)
+    """
+    digest = hashlib.sha256(own_version().encode("utf-8"))
+    for package in packages:
+        for name, content in _sources(files(package), ""):
+            digest.update(name.encode("utf-8") + content)
+    return digest.hexdigest()
+
+
+def this_program() -> dict[str, str]:
+    """Return what a sidecar says of the program: version, and the digest of the code that computes drives.
+
+    >>> sorted(this_program())
+    ['code_sha256', 'version']
+    """
+    return {"version": own_version(), "code_sha256": code_digest()}
+
+
+def own_version() -> str:
+    """Version of the package as installed."""
+    try:
+        return version("thermicon")
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def _sources(folder: Traversable, within: str) -> Iterator[tuple[str, bytes]]:
+    """Name below a package and content of every file that decides what is computed, rooms and data included."""
+    for entry in sorted(folder.iterdir(), key=lambda one: one.name):
+        name = f"{within}/{entry.name}"
+        if entry.is_dir():
+            yield from _sources(entry, name)
+        elif entry.name.endswith(SUFFIXES):
+            yield name, entry.read_bytes()

@@ -1,0 +1,130 @@
+"""A rig a little beside its file: one corner of what is not known exactly, not bound by what a file may say."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+from typing import Any
+
+from thermicon.circuit.inputs import signed
+from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
+from thermicon.circuit.rig.modules import PARAMETERS
+from thermicon.circuit.rig.parts import HeatSink
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+
+
+def perturbed(
+    rig: Rig,
+    *,
+    contact_resistance_relative: float = 0.0,
+    ambient_K: float = 0.0,
+    heat_sink_K: float = 0.0,
+    seebeck_relative: float = 0.0,
+    conductance_relative: float = 0.0,
+    plates_relative: float = 0.0,
+) -> Rig:
+    """Return a rig whose true numbers are a little beside those of its file.
+
+    Nobody wrote these numbers, so the bounds of a rig file do not hold for them; what is physically impossible does not
+    pass. Blood and deep tissue are solved again where the rig solves them, since the bare skin's rest stays as given.
+    The module's parameters stay those of the heat sink as given, also where they depend on its temperature.
+
+    Shares: `contact_resistance_relative` (−0.3 is 30 % less), `seebeck_relative` and `conductance_relative` of the
+    module (its thermal resistance goes the other way), `plates_relative` of both plates' heat capacities. In K:
+    `ambient_K` of the room air, `heat_sink_K` of the heat sink, or of the set point of its controller.
+    Raises RigError where a share leaves nothing (−1 or less), a temperature falls to absolute zero or a factor is not
+    finite.
+
+    >>> rig = Rig.load("thenar")
+    >>> there = perturbed(rig, contact_resistance_relative=-0.3, ambient_K=3.0)
+    >>> round(there.contact.resistance_m2K_per_W, 7), there.ambient.temperature_C, round(there.deep_C, 3)
+    (0.000378, 27.0, 33.609)
+    >>> round(perturbed(rig, conductance_relative=0.25).module.thermal_resistance_K_per_W, 3)
+    5.248
+
+    """
+    shares = {
+        "contact resistance": contact_resistance_relative,
+        "Seebeck coefficient": seebeck_relative,
+        "thermal conductance": conductance_relative,
+        "plates": plates_relative,
+    }
+    shifts = {"ambient": (ambient_K, rig.ambient.temperature_C)}
+    if heat_sink_K or rig.pump is not None:
+        shifts["heat sink"] = (heat_sink_K, rig.heat_sink.temperature_C)
+    _check(rig, shares, shifts)
+    if not any((*shares.values(), ambient_K, heat_sink_K)):
+        return rig
+    document, changed = json.loads(rig.document), rig
+    if contact_resistance_relative:
+        resistance = rig.contact.resistance_m2K_per_W * (1.0 + contact_resistance_relative)
+        document["contact"]["resistance_m2K_per_W"] = resistance
+        changed = replace(changed, contact=replace(rig.contact, resistance_m2K_per_W=resistance))
+    if ambient_K:
+        ambient = replace(rig.ambient, temperature_C=rig.ambient.temperature_C + ambient_K)
+        document["ambient"]["temperature_C"] = ambient.temperature_C
+        changed = replace(changed, ambient=ambient, deep_C=_deep_C(rig, ambient.temperature_C))
+    if heat_sink_K:
+        sink = replace(rig.heat_sink, temperature_C=rig.heat_sink.temperature_C + heat_sink_K)
+        document["heat_sink"]["temperature_C"] = sink.temperature_C
+        changed = _pumped(changed, heat_sink=sink)
+    if seebeck_relative or conductance_relative or plates_relative:
+        module = _module(rig, seebeck_relative, conductance_relative, plates_relative)
+        document["module"] = _module_table(module)
+        changed = _pumped(changed, module=module)
+    return replace(changed, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
+
+
+def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
+    """The rig with another heat sink or module."""
+    assert rig.pump is not None
+    return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
+
+
+def _deep_C(rig: Rig, ambient_C: float) -> float:
+    """Blood and deep tissue in °C in air of another temperature: as given, or solved so that bare skin rests."""
+    if rig.skin.deep_C is not None:
+        return rig.skin.deep_C
+    loss = rig.ambient.film_W_per_m2K * (rig.skin.rest_C - ambient_C)
+    return float(rig.skin.rest_C - rig.column.steady_drop_K(-loss))
+
+
+def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Peltier:
+    given = rig.module
+    try:
+        return Peltier(
+            given.seebeck_V_per_K * (1.0 + seebeck),
+            given.resistance_ohm,
+            given.thermal_resistance_K_per_W / (1.0 + conductance),
+            given.hot_plate_J_per_K * (1.0 + plates),
+            given.cold_plate_J_per_K * (1.0 + plates),
+        )
+    except ValueError as problem:  # a share so large that nothing finite is left
+        raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
+
+
+def _module_table(module: Peltier) -> dict[str, Any]:
+    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K")}
+
+
+def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:
+    """Raise RigError with every impossible factor, a line each."""
+    faults = []
+    for name, share in shares.items():
+        if not (math.isfinite(share) and share > -1.0):
+            faults.append(f"{name} {signed(100 * share)} %: must be finite and leave more than nothing, above −100 %")
+    for name, (shift, given) in shifts.items():
+        if not (math.isfinite(shift) and given + shift > -ZERO_C_IN_K):
+            faults.append(
+                f"{name} {signed(shift)} K from {signed(given)} °C: must be finite and stay above absolute zero, "
+                f"{signed(-ZERO_C_IN_K)} °C"
+            )
+    if not faults and (deep := _deep_C(rig, sum(shifts["ambient"]))) <= -ZERO_C_IN_K:
+        faults.append(
+            f"ambient {signed(shifts['ambient'][0])} K: blood and deep tissue would have to be at {signed(deep)} °C, "
+            f"below absolute zero, for bare skin to rest at {signed(rig.skin.rest_C)} °C"
+        )
+    if faults:
+        raise RigError("\n".join(f"rig {rig.name}, one corner of it: {fault}; use less" for fault in faults))

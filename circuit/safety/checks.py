@@ -1,0 +1,80 @@
+"""What a rule of safety says of runs: how near they come, when, where; and what many of them come to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+
+from thermicon.circuit.inputs import signed
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One rule checked against runs: how near they get or how far beyond, when and where, and who set the limit.
+
+    `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
+    first passed, None where it never is. `scenario` tells in which of many runs.
+    """
+
+    quantity: str
+    severity: str
+    value: float
+    limit: float
+    unit: str
+    time_s: float
+    since_s: float | None
+    source: str
+    note: str = ""
+    upper: bool = True
+    scenario: str = ""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the run stays within the limit."""
+        return self.since_s is None
+
+    def __str__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        where = f", with {self.scenario}" if self.scenario else ""
+        reached = f"{self.quantity} reaches {signed(self.value, '.4g')}{unit} at {self.time_s:.2f} s{where}"
+        side, limit = "above" if self.upper else "below", f"{signed(self.limit, '.4g')}{unit}"
+        if self.since_s is None:
+            return f"{reached}, not {side} the {self.severity} limit of {limit}{self.note} ({self.source})"
+        return (
+            f"{reached}, {side} the {self.severity} limit of {limit}{self.note} "
+            f"from {self.since_s:.2f} s on ({self.source})"
+        )
+
+
+def findings_of(checks: Sequence[Check]) -> tuple[Check, ...]:
+    """Of the rules that are passed, one for each quantity and side, the hard ones first.
+
+    What passes a hard limit has passed the soft one.
+    """
+    worst: dict[tuple[str, bool], Check] = {}
+    broken = [check for check in checks if not check.passed]
+    for check in sorted(broken, key=lambda one: (one.severity != "hard", one.since_s)):
+        worst.setdefault((check.quantity, check.upper), check)
+    return tuple(worst.values())
+
+
+def colour_of(findings: Sequence[Check]) -> str:
+    """Green without findings, red with a hard one, otherwise amber."""
+    if any(finding.severity == "hard" for finding in findings):
+        return "red"
+    return "amber" if findings else "green"
+
+
+def as_dict(check: Check) -> dict[str, object]:
+    """A check as a sidecar holds it."""
+    return {**asdict(check), "passed": check.passed, "text": str(check)}
+
+
+def beyond(check: Check) -> float:
+    """How far a check goes beyond its limit, in its unit; negative where it stays inside."""
+    return check.value - check.limit if check.upper else check.limit - check.value
+
+
+def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
+    """Of several groups of checks by the same rules, the one of each rule that goes farthest; the first of equals."""
+    return tuple(max(same, key=beyond) for same in zip(*groups, strict=True))

@@ -1,0 +1,105 @@
+"""The corners of what is not known of a rig: worlds that it may be in, in each of which a drive must be safe.
+
+Contact, gain, Seebeck coefficient, thermal conductance and plates stand at either end of their uncertainty, each with
+each. Heat sink and ambient move together: every temperature rises with the heat sink's and with that of deep tissue,
+so that the extremes lie where both are warm or both are cold. The ambient moves deep tissue as the bare skin's rest is
+given: where that is solved for, a warmer room means cooler blood.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+
+from thermicon.circuit.inputs import signed
+from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.rig import Rig
+
+_WORDS = {
+    "contact_relative": ("contact", 100.0, "%"),
+    "ambient_K": ("ambient", 1.0, "K"),
+    "gain_relative": ("gain", 100.0, "%"),
+    "heat_sink_K": ("heat sink", 1.0, "K"),
+    "seebeck_relative": ("Seebeck", 100.0, "%"),
+    "conductance_relative": ("conductance", 100.0, "%"),
+    "plates_relative": ("plates", 100.0, "%"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Corner:
+    """A world that the rig may be in: shares and K beside the rig's file, and the rig there.
+
+    The gain of the current source is not part of `rig`: it scales the current.
+    """
+
+    contact_relative: float
+    ambient_K: float
+    gain_relative: float
+    heat_sink_K: float
+    seebeck_relative: float
+    conductance_relative: float
+    plates_relative: float
+    rig: Rig
+
+    def __str__(self) -> str:
+        parts = ((getattr(self, field), *words) for field, words in _WORDS.items())
+        told = [f"{name} {signed(scale * value, '+g')} {unit}" for value, name, scale, unit in parts if value]
+        return ", ".join(told) or "the rig as given"
+
+    @property
+    def nominal(self) -> bool:
+        """Whether this is the rig as given."""
+        return not any(getattr(self, field.name) for field in fields(self) if field.name != "rig")
+
+
+@lru_cache(maxsize=64)
+def corners_of(rig: Rig) -> tuple[Corner, ...]:
+    """Return the rig as given and then the corners of its uncertainty; fewer than 64 where an uncertainty is 0.
+
+    >>> [str(corner) for corner in corners_of(Rig.load("thenar"))][:2]  # doctest: +NORMALIZE_WHITESPACE
+    ['the rig as given', 'contact −30 %, ambient +3 K, gain −10 %, heat sink −1 K, Seebeck −5 %,
+      conductance −10 %, plates −20 %']
+    """
+    unsure = rig.uncertainty
+    spans = [
+        (-most, most) if most else (0.0,)
+        for most in (
+            unsure.contact_resistance_relative,
+            unsure.gain_relative,
+            unsure.seebeck_relative,
+            unsure.conductance_relative,
+            unsure.plates_relative,
+        )
+    ]
+    found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
+        surroundings(rig), itertools.product(*spans)
+    ):
+        corner = Corner(contact, around[0], gain, around[1], seebeck, conductance, plates, rig)
+        if not corner.nominal:
+            found.append(replace(corner, rig=_there(corner)))
+    return tuple(found)
+
+
+def surroundings(rig: Rig) -> tuple[tuple[float, float], ...]:
+    """Ambient and heat sink in K beside the rig's, at their coldest and their warmest for the skin."""
+    ambient, sink = rig.uncertainty.ambient_K, rig.uncertainty.heat_sink_K
+    if not ambient and not sink:
+        return ((0.0, 0.0),)
+    warmer = perturbed(rig, ambient_K=ambient).deep_C >= perturbed(rig, ambient_K=-ambient).deep_C
+    hot = ambient if warmer else -ambient
+    return (-hot, -sink), (hot, sink)
+
+
+def _there(corner: Corner) -> Rig:
+    return perturbed(
+        corner.rig,
+        contact_resistance_relative=corner.contact_relative,
+        ambient_K=corner.ambient_K,
+        heat_sink_K=corner.heat_sink_K,
+        seebeck_relative=corner.seebeck_relative,
+        conductance_relative=corner.conductance_relative,
+        plates_relative=corner.plates_relative,
+    )

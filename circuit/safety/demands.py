@@ -1,0 +1,71 @@
+"""What a drive cannot make safe by itself, and so demands of the hardware, in numbers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class CutOff:
+    """A cut-off on the measured temperature of the display: °C below and above which all power goes off.
+
+    `react_within_s`: how long that may take after the display has passed it, with the driver at its limit.
+    """
+
+    low: float
+    high: float
+    react_within_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class PolarityCheck:
+    """A check of the wiring before the first play: a small current for a short time must cool the display.
+
+    `needed`: with the poles swapped, the drive itself would pass a hard limit. `swapped_skin_C`: where it would take
+    the skin.
+    """
+
+    needed: bool
+    test_current_A: float
+    test_s: float
+    display_change_at_least_K: float
+    swapped_skin_C: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class SingleFault:
+    """One thing that goes wrong: what, the verdict on the drive with it, and what prevents harm."""
+
+    fault: str
+    colour: str
+    text: str
+    prevented_by: str
+
+
+@dataclass(frozen=True, slots=True)
+class Demands:
+    """What the hardware must prevent so that one drive stays safe with a single fault.
+
+    `watchdog_s`: a current that hangs must be cut after this; 60 where a minute is safe, 0 where no time is.
+    `rest_before_first_play_s`: the rest must be held so long on a display that was without power; None: 10 min do not
+    suffice. `zero_current_at_most_s`: after which contact must end, since the dose adds up.
+    """
+
+    watchdog_s: float
+    cut_off_display_C: CutOff
+    polarity_check: PolarityCheck | None
+    rest_before_first_play_s: float | None
+    pause_at_least_s: float | None
+    zero_current_at_most_s: float | None
+    faults: tuple[SingleFault, ...]
+
+    def __repr__(self) -> str:
+        cut = self.cut_off_display_C
+        return (
+            f"Demands(watchdog {self.watchdog_s:g} s, cut-off {cut.low:g} … {cut.high:g} °C within "
+            f"{cut.react_within_s:g} s, {len(self.faults)} single faults)"
+        )
+
+    def to_dict(self) -> dict[str, object]:
+        """All of it, as a sidecar holds it under `hardware_must_prevent`."""
+        return asdict(self)

@@ -1,0 +1,107 @@
+"""What follows a drive: its last value held, zero current, power off; and zero current without limit of time.
+
+*Last value held*: the driver goes on with its last current, or its last duty. *Zero current*: the driver gives none and
+the heat sink works on; skin drifts to where the hot plate takes it, not to its baseline. *Power off*: no current, with
+the terminals open (the Seebeck voltage is free), and what holds the heat sink is off too. A sink with a capacity
+and a controller of its own keeps its heat, loses its power and drifts with the hot plate. An ideal sink has no capacity
+in the rig file: it is taken as heavy enough not to move within a minute, which makes power off the same as zero
+current; later it drifts towards the room, which is no hazard.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
+from thermicon.circuit.solver.batch_inputs import Bank, Intervals, State, run_on
+from thermicon.circuit.solver.network import Network
+from thermicon.circuit.solver.poweroff import SINK_C, SINK_LIMIT_W
+from thermicon.circuit.solver.steady import steady_state
+
+ENDING_S = 60.0
+ENDINGS = ("last value held", "zero current", "power off")
+IN_THE_END = "zero current in the end"
+
+LATER_S = 600.0
+"""Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
+
+ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
+"""Times of the rows of an ending: fine after the jump of the current, coarse when all moves slowly."""
+
+LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
+
+
+def follow_endings(
+    ensemble: Ensemble, state: State, last_A: float, end_s: float, tallies: dict[str, Tally], sums: bool = True
+) -> dict[str, Array]:
+    """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) an ending.
+
+    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's; `sums`
+    whether doses count.
+    """
+    after = {}
+    for name, current in zip(ENDINGS, (last_A, 0.0, 0.0), strict=True):
+        if name == ENDINGS[2] and not ensemble.ideal:
+            values = without_power(ensemble, state, ROWS_S)[0]
+        else:
+            values, _ = ensemble.hold(current, state, ROWS_S)
+        tallies[name].add(end_s + ROWS_S, values, sums=sums)
+        after[name] = values[WATCHED.index("skin_C"), :, -1]
+    if ensemble.ideal:
+        later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))
+        tallies[ENDINGS[1]].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
+    return after
+
+
+def zero_current_C(ensemble: Ensemble) -> Array:
+    """WATCHED (4, corners) that zero current leads to without limit of time."""
+    found = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
+    for lane, network in enumerate(ensemble.networks):
+        state = steady_state(network, 0.0)
+        found[:, lane] = [network.read(state, name) for name in WATCHED]
+    return found
+
+
+def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
+    """The state that zero current leads to in the end, held against the limits of temperature."""
+    tally = Tally(limits, [f"{corner}, then {IN_THE_END}" for corner in ensemble.corners], begun_C=begun_C)
+    levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
+    tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
+    return tally
+
+
+def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: Array, session_s: float) -> float:
+    """For how long in s zero current may last before the dose of skin reaches its limit, at most a session.
+
+    `dose_before` (corners,) in min CEM43 is what the drive has added.
+    """
+    from thermicon.circuit.safety.exposure import cem43_min
+
+    most = next(rule.limit for rule in limits.rules if rule.quantity == "thermal dose")
+    times = np.concatenate([[0.0], np.geomspace(1.0, session_s, 120)])
+    values, _ = ensemble.hold(0.0, state, times)
+    skin = np.clip(np.nan_to_num(values[WATCHED.index("skin_C")], nan=HOTTEST_C), None, HOTTEST_C)
+    dose = cem43_min(times, skin).max(axis=0) + float(dose_before.max())
+    over = np.flatnonzero(dose > most)
+    return session_s if not len(over) else float(times[max(0, over[0] - 1)])
+
+
+def without_power(ensemble: Ensemble, state: State, times_s: Array) -> tuple[Array, State]:
+    """WATCHED at times from now of rigs whose controlled heat sinks have lost their power, and the last states."""
+    networks = [_dark(network, float(sink)) for network, sink in zip(ensemble.networks, state.sink[:, 0], strict=True)]
+    none = np.zeros((len(times_s) - 1, len(networks)))
+    intervals = Intervals(times_s, np.arange(len(times_s)), none, none)
+    begun = State.settled(state.nodes_C)
+    return run_on(Bank.of(networks), ensemble.lanes, ensemble.lanes, intervals, begun, WATCHED)
+
+
+def _dark(network: Network, sink_C: float) -> Network:
+    """A network whose heat sink stands at a temperature in °C and has no power."""
+    plates = network.plates.copy()
+    plates[SINK_C], plates[SINK_LIMIT_W] = sink_C, 0.0
+    return replace(network, plates=plates)

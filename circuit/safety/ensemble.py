@@ -1,0 +1,185 @@
+"""A rig in all corners of its uncertainty, side by side: drives played, currents held, states carried on.
+
+A drive is played in stretches, so that neither its length nor its updates decide how much memory it takes. Rows stand
+no farther apart than 10 ms, over which the rate of skin temperature is taken, nor than the drive's own updates.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.corners import Corner, corners_of
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED
+from thermicon.circuit.solver.batch_inputs import Bank, Index, Intervals, State, cut, run_on
+from thermicon.circuit.solver.constant_current import ConstantCurrent
+from thermicon.circuit.solver.drive import Drive, DriveError
+from thermicon.circuit.solver.network import Network, network_of
+from thermicon.circuit.solver.pwm import steady_of
+from thermicon.circuit.solver.steady import check_sink, steady_state
+
+ROW_S, FINEST_S = 0.01, 1e-4
+"""The longest and the shortest distance of rows; in 0.1 ms no plate moves by more than a few millikelvins."""
+
+AT_ONCE = 400_000
+"""Rows times lanes of a stretch: about 13 MB of what is watched."""
+
+Stretch = tuple[Array, Array]
+"""Times in s (rows,) and WATCHED (4, lanes, rows) in °C."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Ensemble:
+    """Corners of a rig, ready to run; the first is the rig as given.
+
+    `bridge_A`: a bridge switches between this current and none, so that constant currents are means; None: it does not.
+    `ideal`: the heat sink has no controller of its own, so that constant currents are solved by modes.
+    """
+
+    rig: Rig
+    corners: tuple[Corner, ...]
+    networks: tuple[Network, ...]
+    bank: Bank
+    gain: Array
+    bridge_A: float | None
+    ideal: bool
+    _modes: dict[float, ConstantCurrent] = field(default_factory=dict)
+
+    @staticmethod
+    def of(rig: Rig, bridge_A: float | None = None) -> Ensemble:
+        """All corners of a rig; raises DriveError for a bridge that cannot be."""
+        if bridge_A is not None and not (0 < bridge_A < np.inf):
+            raise DriveError(f"a bridge of {bridge_A:g} A is not possible; its current must be above 0 A")
+        return Ensemble.on(rig, corners_of(rig), bridge_A)
+
+    @staticmethod
+    def on(rig: Rig, corners: tuple[Corner, ...], bridge_A: float | None) -> Ensemble:
+        """Some corners of a rig."""
+        networks = tuple(network_of(corner.rig) for corner in corners)
+        gain = np.array([1.0 + corner.gain_relative for corner in corners])
+        ideal = rig.heat_sink.controller is None
+        return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, ideal)
+
+    def only(self, which: list[int]) -> Ensemble:
+        """The same with some of its corners."""
+        few = Ensemble.on(self.rig, tuple(self.corners[k] for k in which), self.bridge_A)
+        few._modes.update({current: modes.only(which) for current, modes in self._modes.items()})
+        return few
+
+    @property
+    def lanes(self) -> Index:
+        """One lane a corner."""
+        return np.arange(len(self.corners), dtype=np.int64)
+
+    def at_rest(self, rest_A: float) -> State:
+        """Steady states under a current; RigError where the rig as given has none. Others are then as hot as can be."""
+        states = self.bank.states([self._steady(corner, rest_A) for corner in self.corners])
+        check_sink(self.rig, states[0])
+        return State.settled(states)
+
+    def _steady(self, corner: Corner, rest_A: float) -> Array:
+        network, gain = network_of(corner.rig), 1.0 + corner.gain_relative
+        try:
+            if self.bridge_A is not None:
+                return steady_of(corner.rig, rest_A / self.bridge_A, self.bridge_A * gain)
+            return steady_state(network, rest_A * gain)
+        except ArithmeticError as problem:
+            if corner.nominal:
+                raise RigError(f"rig {corner.rig.name}: {problem}; begin the drive with a smaller current") from None
+            hottest = np.full(len(network.capacity_J_per_K) + 3, HOTTEST_C)
+            hottest[-1] = network.deep_C
+            return hottest
+
+    def play(self, drive: Drive, state: State, rigs: Index | None = None) -> Iterator[tuple[Stretch, State]]:
+        """Play a drive from states, in stretches, each with the states at its end; `rigs` (lanes,): a lane's corner."""
+        which = self.lanes if rigs is None else rigs
+        row_s = ROW_S if self.bridge_A is not None else row_of(drive)
+        end, most = float(drive.time_s[-1]), max(2, AT_ONCE // len(which))
+        count = max(1, int(np.ceil(end / row_s - 1e-9)))
+        for first in range(0, count, most):
+            last = min(first + most, count)
+            rows: Array = np.arange(first, last + 1, dtype=np.float64) * row_s
+            rows[-1] = min(rows[-1], end)
+            part = between(drive, float(rows[0]), float(rows[-1]))
+            currents = self.gain[:, np.newaxis] * part.current_A
+            intervals = cut(rows - rows[0], part.time_s, currents, drive.held)
+            values, state = run_on(self.bank, which, which, intervals, state, WATCHED)
+            yield (rows, values), state
+
+    def end_of(self, drive: Drive, state: State, rigs: Index | None = None) -> State:
+        """States at the end of a drive."""
+        which = self.lanes if rigs is None else rigs
+        end = float(drive.time_s[-1])
+        intervals = cut(np.array([0.0, end]), drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
+        return run_on(self.bank, which, which, intervals, state, WATCHED[:1])[1]
+
+    def hold(self, current_A: float, state: State, times_s: Array, rigs: Index | None = None) -> tuple[Array, State]:
+        """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
+
+        Times begin with 0.
+        """
+        which = self.lanes if rigs is None else rigs
+        if self.ideal:
+            modes = self.modes(current_A)
+            values = modes.run(which, state.nodes_C, times_s, WATCHED)
+            return values, State(modes.after(which, state.nodes_C, float(times_s[-1])), state.sink)
+        return self._stepped(current_A, state, times_s, which)
+
+    def rest(self, current_A: float, state: State, time_s: float, rigs: Index | None = None) -> State:
+        """States after a constant current has been held for a time in s."""
+        which = self.lanes if rigs is None else rigs
+        if self.ideal:
+            return State(self.modes(current_A).after(which, state.nodes_C, time_s), state.sink)
+        times = np.append(np.arange(0.0, time_s - 1e-9, min(1.0, time_s)), time_s)
+        return self._stepped(current_A, state, times, which)[1]
+
+    def modes(self, current_A: float) -> ConstantCurrent:
+        """Modes of all corners under a constant current, or the mean of a bridge's."""
+        if current_A not in self._modes:
+            mean = self.gain * current_A
+            square = mean**2 if self.bridge_A is None else np.abs(mean) * self.bridge_A * self.gain
+            self._modes[current_A] = ConstantCurrent.of(self.networks, mean, square)
+        return self._modes[current_A]
+
+    def _stepped(self, current_A: float, state: State, times_s: Array, which: Index) -> tuple[Array, State]:
+        rows = len(times_s) - 1
+        currents = held_currents(
+            self.gain * current_A, rows, None if self.bridge_A is None else self.bridge_A * self.gain
+        )
+        intervals = Intervals(times_s, np.arange(len(times_s)), currents[0], currents[1])
+        return run_on(self.bank, which, which, intervals, state, WATCHED)
+
+
+def row_of(drive: Drive) -> float:
+    """Distance in s of the rows that a drive is watched at: its shortest update, within ROW_S and FINEST_S."""
+    return float(np.clip(np.diff(drive.time_s).min(), FINEST_S, ROW_S))
+
+
+def between(drive: Drive, begin_s: float, end_s: float) -> Drive:
+    """A drive from one time to another, on its own clock."""
+    inside = (drive.time_s > begin_s + 1e-12) & (drive.time_s < end_s - 1e-12)
+    times = np.concatenate([[begin_s], drive.time_s[inside], [end_s]])
+    if drive.held:
+        at = np.clip(np.searchsorted(drive.time_s, times + 1e-12, side="right") - 1, 0, len(drive.time_s) - 1)
+        currents = drive.current_A[at]
+    else:
+        currents = np.interp(times, drive.time_s, drive.current_A)
+    return Drive(times - begin_s, currents, drive.held)
+
+
+def held_currents(last_A: Array, rows: int, bridge_A: Array | None) -> Array:
+    """Currents at both ends of each of `rows` intervals, (2, rows, corners).
+
+    A bridge of mean m and peak p heats with m·p instead of m²: a triangle about m has that mean square too.
+    """
+    currents = np.broadcast_to(last_A, (2, rows, len(last_A))).copy()
+    if bridge_A is not None:
+        swing = np.sqrt(3.0 * np.maximum(np.abs(last_A) * bridge_A - last_A**2, 0.0))
+        sign = np.where(np.arange(rows) % 2 == 0, 1.0, -1.0)[:, np.newaxis]
+        currents += np.stack([sign * swing, -sign * swing])
+    return currents

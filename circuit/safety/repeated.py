@@ -1,0 +1,233 @@
+"""What a drive comes to when it is played again and again: verdict, recovery, and the shortest pause that is safe."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thermicon.circuit.inputs import InputError
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of
+from thermicon.circuit.safety.endings import ENDINGS, follow_endings
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.repetition import Cycle, bound, steady_cycle
+from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.solver.batch_inputs import State
+
+RECOVERED_K = 0.1
+LONGEST_PAUSE_S = 600.0
+"""Display and skin have recovered within 0.1 K of rest; a pause longer than 10 min is another session."""
+
+ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
+"""Where recovery is looked for, up to the longest pause."""
+
+PAUSE_STEP_S = 0.1
+
+
+class PauseError(InputError):
+    """A pause between plays that cannot be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Repeated:
+    """The verdict on a drive that is played again and again, with a pause in which its rest is held.
+
+    `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
+    10 min. `shortest_pause_s` is the shortest that is safe, None where none is. `plays` go into a session of
+    `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between the bounds on what any
+    number of plays, in a set in any order, can come to.
+    """
+
+    pause_s: float
+    recovery_s: float | None
+    shortest_pause_s: float | None
+    plays: int
+    session_s: float
+    checks: tuple[Check, ...]
+
+    def __repr__(self) -> str:
+        return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
+
+    @property
+    def colour(self) -> str:
+        """Green, amber or red."""
+        return colour_of(findings_of(self.checks))
+
+    @property
+    def reason(self) -> str | None:
+        """The first hard limit passed, in one sentence with its cure; None where there is none."""
+        found = next((str(check) for check in findings_of(self.checks) if check.severity == "hard"), None)
+        return None if found is None else f"{found}; {self.cure}"
+
+    @property
+    def cure(self) -> str:
+        """What makes repetition safe."""
+        if self.shortest_pause_s is None:
+            return "no pause up to 10 min makes that safe: use a smaller or shorter change"
+        return f"the shortest safe pause is {self.shortest_pause_s:g} s (--pause {self.shortest_pause_s:g})"
+
+    @property
+    def text(self) -> str:
+        """Pause, plays, recovery and verdict in one line."""
+        back = "later than 10 min" if self.recovery_s is None else f"{self.recovery_s:g} s"
+        shortest = "none" if self.shortest_pause_s is None else f"{self.shortest_pause_s:g} s"
+        return (
+            f"{self.colour}, {self.plays} plays in {self.session_s / 60:g} min with {self.pause_s:g} s between them "
+            f"(back within {RECOVERED_K:g} K of rest: {back}; shortest safe pause: {shortest})"
+        )
+
+    def to_dict(self) -> dict[str, object]:
+        """All of it, as a sidecar holds it."""
+        return {
+            "colour": self.colour,
+            "reason": self.reason,
+            "pause_s": self.pause_s,
+            "plays": self.plays,
+            "session_s": self.session_s,
+            "findings": [as_dict(check) for check in findings_of(self.checks)],
+        }
+
+
+def check_pause(pause_s: float | None) -> None:
+    """Raise PauseError for a pause that is no time between 0 and 10 min."""
+    if pause_s is not None and not 0.0 <= pause_s <= LONGEST_PAUSE_S:
+        raise PauseError(f"a pause of {pause_s:g} s between plays is not possible; give 0 to {LONGEST_PAUSE_S:g} s")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Repeating:
+    """Drives on one rig that may follow each other in any order, each in all corners; what they are judged by."""
+
+    ensemble: Ensemble
+    drives: Sequence[Cycle]
+    start: State
+    limits: Limits
+
+    def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
+        """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
+        cycles = [replace(cycle, ensemble=self.ensemble, pause_s=pause_s) for cycle in self.drives]
+        steady = [steady_cycle(cycle, self.start)[0] for cycle in cycles]
+        warm = bound(cycles, self.start, steady, warm=True)
+        cold = bound(cycles, self.start, steady, warm=False)
+        begun = skin_C(self.ensemble, self.start)
+        found = []
+        for cycle, state in zip(cycles, steady, strict=True):
+            own = [self._tally(cycle, state, begun, "", True)[0]]
+            for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
+                tally, ended = self._tally(cycle, bounding, begun, what, False)
+                own += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
+            found.append(own)
+        return found
+
+    def safe(self, pause_s: float, endings: bool = True) -> bool:
+        """Whether no hard limit is passed with a pause between plays."""
+        return all(tally.passes() for own in self.tallies(pause_s, endings) for tally in own)
+
+    def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
+        """The tally of a play from a state with its pause, and the state at the end of the play."""
+        plays = plays_in(cycle, self.limits.session_s)
+        again = f"played again and again with {cycle.pause_s:.4g} s of pause{what}"
+        names = [f"{corner}, {again}" for corner in self.ensemble.corners]
+        tally, now = Tally(self.limits, names, plays=plays, begun_C=begun), state
+        for (rows, values), then in self.ensemble.play(cycle.drive, state):
+            tally.add(rows, values, rates=exact)
+            now = then
+        pause = np.append(0.0, pause_rows(cycle.pause_s))
+        if len(pause) > 1:
+            rested, _ = self.ensemble.hold(cycle.rest_A, now, pause)
+            tally.add(float(cycle.drive.time_s[-1]) + pause, rested, rates=False)
+        return tally, now
+
+    def _endings(self, cycle: Cycle, ended: State, begun: Array, names: Sequence[str]) -> list[Tally]:
+        endings = {
+            ending: Tally(self.limits, [f"{name}, then {ending}" for name in names], begun_C=begun)
+            for ending in ENDINGS
+        }
+        end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
+        follow_endings(self.ensemble, ended, last, end, endings, sums=False)
+        return list(endings.values())
+
+
+def plays_in(cycle: Cycle, session_s: float) -> int:
+    """How many plays of a drive fit into a session; at least one."""
+    length = float(cycle.drive.time_s[-1])
+    return max(1, math.floor((session_s + cycle.pause_s) / (length + cycle.pause_s) + 1e-9))
+
+
+def pause_rows(pause_s: float) -> Array:
+    """Times in s of the rows of a pause after its beginning, its end the last."""
+    return np.append(ROWS_S[(ROWS_S > 0) & (pause_s - 1e-6 > ROWS_S)], pause_s) if pause_s > 0 else np.empty(0)
+
+
+def recovery_s(ensemble: Ensemble, rest_A: float, start: State, ended: State) -> float | None:
+    """Time in s after a play until display and skin are within 0.1 K of where they began, in every corner."""
+    values, _ = ensemble.hold(rest_A, ended, ROWS_S)
+    began, _ = ensemble.hold(rest_A, start, np.array([0.0, 1e-3]))
+    which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
+    away = np.abs(values[which] - began[which][:, :, :1]).max(axis=(0, 1)) > RECOVERED_K
+    if away[-1] or not np.isfinite(values[which]).all():
+        return None
+    last = np.flatnonzero(away)
+    return 0.0 if not len(last) else round(float(ROWS_S[last[-1] + 1]), 1)
+
+
+def skin_C(ensemble: Ensemble, state: State) -> Array:
+    """Skin (corners,) in °C of states."""
+    return np.array([net.read(nodes, "skin_C") for net, nodes in zip(ensemble.networks, state.nodes_C, strict=True)])
+
+
+def shortest_pause_s(repeating: Repeating) -> float | None:
+    """The shortest pause in s, in steps of 0.1 s, with which no hard limit is passed; None up to 10 min.
+
+    The corners that go farthest without a pause decide; the result is checked in all corners, and those that then go
+    beyond join in.
+    """
+    tallies = [tally for own in repeating.tallies(0.0) for tally in own]
+    if all(tally.passes() for tally in tallies):
+        return 0.0
+    count = len(repeating.ensemble.corners)
+    deciding = {lane % count for tally in tallies for lane in tally.worst_lanes()}
+    while True:
+        few = _with(repeating, sorted(deciding))
+        found = _bisect(few)
+        if found is None:
+            return None
+        after = [tally for own in repeating.tallies(found) for tally in own]
+        if all(tally.passes() for tally in after):
+            return found
+        more = {lane % count for tally in after for lane in tally.worst_lanes()}
+        if more <= deciding:
+            return _later(repeating, found)
+        deciding |= more
+
+
+def _later(repeating: Repeating, pause_s: float) -> float | None:
+    """A pause after this one that is safe in all corners and with all endings; steps grow from 2 %."""
+    added = max(PAUSE_STEP_S, 0.02 * pause_s)
+    while pause_s < LONGEST_PAUSE_S:
+        pause_s = min(math.ceil((pause_s + added) / PAUSE_STEP_S) * PAUSE_STEP_S, LONGEST_PAUSE_S)
+        if repeating.safe(pause_s):
+            return round(pause_s, 1)
+        added *= 3
+    return None
+
+
+def _with(repeating: Repeating, corners: list[int]) -> Repeating:
+    return replace(repeating, ensemble=repeating.ensemble.only(corners), start=repeating.start.take(np.array(corners)))
+
+
+def _bisect(few: Repeating) -> float | None:
+    """The shortest pause that is safe in few corners, endings aside, within 2 % on the safe side."""
+    low, high, longest = 0, 100, round(LONGEST_PAUSE_S / PAUSE_STEP_S)
+    while not few.safe(high * PAUSE_STEP_S, endings=False):
+        if high >= longest:
+            return None
+        low, high = high, min(4 * high, longest)
+    while high - low > max(1, low // 50):
+        middle = (low + high) // 2
+        low, high = (low, middle) if few.safe(middle * PAUSE_STEP_S, endings=False) else (middle, high)
+    return round(high * PAUSE_STEP_S, 1)

@@ -1,0 +1,124 @@
+"""Played again and again: the steady cycle of a drive, and bounds that hold for any number of plays in any order.
+
+With a given current the circuit is linear in its temperatures, and a node never gets colder because another is warmer:
+a play with its pause is a map x → Φ·x + g with Φ ≥ 0. So the state before a play tends to a fixed point, the *steady
+cycle*, which Anderson's acceleration finds in a few plays; and a state u that is warmer than rest, and that no drive of
+a set makes warmer still (F(u) ≤ u for each), is warmer than whatever comes before any play, in any order: the *warm
+bound*. The *cold bound* is its mirror image.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.tally import COLDEST_C, HOTTEST_C
+from thermicon.circuit.solver.batch_inputs import Index, State
+from thermicon.circuit.solver.drive import Drive
+
+CLOSE_K = 2e-5
+"""A cycle is steady when it comes back to where it began within this."""
+MOST_PLAYS, REMEMBERED = 40, 6
+"""Plays after which no steady cycle is expected any more, and how many of them the acceleration looks back."""
+BOUND_K = 1e-3
+"""Bounds may grow by this in one more play; what is left of it in all later plays is added at once."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cycle:
+    """A drive on an ensemble with the current that is held in the pause after it, for `pause_s`."""
+
+    ensemble: Ensemble
+    drive: Drive
+    rest_A: float
+    pause_s: float
+
+    def after(self, state: State, lanes: Index | None = None) -> State:
+        """States before the next play, for those before this one; `lanes`: which corners these are."""
+        played = self.ensemble.end_of(self.drive, state, lanes)
+        if self.pause_s <= 0:
+            return played
+        return self.ensemble.rest(self.rest_A, played, self.pause_s, lanes)
+
+
+def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
+    """Return the states before each play of a cycle that repeats itself, and whether each lane has one (lanes,).
+
+    Anderson's acceleration of x ← F(x), a lane at a time: the next guess is the mean of the last plays' results whose
+    changes cancel best. A lane without a steady cycle heats from play to play without end.
+    """
+    here, there = _joined(start), _joined(cycle.after(start))
+    guesses, results = [here], [there]
+    settled = _change(there - here) <= CLOSE_K
+    for _ in range(MOST_PLAYS):
+        if settled.all():
+            break
+        guess = results[-1].copy()
+        for lane in np.flatnonzero(~settled):
+            guess[lane] = _mixed([g[lane] for g in guesses], [r[lane] for r in results])
+        guess = np.clip(np.nan_to_num(guess, nan=HOTTEST_C), COLDEST_C, HOTTEST_C)
+        guess[:, _nodes(start) :] = results[-1][:, _nodes(start) :]
+        result = _joined(cycle.after(_parted(guess, start)))
+        guesses, results = [*guesses[-REMEMBERED:], guess], [*results[-REMEMBERED:], result]
+        settled = _change(result - guess) <= CLOSE_K
+    found = results[-1].copy()
+    found[~settled] = np.where(np.isfinite(found[~settled]), found[~settled], HOTTEST_C)
+    return _parted(found, start), settled
+
+
+def bound(cycles: Sequence[Cycle], start: State, steady: Sequence[State], warm: bool) -> State:
+    """Return states that are warmer (or colder) than those before any play of a sequence of the cycles, in any order.
+
+    `start` is that before the first play, `steady` the states before each play of each cycle's own repetition.
+    """
+    side = 1.0 if warm else -1.0
+    now = side * start.nodes_C
+    for state in steady:
+        now = np.maximum(now, side * state.nodes_C)
+    before = np.zeros(len(now))
+    for _ in range(MOST_PLAYS):
+        at = State(side * now, start.sink)
+        then = np.max([side * cycle.after(at).nodes_C for cycle in cycles], axis=0)
+        grown = np.maximum(np.nan_to_num(then - now, nan=HOTTEST_C), 0.0)
+        change = grown.max(axis=1)
+        if (change <= BOUND_K).all():
+            return State(side * (now + grown + BOUND_K), start.sink)
+        share = np.clip(change / np.where(before > 0, before, np.inf), 0.0, 0.95)
+        now = np.minimum(now + grown / (1.0 - share)[:, np.newaxis], HOTTEST_C)
+        before = change
+    return State(np.full_like(now, side * HOTTEST_C if warm else COLDEST_C), start.sink)
+
+
+def _mixed(guesses: list[Array], results: list[Array]) -> Array:
+    """The mean of results, with weights that sum to 1, for which the same mean of results − guesses is smallest."""
+    left = np.array(results) - np.array(guesses)
+    if len(left) < 2 or not np.isfinite(left).all():
+        return results[-1]
+    steps = np.diff(left, axis=0).T
+    weights, *_ = np.linalg.lstsq(steps, left[-1], rcond=1e-10)
+    return np.asarray(results[-1] - np.diff(np.array(results), axis=0).T @ weights)
+
+
+def _joined(state: State) -> Array:
+    """Nodes and heat sinks side by side, (lanes, nodes + 4)."""
+    return np.concatenate([state.nodes_C, np.nan_to_num(state.sink)], axis=1)
+
+
+def _parted(joined: Array, like: State) -> State:
+    nodes = _nodes(like)
+    sink = like.sink if np.isnan(like.sink).all() else joined[:, nodes:]
+    return State(np.ascontiguousarray(joined[:, :nodes]), np.ascontiguousarray(sink))
+
+
+def _nodes(state: State) -> int:
+    return int(state.nodes_C.shape[1])
+
+
+def _change(moved: Array) -> Array:
+    """Largest change of a lane in K."""
+    return np.asarray(np.abs(np.nan_to_num(moved, nan=HOTTEST_C)).max(axis=1))

@@ -1,0 +1,178 @@
+"""A session: a sequence of icons as one run, with one verdict in the worst case and one per play on the rig given."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING
+
+from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT, Gate
+from thermicon.circuit.safety.limits import Check, as_dict, colour_of, findings_of
+from thermicon.circuit.safety.sessioncorners import beyond
+from thermicon.circuit.safety.sessionplan import SessionPlan
+from thermicon.circuit.solver.trace import Trace
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+COLOURS = ("green", "amber", "red")
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """One icon in a session, on the rig as given: from its start until the next one starts, or the session ends.
+
+    `drift_K` is the skin just before it minus the skin before the first play. `verdict` is green, amber or red, and
+    `reason` the first limit passed, in one sentence; a limit in K counts from where the play began. Times count from
+    the session's start; dose and energy are those of this play and its gap.
+    """
+
+    icon: str
+    start_s: float
+    end_s: float
+    verdict: str
+    reason: str | None
+    drift_K: float
+    skin_min_C: float
+    skin_max_C: float
+    display_min_C: float
+    display_max_C: float
+    dose_cem43_min: float
+    energy_J: float
+
+
+@dataclass(frozen=True, slots=True)
+class TimeBeyond:
+    """Seconds in all that a temperature is above (`upper`) or below a limit in °C, on the rig as given."""
+
+    quantity: str
+    severity: str
+    upper: bool
+    limit_C: float
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A session on a rig.
+
+    `trace` is the rig as given, from the first icon's start to the last one's end. `gate` judges the whole drive in the
+    worst case and 60 s beyond; `checks` are its rules, those of each instant at the full rate of the run. The dose
+    (min CEM43), `henriques`, `energy_J` (into the module) and `heat_to_sink_W` (least, most; None where the sink has a
+    capacity of its own) are those of the rig as given. `recovery_s` is how long after the end the skin is within 0.1 K
+    of where it began, None where 10 min are too short.
+    """
+
+    plan: SessionPlan
+    tracking: str
+    rest_A: float
+    trace: Trace
+    plays: tuple[Play, ...]
+    gate: Gate
+    checks: tuple[Check, ...]
+    time_beyond: tuple[TimeBeyond, ...]
+    dose_cem43_min: float
+    henriques: float
+    energy_J: float
+    heat_to_sink_W: tuple[float, float] | None
+    recovery_s: float | None
+
+    def __repr__(self) -> str:
+        plays = "1 play" if len(self.plays) == 1 else f"{len(self.plays)} plays"
+        return (
+            f"Session({self.verdict}: {plays} in {self.duration_s:g} s on {self.trace.rig_name}, skin "
+            f"{self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C, baseline drift "
+            f"{self.baseline_drift_K:+.2f} K, {self.dose_cem43_min:.2g} min CEM43)"
+        )
+
+    def _repr_html_(self) -> str:
+        return self.trace._repr_html_()
+
+    @property
+    def duration_s(self) -> float:
+        """From the start of the first icon to the end of the last."""
+        return float(self.trace.time_s[-1])
+
+    @property
+    def findings(self) -> tuple[Check, ...]:
+        """The rules that the session passes in the worst case, the hard ones first."""
+        return findings_of(self.checks)
+
+    @property
+    def verdict(self) -> str:
+        """Green, amber or red, of the whole session in the worst case."""
+        return max(self.gate.colour, colour_of(self.findings), key=COLOURS.index)
+
+    @property
+    def reason(self) -> str | None:
+        """The first hard limit passed, in one sentence; None where there is none."""
+        hard = next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
+        return hard or self.gate.reason
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """A sentence for each soft limit passed."""
+        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")
+
+    @property
+    def baseline_drift_K(self) -> float:
+        """The largest drift before any play, with its sign."""
+        return max((play.drift_K for play in self.plays), key=abs)
+
+    def worst(self, quantity: str) -> Check | None:
+        """The hard rule on a quantity where it goes farthest in the worst case; None where no rule is about it."""
+        hard = [check for check in self.checks if check.quantity == quantity and check.severity == "hard"]
+        return max(hard, key=beyond, default=None)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per play, with the fields of a Play as columns."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(play) for play in self.plays], columns=[field.name for field in fields(Play)])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the temperatures with a grey band for every play; returns the Axes."""
+        drawn = self.trace.plot(ax)
+        for play in self.plays:
+            drawn.axvspan(play.start_s, play.end_s, color="0.5", alpha=0.12, lw=0.0, zorder=0)
+        return drawn
+
+    def to_dict(self) -> dict[str, object]:
+        """All of it as plain data; units are in the names."""
+        trace, sink = self.trace, self.heat_to_sink_W
+        dose, burn = self.worst("thermal dose"), self.worst("Henriques integral")
+        return {
+            "verdict": self.verdict,
+            "reason": self.reason,
+            "findings": [as_dict(finding) for finding in self.findings],
+            "what_it_is_not": WHAT_IT_IS_NOT,
+            "scenarios": self.gate.scenarios,
+            "rig": trace.rig_name,
+            "tracking": self.tracking,
+            "seed": self.plan.seed,
+            "gap_s": self.plan.gap_s,
+            "duration_s": self.duration_s,
+            "rate_Hz": (len(trace.time_s) - 1) / self.duration_s,
+            "dose_cem43_min": self.dose_cem43_min,
+            "dose_cem43_worst_min": dose and dose.value,
+            "dose_cem43_limit_min": dose and dose.limit,
+            "henriques": self.henriques,
+            "henriques_worst": burn and burn.value,
+            "henriques_limit": burn and burn.limit,
+            "baseline_drift_K": self.baseline_drift_K,
+            "recovery_s": self.recovery_s,
+            "energy_J": self.energy_J,
+            "rest_A": self.rest_A,
+            **{
+                f"{place}_{side}_C": float(getattr(getattr(trace, f"{place}_C"), side)())
+                for place in ("skin", "display", "hot_plate", "cold_receptor", "warm_receptor")
+                for side in ("min", "max")
+            },
+            "heat_to_sink_min_W": sink and sink[0],
+            "heat_to_sink_max_W": sink and sink[1],
+            "time_beyond": [asdict(each) for each in self.time_beyond],
+            "checks": [as_dict(check) for check in self.checks],
+            "uncertainty": asdict(self.gate.uncertainty),
+            "limits": self.gate.limits.to_dict(),
+            "plays": [asdict(play) for play in self.plays],
+        }

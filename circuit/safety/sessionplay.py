@@ -1,0 +1,139 @@
+"""Playing a session: one run of the whole drive, cut into plays where they start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+import numpy as np
+
+from thermicon.circuit.inputs import nearest
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.gate import gate
+from thermicon.circuit.safety.limits import WATCHED, SafetyVerdict, checks_of, findings_of
+from thermicon.circuit.safety.session import Play, Session, TimeBeyond
+from thermicon.circuit.safety.sessioncorners import fine_checks, merged
+from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
+from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.simulate import simulate_current
+from thermicon.circuit.solver.trace import CLOSE_K, Trace
+from thermicon.icons import Icon
+
+RECOVERY_S = 600.0
+"""How long the skin is followed after the last icon, with the resting current held."""
+
+PLACES = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
+"""Columns of temperatures that limits are about, where it is not the skin surface."""
+
+
+def play_session(
+    icons: Iterable[Icon], plan: SessionPlan, rig: Rig, *, tracking: str = "replay", limits: Limits | None = None
+) -> Session:
+    """Play the icons of a plan one after the other on a rig, as one run without a rest in between.
+
+    With tracking `replay` the current of each icon, designed from rest, is played open loop, as exported drives are,
+    and its holding current in the gaps; with `display` the driver follows each icon's display temperature, as a
+    thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` takes the
+    place of the rig's. Raises SessionError where the plan names an icon that is not given, is too long, or cannot be
+    tracked, and RigError where the rig cannot hold a baseline.
+
+    >>> from thermicon.icons import load_library
+    >>> plan = SessionPlan(("cooling-step", "warming-step"), gap_s=10.0)
+    >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))
+    Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
+    """
+    wanted = set(plan.names)
+    known = {icon.name: icon for icon in icons if icon.name in wanted}
+    for name in plan.names:
+        if name not in known:
+            raise SessionError(f"the plan names {name}, which is not among the icons; {nearest(name, known)}")
+    played = drive_of(plan, known, rig, tracking)
+    trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
+    rules = rig.limits if limits is None else limits
+    verdict = gate(played.drive, rig, rest_A=played.rest_A, limits=limits)
+    power = np.append(trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s), 0.0)
+    plays = _plays(plan, played, trace, rules, power)
+    return Session(
+        plan=plan,
+        tracking=tracking,
+        rest_A=played.rest_A,
+        trace=trace,
+        plays=plays,
+        gate=verdict,
+        checks=merged(verdict.checks, fine_checks(played, rig, rules)),
+        time_beyond=_times_beyond(rules, trace),
+        dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
+        henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),
+        energy_J=float(power.sum()),
+        heat_to_sink_W=_heat_to_sink_W(rig, trace),
+        recovery_s=_recovery_s(played, rig, float(trace.skin_C[0])),
+    )
+
+
+def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array) -> tuple[Play, ...]:
+    """Every play, judged on its own rows of the run."""
+    first = np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)
+    found, rest = [], float(trace.skin_C[0])
+    for place, (begin, until) in enumerate(pairwise([*first.tolist(), len(trace.time_s) - 1])):
+        rows = slice(begin, until + 1)
+        times, skin, display = trace.time_s[rows], trace.skin_C[rows], trace.display_C[rows]
+        columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
+        verdict = SafetyVerdict(findings_of(checks_of(limits, times, columns)))
+        found.append(
+            Play(
+                icon=plan.order[place],
+                start_s=played.starts_s[place],
+                end_s=played.ends_s[place],
+                verdict=verdict.colour,
+                reason=verdict.reason or next(iter(verdict.cautions), None),
+                drift_K=float(skin[0]) - rest,
+                skin_min_C=float(skin.min()),
+                skin_max_C=float(skin.max()),
+                display_min_C=float(display.min()),
+                display_max_C=float(display.max()),
+                dose_cem43_min=float(cem43_min(times, skin)[-1]),
+                energy_J=float(energy_J[begin:until].sum()),
+            )
+        )
+    return tuple(found)
+
+
+def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
+    """Seconds beyond every limit of a temperature in °C; a row counts until the next."""
+    steps, found = np.diff(trace.time_s), []
+    for rule in limits.rules:
+        if rule.unit != "°C" or rule.relative:
+            continue
+        values = getattr(trace, PLACES.get(rule.quantity, "skin_C"))[:-1]
+        over = values > rule.limit if rule.upper else values < rule.limit
+        found.append(TimeBeyond(rule.quantity, rule.severity, rule.upper, rule.limit, float(steps[over].sum())))
+    return tuple(found)
+
+
+def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:
+    """Least and most heat from the hot plate into an ideal heat sink, whose temperature is known."""
+    sink = rig.heat_sink
+    if sink.controller is not None:
+        return None
+    hot = np.array([trace.hot_plate_C.min(), trace.hot_plate_C.max()])
+    least, most = (hot - sink.temperature_C) / sink.resistance_K_per_W
+    return float(least), float(most)
+
+
+def _recovery_s(played: SessionDrive, rig: Rig, rest_C: float) -> float | None:
+    """Seconds after the last icon until the skin stays within 0.1 K of its rest, with the resting current held."""
+    drive = played.drive
+    end = float(drive.time_s[-1])
+    held = Drive(np.append(drive.time_s, end + RECOVERY_S), np.append(drive.current_A, drive.current_A[-1]), held=True)
+    trace = simulate_current(held, rig, rate_Hz=1.0, start_C=played.start_C)
+    after = trace.time_s >= played.ends_s[-1]
+    away = np.abs(trace.skin_C[after] - rest_C) > CLOSE_K
+    if not away.any():
+        return 0.0
+    last = int(np.flatnonzero(away)[-1])
+    times = trace.time_s[after] - played.ends_s[-1]
+    return float(times[last + 1]) if last + 1 < len(times) else None

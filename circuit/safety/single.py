@@ -1,0 +1,96 @@
+"""One play of a drive in every corner, and what follows it: the first half of the gate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.checks import Check, worst_of
+from thermicon.circuit.safety.demands import Demands
+from thermicon.circuit.safety.endings import ENDINGS, dose_time_s, follow_endings, judge_the_end, zero_current_C
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.repeated import Repeated, recovery_s, skin_C
+from thermicon.circuit.safety.single_faults import Faulty
+from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.solver.batch_inputs import State
+from thermicon.circuit.solver.drive import Drive
+
+MOST_CORNERS = 6
+"""Corners in which single faults are looked at: the rig as given, and those that go farthest."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Single:
+    """A drive played once from its rest: every rule in every scenario, and the states it starts from and ends with.
+
+    `after_C` (corners,) is the skin 60 s later for each of ENDINGS, `dose_before` (corners,) what the drive adds to the
+    dose in min CEM43.
+    """
+
+    ensemble: Ensemble
+    drive: Drive
+    rest_A: float
+    limits: Limits
+    start: State
+    end: State
+    tallies: tuple[Tally, ...]
+    after_C: dict[str, Array]
+    recovery_s: float | None
+
+    @staticmethod
+    def of(ensemble: Ensemble, drive: Drive, rest_A: float, limits: Limits) -> Single:
+        """Play a drive; raises RigError where the rig as given has no rest to start from."""
+        start = ensemble.at_rest(rest_A)
+        tallies = {
+            ending: Tally(limits, [f"{corner}, then {ending}" for corner in ensemble.corners]) for ending in ENDINGS
+        }
+        state = start
+        for (rows, values), then in ensemble.play(drive, start):
+            for tally in tallies.values():
+                tally.add(rows, values)
+            state = then
+        end_s = float(drive.time_s[-1])
+        after = follow_endings(ensemble, state, float(drive.current_A[-1]), end_s, tallies)
+        begun = skin_C(ensemble, start)
+        judged = (*tallies.values(), judge_the_end(ensemble, limits, end_s, begun))
+        recovery = recovery_s(ensemble, rest_A, start, state)
+        return Single(ensemble, drive, rest_A, limits, start, state, judged, after, recovery)
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Every rule in the scenario that goes farthest."""
+        return worst_of(tally.checks() for tally in self.tallies)
+
+    def demands(self, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Demands:
+        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` where displays get."""
+        corners = self._farthest([*self.tallies, *played])
+        few = self.ensemble.only(corners)
+        faulty = Faulty(few, self.drive, self.rest_A, self.start.take(np.array(corners)), self.limits)
+        watchdog, hangs = faulty.watchdog_s()
+        rest, begins = faulty.rest_before()
+        polarity, swapped = faulty.polarity()
+        cut_off, stuck = faulty.cut_off(reach_C)
+        zero = None
+        if self.ensemble.ideal:
+            dose = np.zeros(len(self.ensemble.corners))
+            zero = dose_time_s(self.ensemble, self.limits, self.end, dose, self.limits.session_s)
+            zero = None if zero >= self.limits.session_s else round(zero, 0)
+        return Demands(
+            watchdog, cut_off, polarity, rest, repeated.shortest_pause_s, zero, (hangs, begins, swapped, stuck)
+        )
+
+    def _farthest(self, tallies: list[Tally]) -> list[int]:
+        count = len(self.ensemble.corners)
+        found: dict[int, None] = {0: None}
+        for tally in tallies:
+            for lane in tally.worst_lanes():
+                found.setdefault(lane % count)
+        return sorted(list(found)[:MOST_CORNERS])
+
+    @property
+    def drift_C(self) -> float:
+        """Skin in °C to which zero current leads on the rig as given."""
+        return float(zero_current_C(self.ensemble)[WATCHED.index("skin_C"), 0])

@@ -1,0 +1,193 @@
+"""The gate for a device that closes its own loop: skin under the display temperatures that it shows.
+
+Neither module, driver nor heat sink of the rig take part. What is not known is the contact, the room (and with it deep
+tissue), and how closely the device follows: at once, which is the worst for the rate, or with its lag. It ends with its
+last set-point held, or with its control lost: no heat passes the display then.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.corners import Corner
+from thermicon.circuit.safety.endings import ENDING_S, LATER_S
+from thermicon.circuit.safety.repeated import RECOVERED_K
+from thermicon.circuit.safety.repeated import ROWS_S as RECOVERY_ROWS_S
+from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.prescribed import FELT, SkinModes, modes_on
+
+LAST, LOST = "last set-point held", "control lost"
+ENDINGS = (LAST, LOST)
+ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
+LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
+BOUND_K, MOST_PLAYS = 1e-3, 40
+
+_PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shown:
+    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows in some `way` of following."""
+
+    way: str
+    step_s: float
+    display_C: Array
+
+    @property
+    def rows_s(self) -> Array:
+        """Times in s of the rows."""
+        return np.arange(len(self.display_C), dtype=np.float64) * self.step_s
+
+    @property
+    def end_s(self) -> float:
+        """Time in s of the last row."""
+        return self.step_s * (len(self.display_C) - 1)
+
+
+def limits_without_module(limits: Limits) -> Limits:
+    """The rules for a device that has no hot plate of the rig's."""
+    return replace(limits, rules=tuple(rule for rule in limits.rules if rule.quantity != "hot plate"))
+
+
+def contact_corners(rig: Rig) -> tuple[Corner, ...]:
+    """The rig as given, then contact and ambient at either end of their uncertainty, each with each."""
+    contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
+    spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
+    found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    for share, shift in itertools.product(*spans):
+        if share or shift:
+            there = perturbed(rig, contact_resistance_relative=share, ambient_K=shift)
+            found.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Under:
+    """Skin in the corners of contact and room, under displays that are prescribed."""
+
+    corners: tuple[Corner, ...]
+    modes: tuple[SkinModes, ...]
+    insulated: tuple[SkinModes, ...]
+
+    @staticmethod
+    def of(rig: Rig) -> Under:
+        """All corners of a rig's contact and room."""
+        corners = contact_corners(rig)
+        networks = [network_of(corner.rig) for corner in corners]
+        return Under(
+            corners, tuple(modes_on(one) for one in networks), tuple(modes_on(one, insulated=True) for one in networks)
+        )
+
+    def steady(self, display_C: float) -> list[Array]:
+        """Modes of every corner under a display held."""
+        return [modes.steady(display_C) for modes in self.modes]
+
+    def play(self, shown: Shown, states: Sequence[Array]) -> tuple[Array, list[Array]]:
+        """Return WATCHED (4, corners, rows) of a play from states, and the states at its end."""
+        runs = [
+            modes.run(shown.display_C, shown.step_s, state) for modes, state in zip(self.modes, states, strict=True)
+        ]
+        return watched([felt for felt, _ in runs]), [end for _, end in runs]
+
+    def hold(self, display_C: float, states: Sequence[Array], times_s: Array) -> Array:
+        """WATCHED (4, corners, times) under a display held, at times from now."""
+        pairs = zip(self.modes, states, strict=True)
+        return watched([modes.relax(times_s, display_C, state) for modes, state in pairs])
+
+    def let_go(self, states: Sequence[Array], times_s: Array) -> Array:
+        """WATCHED (4, corners, times) under a display that lets no heat through, and is as warm as the skin below."""
+        found = []
+        for modes, free, state in zip(self.modes, self.insulated, states, strict=True):
+            felt = free.relax(times_s, free.deep_C, free.unlumps @ (modes.lumps @ state))
+            felt[_PLACE["display_C"]] = felt[_PLACE["cold_receptor_C"]]
+            found.append(felt)
+        return watched(found)
+
+    def after(self, shown: Shown, pause_s: float, states: Sequence[Array]) -> list[Array]:
+        """States after a play and a pause with the last set-point held."""
+        last = float(shown.display_C[-1])
+        _, ended = self.play(shown, states)
+        return [modes.after(pause_s, last, end) for modes, end in zip(self.modes, ended, strict=True)]
+
+    def cycle(self, shown: Shown, pause_s: float) -> list[Array]:
+        """States before each play of a steady cycle: each mode forgets the same share in every cycle."""
+        none = [np.zeros_like(modes.rate_per_s) for modes in self.modes]
+        forced = self.after(shown, pause_s, none)
+        length = shown.end_s + pause_s
+        return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
+
+    def bound(self, shows: Sequence[Shown], pause_s: float, begun: Sequence[Array], warm: bool) -> list[Array]:
+        """States warmer (or colder), lump by lump, than those before any play of a sequence in any order."""
+        side = 1.0 if warm else -1.0
+        now = [
+            np.max([side * modes.lumps @ state for state in (start, *same)], axis=0)
+            for modes, start, same in zip(
+                self.modes, begun, zip(*(self.cycle(shown, pause_s) for shown in shows), strict=True), strict=True
+            )
+        ]
+        for _ in range(MOST_PLAYS):
+            states = [modes.unlumps @ (side * lumps) for modes, lumps in zip(self.modes, now, strict=True)]
+            after = [self.after(shown, pause_s, states) for shown in shows]
+            then = [
+                np.max([side * modes.lumps @ state for state in same], axis=0)
+                for modes, same in zip(self.modes, zip(*after, strict=True), strict=True)
+            ]
+            grown = max(float((b - a).max()) for a, b in zip(now, then, strict=True))
+            now = [np.maximum(a, b) + (BOUND_K if grown > BOUND_K else 0.0) for a, b in zip(now, then, strict=True)]
+            if grown <= BOUND_K:
+                break
+        return [modes.unlumps @ (side * lumps) for modes, lumps in zip(self.modes, now, strict=True)]
+
+    def recovery_s(self, shown: Shown, ended: Sequence[Array]) -> float | None:
+        """Time in s after a play until the skin is within 0.1 K of where it began, in every corner."""
+        last, first = float(shown.display_C[-1]), float(shown.display_C[0])
+        skin = self.hold(last, ended, RECOVERY_ROWS_S)[0]
+        began = self.hold(first, self.steady(first), np.array([0.0]))[0]
+        away = (np.abs(skin - began).max(axis=0) > RECOVERED_K) | (abs(last - first) > RECOVERED_K)
+        if away[-1]:
+            return None
+        late = np.flatnonzero(away)
+        return 0.0 if not len(late) else round(float(RECOVERY_ROWS_S[late[-1] + 1]), 1)
+
+
+def watched(felt: Sequence[Array]) -> Array:
+    """WATCHED (4, corners, rows) of FELT; the hot plate, which there is none of, stands as warm as the display."""
+    return np.stack([[each[_PLACE.get(name, _PLACE["display_C"])] for each in felt] for name in WATCHED])
+
+
+def tally_once(under: Under, shown: Shown, limits: Limits) -> tuple[list[Tally], list[Array]]:
+    """Every rule over one play and its endings, and the states at the end of the play."""
+    values, ended = under.play(shown, under.steady(float(shown.display_C[0])))
+    names = [f"{corner}, {shown.way}" for corner in under.corners]
+    tallies = [Tally(limits, [f"{name}, then {ending}" for name in names]) for ending in ENDINGS]
+    for tally in tallies:
+        tally.add(shown.rows_s, values)
+    add_endings(under, shown, ended, tallies)
+    return tallies, ended
+
+
+def add_endings(
+    under: Under, shown: Shown, ended: Sequence[Array], tallies: Sequence[Tally], sums: bool = True
+) -> None:
+    """Add what follows a play to the tally of each ending."""
+    last, end = float(shown.display_C[-1]), shown.end_s
+    tallies[0].add(end + ENDING_ROWS_S, under.hold(last, ended, ENDING_ROWS_S), sums=sums)
+    tallies[1].add(end + ENDING_ROWS_S[1:], under.let_go(ended, ENDING_ROWS_S[1:]), rates=False, sums=sums, drift=True)
+    tallies[1].add(end + LATE_S, under.let_go(ended, LATE_S), rates=False, sums=sums, drift=True)
+
+
+def time_to_limit_s(under: Under, limits: Limits, level_C: float, start: Sequence[Array]) -> tuple[float, Tally]:
+    """How long in s a display may be held at a level before a hard limit of temperature is passed, 60 at most."""
+    tally = Tally(limits, [str(corner) for corner in under.corners])
+    tally.add(ENDING_ROWS_S, under.hold(level_C, start, ENDING_ROWS_S), rates=False, sums=False)
+    broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]
+    return min(broken, default=ENDING_S), tally

@@ -1,0 +1,215 @@
+"""The gate for drives of temperatures: what a device shows, judged once, again and again, and with single faults."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from thermicon.circuit.inputs import signed
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rules import Limits
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.checks import Check, colour_of, findings_of, worst_of
+from thermicon.circuit.safety.demands import CutOff, Demands, SingleFault
+from thermicon.circuit.safety.endings import ENDING_S
+from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.repeated import (
+    LONGEST_PAUSE_S,
+    PAUSE_STEP_S,
+    Repeated,
+    check_pause,
+    pause_rows,
+)
+from thermicon.circuit.safety.single_faults import BEYOND_K, MARGIN
+from thermicon.circuit.safety.tally import Tally
+from thermicon.circuit.safety.thermode import (
+    ENDINGS,
+    Shown,
+    Under,
+    add_endings,
+    limits_without_module,
+    tally_once,
+    time_to_limit_s,
+)
+
+Ways = Sequence[Shown]
+"""What a device shows of one drive, in each way of following it."""
+
+
+def gate_shown(
+    drives: Sequence[Ways],
+    rig: Rig,
+    *,
+    stuck_C: tuple[float, float],
+    limits: Limits | None = None,
+    pause_s: float | None = None,
+) -> tuple[Gate, ...]:
+    """Check what a device shows, which may be played again and again in any order, against every rule of safety.
+
+    Parameters
+    ----------
+    drives
+        For each drive, its display in each way in which the device may follow.
+    rig
+        Skin, contact and air, and their uncertainty; nothing else of it takes part.
+    stuck_C
+        Ends in °C of the device's range, where a single fault may leave it.
+    limits
+        In the place of the rig's.
+    pause_s
+        Time between plays, 0 to 600 s; None: the longest recovery time.
+
+    Raises
+    ------
+    PauseError
+        For a pause that cannot be.
+
+    """
+    check_pause(pause_s)
+    under, held = Under.of(rig), limits_without_module(rig.limits if limits is None else limits)
+    once: list[tuple[tuple[Check, ...], float | None, dict[str, float]]] = []
+    for ways in drives:
+        judged, recoveries, after = [], [], {}
+        for shown in ways:
+            tallies, ended = tally_once(under, shown, held)
+            judged += [tally.checks() for tally in tallies]
+            recoveries.append(under.recovery_s(shown, ended))
+            minute = np.array([ENDING_S])
+            last = under.hold(float(shown.display_C[-1]), ended, minute), under.let_go(ended, minute)
+            after = {name: float(values[0, 0, 0]) for name, values in zip(ENDINGS, last, strict=True)}
+        known = [time for time in recoveries if time is not None]
+        once.append((worst_of(judged), max(known) if len(known) == len(recoveries) else None, after))
+    pause = pause_s
+    if pause is None:
+        times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
+        pause = max(times)
+    again = _again(under, drives, held, pause)
+    shortest = _shortest(lambda one: _safe(_again(under, drives, held, one)))
+    found = []
+    for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
+        plays = _plays(ways[0], pause, held.session_s)
+        repeated = Repeated(pause, recovery, shortest, plays, held.session_s, repeated_checks)
+        every = [check for each in (*(one[0] for one in once), *again) for check in each]
+        found.append(
+            Gate(
+                rig.name,
+                ways[0].end_s,
+                rig.uncertainty,
+                held,
+                len(under.corners) * len(ways) * len(ENDINGS),
+                worst_of([checks, repeated_checks]),
+                after,
+                None,
+                repeated,
+                _demands(under, ways, held, repeated, stuck_C, every),
+            )
+        )
+    return tuple(found)
+
+
+def _again(under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float) -> list[tuple[Check, ...]]:
+    """Every rule for each drive in its steady cycle, and between the bounds on any sequence of all drives."""
+    shows = [shown for ways in drives for shown in ways]
+    begun = under.steady(float(shows[0].display_C[0]))
+    bounds = {word: under.bound(shows, pause_s, begun, warm) for word, warm in (("warm", True), ("cold", False))}
+    skin = under.hold(float(shows[0].display_C[0]), begun, np.array([0.0]))[0, :, 0]
+    found = []
+    for ways in drives:
+        judged = []
+        for shown in ways:
+            judged.append(_cycle_checks(under, shown, limits, pause_s, under.cycle(shown, pause_s), skin, ""))
+            judged += [
+                _cycle_checks(under, shown, limits, pause_s, states, skin, f" ({word} bound)")
+                for word, states in bounds.items()
+            ]
+        found.append(worst_of(checks for group in judged for checks in group))
+    return found
+
+
+def _cycle_checks(
+    under: Under, shown: Shown, limits: Limits, pause_s: float, states: Sequence[Array], begun_C: Array, what: str
+) -> list[tuple[Check, ...]]:
+    again = f"{shown.way}, played again and again with {pause_s:.4g} s of pause{what}"
+    names = [f"{corner}, {again}" for corner in under.corners]
+    values, ended = under.play(shown, states)
+    tally = Tally(limits, names, plays=_plays(shown, pause_s, limits.session_s), begun_C=begun_C)
+    tally.add(shown.rows_s, values, rates=not what)
+    rows = np.append(0.0, pause_rows(pause_s))
+    if len(rows) > 1:
+        tally.add(shown.end_s + rows, under.hold(float(shown.display_C[-1]), ended, rows), rates=False)
+    endings = [Tally(limits, [f"{name}, then {ending}" for name in names], begun_C=begun_C) for ending in ENDINGS]
+    add_endings(under, shown, ended, endings, sums=False)
+    return [tally.checks(), *(ending.checks() for ending in endings)]
+
+
+def _plays(shown: Shown, pause_s: float, session_s: float) -> int:
+    return max(1, math.floor((session_s + pause_s) / (shown.end_s + pause_s) + 1e-9))
+
+
+def _safe(again: Sequence[Sequence[Check]]) -> bool:
+    return all(colour_of(findings_of(checks)) != "red" for checks in again)
+
+
+def _shortest(safe: Callable[[float], bool]) -> float | None:
+    """The shortest pause in s, in steps of 0.1 s and within 2 % on the safe side; None up to 10 min."""
+    if safe(0.0):
+        return 0.0
+    low, high, longest = 0, 100, round(LONGEST_PAUSE_S / PAUSE_STEP_S)
+    while not safe(high * PAUSE_STEP_S):
+        if high >= longest:
+            return None
+        low, high = high, min(4 * high, longest)
+    while high - low > max(1, low // 50):
+        middle = (low + high) // 2
+        low, high = (low, middle) if safe(middle * PAUSE_STEP_S) else (middle, high)
+    return round(high * PAUSE_STEP_S, 1)
+
+
+def _demands(
+    under: Under,
+    ways: Ways,
+    limits: Limits,
+    repeated: Repeated,
+    stuck_C: tuple[float, float],
+    checks: Sequence[Check],
+) -> Demands:
+    """What the device itself must prevent: a set-point that hangs, and a loop that runs to the end of its range."""
+    start = under.steady(float(ways[0].display_C[0]))
+    levels = [float(level) for shown in ways for level in (shown.display_C.min(), shown.display_C.max())]
+    hangs = [(level, *time_to_limit_s(under, limits, level, start)) for level in (min(levels), max(levels))]
+    stuck = [(level, *time_to_limit_s(under, limits, level, start)) for level in stuck_C]
+    watchdog = min(time for _, time, _ in hangs)
+    watchdog = watchdog if watchdog >= ENDING_S else round(MARGIN * watchdog, 2)
+    react = min(time for _, time, _ in stuck)
+    display = [check.value for check in checks if check.quantity == "display"]
+    hard = {
+        rule.upper: rule.limit
+        for rule in limits.rules
+        if rule.quantity == "display" and rule.severity == "hard" and rule.above_C is None
+    }
+    cut = CutOff(
+        round(max(hard[False], min(display) - BEYOND_K), 1),
+        round(min(hard[True], max(display) + BEYOND_K), 1),
+        round(MARGIN * react, 2),
+    )
+    faults = (
+        SingleFault(
+            "set-point hangs in mid-play",
+            "red" if watchdog < ENDING_S else "green",
+            f"display held at {_levels(hangs)} for {ENDING_S:g} s",
+            f"a return to the baseline {watchdog:g} s after the last sign of the host",
+        ),
+        SingleFault(
+            "loop stuck at the end of its range",
+            "red" if react < ENDING_S else "green",
+            f"display at {_levels(stuck)}; a hard limit is passed after {react:.2g} s",
+            f"the device's own cut-off at {cut.low:g} and {cut.high:g} °C, within {cut.react_within_s:g} s",
+        ),
+    )
+    return Demands(watchdog, cut, None, 0.0, repeated.shortest_pause_s, None, faults)
+
+
+def _levels(held: Sequence[tuple[float, float, Tally]]) -> str:
+    return " or ".join(f"{signed(level, '.1f')} °C" for level, _, _ in held)

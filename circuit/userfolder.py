@@ -1,0 +1,93 @@
+"""The user's own cache folder, and whether it is private: what is read from it again must be written by nobody else."""
+
+from __future__ import annotations
+
+import os
+import stat
+import sys
+from pathlib import Path
+
+WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+def cache_folder() -> Path:
+    """The user's cache folder for this program: THERMICON_CACHE, or where the system keeps such things."""
+    if own := os.environ.get("THERMICON_CACHE"):
+        return Path(own)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "thermicon"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "thermicon"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thermicon"
+
+
+class NotPrivate(OSError):
+    """A folder cannot be made, or others could put something into it; the text says why and what helps."""
+
+
+def private_folder(path: Path) -> Path:
+    """Return a folder, made if missing, into which nobody but this user (and the system's administrator) can write.
+
+    Its owner, its mode and those of all folders above are looked at, as ssh does with its keys. On Windows, where the
+    user's own folders are private by their access lists, it is only made. Raises NotPrivate.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     private_folder(Path(folder) / "a" / "b").relative_to(folder).as_posix()
+    'a/b'
+    """
+    path = path.absolute()
+    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    try:
+        for folder in reversed(missing):
+            folder.mkdir(mode=0o700, exist_ok=True)
+    except OSError as problem:
+        raise NotPrivate(f"{path} cannot be made ({problem.strerror or problem})") from None
+    if sys.platform != "win32":
+        real = path.resolve()
+        for folder in (real, *real.parents):
+            if fault := _fault(folder, folder == real):
+                raise NotPrivate(f"{folder} {fault}; set THERMICON_CACHE to a folder that only you can write to")
+    if not os.access(path, os.W_OK | os.X_OK):
+        raise NotPrivate(f"{path} is not writable for you")
+    return path
+
+
+def _fault(folder: Path, is_last: bool) -> str | None:
+    found = folder.stat()
+    user = os.geteuid()
+    if found.st_uid != user and (is_last or found.st_uid != 0):
+        return "belongs to another user"
+    writable = stat.S_IMODE(found.st_mode) & WRITABLE_BY_OTHERS
+    if writable == stat.S_IWGRP and found.st_gid == user:
+        return None  # a group of the user's own, as many systems give everybody
+    if writable and (is_last or not found.st_mode & stat.S_ISVTX):
+        return "can be written by others"
+    return None
+
+
+def read_private(path: Path) -> bytes | None:
+    """Return what is in a file that only this user can have written; None where there is none, or another's."""
+    try:
+        if not stat.S_ISREG(path.lstat().st_mode):
+            return None
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(handle, "rb") as file:
+            found = os.fstat(file.fileno())
+            if sys.platform != "win32" and (found.st_uid != os.geteuid() or found.st_mode & WRITABLE_BY_OTHERS):
+                return None
+            return file.read()
+    except OSError:
+        return None
+
+
+def write_private(path: Path, data: bytes) -> None:
+    """Write a file that only this user can read and write; it is there whole or not at all."""
+    draft = path.with_name(f".{path.name}.{os.getpid()}.part")
+    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+    try:
+        with os.fdopen(os.open(draft, flags, 0o600), "wb") as file:
+            file.write(data)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)

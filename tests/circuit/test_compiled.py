@@ -1,0 +1,176 @@
+"""Compiled code that is kept: never read when damaged, foreign or made from other sources."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import compiled
+from thermicon.circuit.userfolder import NotPrivate, private_folder, read_private, write_private
+
+POSIX = sys.platform != "win32"
+
+
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two modules, a compiled function that calls one of another file, which reads a constant of a third; and a run."""
+    whole = tmp_path_factory.mktemp("compiled")
+    folder = whole / "sources"
+    folder.mkdir()
+    (folder / "number.py").write_text("FACTOR = 2.0\n")
+    (folder / "inner.py").write_text(
+        "from thermicon.circuit.compiled import kernel\nfrom number import FACTOR\n\n\n"
+        "@kernel()\ndef part(x):\n    return FACTOR * x\n"
+    )
+    (folder / "outer.py").write_text(
+        "from thermicon.circuit.compiled import kernel\nfrom inner import part\n\n\n"
+        "@kernel()\ndef total(x):\n    return part(x) + 1.0\n"
+    )
+    assert run(folder, whole / "cache") == (7.0, 0, "")
+    return whole
+
+
+@pytest.fixture
+def sources(first: Path, tmp_path: Path) -> Path:
+    """A copy of the modules; beside it stands a copy of the cache, in which the function is kept."""
+    shutil.copytree(first, tmp_path, dirs_exist_ok=True)
+    return tmp_path / "sources"
+
+
+def run(sources: Path, cache: Path) -> tuple[float, int, str]:
+    """Result of the function in a process of its own, how often its machine code was read, and what stderr said."""
+    program = (
+        "import sys\nsys.path.insert(0, sys.argv[1])\nimport outer\n"
+        "print(outer.total(3.0), sum(outer.total.stats.cache_hits.values()))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-B", "-c", program, str(sources)],
+        env={**os.environ, "THERMICON_CACHE": str(cache)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    value, hits = done.stdout.split()
+    return float(value), int(hits), done.stderr
+
+
+def test_machine_code_is_kept_and_read_again(sources: Path, tmp_path: Path) -> None:
+    assert run(sources, tmp_path / "cache") == (7.0, 1, "")
+    (kept,) = (tmp_path / "cache" / "compiled").iterdir()
+    assert kept.stat().st_mode & 0o777 == 0o700
+    assert sorted(path.name.partition("-")[0] for path in kept.iterdir()) == ["part", "total"]
+    assert {path.stat().st_mode & 0o777 for path in kept.iterdir()} == {0o600}
+    assert not list(sources.rglob("*.nb?"))
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "expected"),
+    [
+        ("inner.py", "FACTOR * x", "FACTOR * x * 10.0", 61.0),
+        ("number.py", "2.0", "5.0", 16.0),
+        ("inner.py", "@kernel()", "@kernel(fastmath=True)", 7.0),
+    ],
+)
+def test_a_change_in_another_file_is_seen(
+    sources: Path, tmp_path: Path, file: str, old: str, new: str, expected: float
+) -> None:
+    (sources / file).write_text((sources / file).read_text().replace(old, new))
+    assert run(sources, tmp_path / "cache") == (expected, 0, "")
+
+
+@pytest.mark.parametrize("damage", [b"", None], ids=["empty", "a bit"])
+def test_damaged_machine_code_is_compiled_anew(sources: Path, tmp_path: Path, damage: bytes | None) -> None:
+    for path in (tmp_path / "cache" / "compiled").glob("*/*"):
+        data = bytearray(path.read_bytes())
+        data[len(data) // 2] ^= 0xFF
+        path.write_bytes(bytes(data) if damage is None else damage)
+    assert run(sources, tmp_path / "cache") == (7.0, 0, "")
+    assert run(sources, tmp_path / "cache") == (7.0, 1, "")
+
+
+class Evil:
+    """Leaves a mark where a pickle of it is read."""
+
+    def __init__(self, mark: Path) -> None:
+        self.mark = mark
+
+    def __reduce__(self) -> tuple[object, tuple[str]]:
+        return os.mkdir, (str(self.mark),)
+
+
+@pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")
+@pytest.mark.parametrize("how", ["folder", "file", "link"])
+def test_what_others_can_write_is_never_read(sources: Path, tmp_path: Path, how: str) -> None:
+    cache, mark = tmp_path / "cache", tmp_path / "mark"
+    content = pickle.dumps(Evil(mark))
+    forged = hashlib.sha256(content).digest() + content
+    (folder,) = (cache / "compiled").iterdir()
+    for path in list(folder.iterdir()):
+        path.write_bytes(forged)
+        if how == "file":
+            path.chmod(0o666)
+        if how == "link":
+            path.rename(tmp_path / path.name)
+            path.symlink_to(tmp_path / path.name)
+    if how == "folder":
+        folder.chmod(0o777)
+    value, hits, said = run(sources, cache)
+    assert (value, hits, mark.exists()) == (7.0, 0, False)
+    assert ("can be written by others; set THERMICON_CACHE" in said) == (how == "folder")
+    assert len(said.splitlines()) == (how == "folder")
+
+
+def test_without_a_place_it_is_compiled_in_memory_and_said_once(sources: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    value, hits, said = run(sources, tmp_path / "file" / "cache")
+    assert (value, hits) == (7.0, 0)
+    assert said.startswith("compiled code is not kept, so that every run compiles it anew: ")
+    assert len(said.splitlines()) == 1
+
+
+def test_all_kernels_of_the_project_are_kept_this_way() -> None:
+    root = Path(compiled.__file__).parents[1]
+    for path in [*(root / "circuit").rglob("*.py"), *(root / "perception").rglob("*.py")]:
+        if path.name != "compiled.py":
+            text = path.read_text(encoding="utf-8")
+            assert "njit" not in text and "cache=True" not in text, f"{path}: use thermicon.circuit.compiled.kernel"
+
+
+def test_the_digest_covers_what_is_called(tmp_path: Path) -> None:
+    from thermicon.circuit.solver import kernel
+
+    digest = compiled.source_digest(kernel.follow.py_func)
+    assert digest == compiled.source_digest(kernel.follow.py_func)
+    assert digest != compiled.source_digest(kernel.factor.py_func) or kernel.follow is kernel.factor
+    assert len(digest) == 64
+
+
+@pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")
+def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
+    open_ = tmp_path / "open"
+    open_.mkdir()
+    open_.chmod(0o777)
+    with pytest.raises(NotPrivate, match="open can be written by others"):
+        private_folder(open_ / "mine")
+    open_.chmod(0o1777)
+    assert private_folder(open_ / "mine").is_dir()
+    if os.geteuid() == 0:
+        os.chown(open_ / "mine", 12345, 12345)
+        with pytest.raises(NotPrivate, match="belongs to another user"):
+            private_folder(open_ / "mine")
+
+
+def test_a_private_file_is_whole_or_absent(tmp_path: Path) -> None:
+    write_private(tmp_path / "a", b"x")
+    assert read_private(tmp_path / "a") == b"x"
+    assert read_private(tmp_path / "b") is None
+    assert read_private(tmp_path) is None
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]

@@ -1,0 +1,81 @@
+"""Corners of a rig: what no file says, within what physics allows, and one truth with `Rig.with_` inside the bounds."""
+
+import json
+import math
+
+import pytest
+
+from thermicon.circuit import Rig, RigError, rig_names, steady_state
+from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.safety.scenarios import corners_of
+from thermicon.circuit.solver.network import network_of
+
+THENAR = Rig.load("thenar")
+
+
+@pytest.mark.parametrize("name", rig_names())
+def test_inside_the_bounds_of_a_file_a_corner_is_what_with_gives(name: str) -> None:
+    rig = Rig.load(name)
+    for corner in corners_of(rig)[1:]:
+        there = perturbed(rig, contact_resistance_relative=corner.contact_relative, ambient_K=corner.ambient_K)
+        assert there == corner.rig or json.loads(there.document) == json.loads(corner.rig.document)
+        assert (there.contact, there.ambient, there.deep_C) == (
+            corner.rig.contact, corner.rig.ambient, corner.rig.deep_C,
+        )  # fmt: skip
+        assert network_of(there).deep_C == network_of(corner.rig).deep_C
+
+
+def test_nothing_perturbed_is_the_rig_itself() -> None:
+    assert perturbed(THENAR) is THENAR
+
+
+def test_a_corner_may_lie_beyond_what_a_file_may_say() -> None:
+    thin = THENAR.with_(**{"contact.resistance_m2K_per_W": 1.2e-6})
+    with pytest.raises(RigError, match="must be at least 1e-06"):
+        thin.with_(**{"contact.resistance_m2K_per_W": 1.2e-6 * 0.7})
+    assert perturbed(thin, contact_resistance_relative=-0.3).contact.resistance_m2K_per_W == 1.2e-6 * 0.7
+    cold = THENAR.with_(**{"ambient.temperature_C": -19.0})
+    assert perturbed(cold, ambient_K=-3.0).ambient.temperature_C == -22.0
+
+
+def test_every_factor_changes_what_it_names_and_makes_another_rig() -> None:
+    module = THENAR.module
+    there = perturbed(THENAR, seebeck_relative=0.1, conductance_relative=0.25, plates_relative=-0.2, heat_sink_K=2.0)
+    assert there.module.seebeck_V_per_K == pytest.approx(1.1 * module.seebeck_V_per_K)
+    assert 1 / there.module.thermal_resistance_K_per_W == pytest.approx(1.25 / module.thermal_resistance_K_per_W)
+    assert there.module.hot_plate_J_per_K == there.module.cold_plate_J_per_K == pytest.approx(0.8 * 2.6)
+    assert there.module.resistance_ohm == module.resistance_ohm
+    assert (there.heat_sink.temperature_C, there.deep_C) == (42.0, THENAR.deep_C)
+    assert there != THENAR  # caches are keyed by the rig
+    # without a current the display moves with the heat sink by the share of the skin's path to it
+    rest, warm = (steady_state(network_of(rig), 0.0) for rig in (THENAR, perturbed(THENAR, heat_sink_K=2.0)))
+    assert 0 < (warm - rest).max() <= 2.0
+
+
+def test_a_module_given_by_name_is_perturbed_too_and_survives_another_change() -> None:
+    named = THENAR.with_(**{"module.name": "TEC1-12706"})
+    there = perturbed(named, seebeck_relative=-0.05)
+    assert there.module.seebeck_V_per_K == pytest.approx(0.95 * named.module.seebeck_V_per_K)
+    assert there.with_(**{"skin.rest_C": 33.0}).module == there.module
+
+
+def test_blood_is_solved_again_unless_the_rig_fixes_it() -> None:
+    shani = Rig.load("shani2021")
+    assert perturbed(shani, ambient_K=3.0).deep_C == shani.deep_C == 37.0
+    assert perturbed(THENAR, ambient_K=8.0).deep_C == pytest.approx(32.0)  # air as warm as the resting skin
+
+
+@pytest.mark.parametrize(
+    ("factors", "said"),
+    [
+        ({"contact_resistance_relative": -1.0}, r"rig thenar, one corner of it: contact resistance −100 %: .*use less"),
+        ({"seebeck_relative": -1.5}, r"Seebeck coefficient −150 %"),
+        ({"conductance_relative": math.nan}, r"thermal conductance nan %: must be finite"),
+        ({"plates_relative": 1e308}, r"module\.hot_plate_J_per_K = inf"),
+        ({"ambient_K": -300.0}, r"ambient −300 K from 24 °C: .*absolute zero, −273.15 °C"),
+        ({"heat_sink_K": math.inf}, r"heat sink inf K from 40 °C"),
+    ],
+)
+def test_what_is_physically_impossible_is_said_in_words(factors: dict[str, float], said: str) -> None:
+    with pytest.raises(RigError, match=said):
+        perturbed(THENAR, **factors)

@@ -1,0 +1,278 @@
+"""A session against what can be checked by hand: single runs, sums, and every rate that the run shows."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import (
+    Limits,
+    Rig,
+    RigError,
+    SessionError,
+    SessionPlan,
+    cem43_min,
+    duration_s,
+    henriques,
+    judge_safety,
+    play_session,
+    simulate,
+    summarise,
+)
+from thermicon.circuit.safety.sessiondrive import drive_of
+from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS, order_text, read_order
+from thermicon.icons import Icon, IconSet, parse, read_cue
+
+WARM = """cue 1
+set hot {{ control display; baseline 32 °C }}
+icon hot {{ warm by {amount} °C at 3 °C/s; hold for 20 s; return at 3 °C/s }}
+icon cool {{ cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }}
+"""
+
+SINK = ("capacity_J_per_K=200", "kp_W_per_K=5", "ki_W_per_Ks=0.5", "power_limit_W=40")
+"""A hot plate under its own loop."""
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def six() -> IconSet:
+    return read_cue("six-icons")
+
+
+def hot_set(amount: float) -> IconSet:
+    return parse(WARM.format(amount=amount))
+
+
+@pytest.mark.parametrize("tracking", ["replay", "display"])
+def test_a_session_of_one_icon_is_its_single_run(six: IconSet, rig: Rig, tracking: str) -> None:
+    for icon in six:
+        session = play_session(six, SessionPlan((icon.name,)), rig, tracking=tracking)
+        alone = simulate(icon, rig)
+        for column in ("display_C", "skin_C", "cold_receptor_C", "warm_receptor_C", "hot_plate_C"):
+            assert np.abs(getattr(session.trace, column) - getattr(alone, column)).max() < 1e-6, (icon.name, column)
+        summary = summarise(alone)
+        assert session.energy_J == pytest.approx(summary.energy_J, rel=1e-6)
+        (play,) = session.plays
+        assert (play.start_s, play.end_s, play.drift_K) == (0.0, summary.duration_s, 0.0)
+        assert (play.skin_min_C, play.skin_max_C) == pytest.approx((summary.skin_min_C, summary.skin_max_C), abs=1e-6)
+        assert play.verdict == judge_safety(alone).colour == session.verdict
+
+
+@pytest.mark.parametrize("name", ["shani2021", "fingertip"])
+def test_skin_control_and_other_rigs_are_played_too(name: str) -> None:
+    icons, other = read_cue("cooling-step-skin"), Rig.load(name)
+    session = play_session(icons, SessionPlan(("cooling-step",)), other)
+    alone = simulate(icons["cooling-step"], other)
+    assert np.abs(session.trace.skin_C - alone.skin_C).max() < 1e-6
+
+
+@pytest.mark.parametrize("tracking", ["replay", "display"])
+def test_two_icons_far_apart_are_two_single_runs(six: IconSet, rig: Rig, tracking: str) -> None:
+    names = ("cooling-step", "double-dip")
+    session = play_session(six, SessionPlan(names, gap_s=1200.0), rig, tracking=tracking)
+    for play in session.plays:
+        alone, begin = simulate(six[play.icon], rig), round(play.start_s * 100)
+        for column in ("display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
+            part = getattr(session.trace, column)[begin : begin + len(alone.time_s)]
+            assert np.abs(part - getattr(alone, column)).max() < 2e-3, (play.icon, column)
+    assert [play.start_s for play in session.plays] == [0.0, 1208.0]
+    assert abs(session.baseline_drift_K) < 2e-3
+
+
+def test_plays_begin_a_gap_after_the_end_of_the_one_before_on_an_update(rig: Rig) -> None:
+    icons = parse("cue 1\nset s { control display; baseline 32 °C }\nicon odd { cool by 1 °C over 1.234 s }\n")
+    slow = rig.with_(**{"driver.update_Hz": 10.0})
+    session = play_session(icons, SessionPlan(("odd",) * 3, gap_s=0.5), slow)
+    # 1.234 + 0.5 = 1.734 → 1.8 s; 1.8 + 1.734 = 3.534 → 3.6 s
+    assert [play.start_s for play in session.plays] == pytest.approx([0.0, 1.8, 3.6])
+    assert [play.end_s for play in session.plays] == pytest.approx([1.234, 3.034, 4.834])
+    assert np.diff(session.trace.time_s).max() == pytest.approx(0.01)  # 100 rows a second with any slower driver
+
+
+def test_energy_and_dose_add_up(rig: Rig) -> None:
+    icons = hot_set(9.5)
+    session = play_session(icons, SessionPlan(("hot", "cool", "hot", "hot"), gap_s=5.0), rig)
+    trace = session.trace
+    assert sum(play.energy_J for play in session.plays) == pytest.approx(session.energy_J, rel=1e-9)
+    power = trace.voltage_V[:-1] * trace.current_A[:-1]
+    assert session.energy_J == pytest.approx(float(power @ np.diff(trace.time_s)), rel=1e-9)
+    assert session.dose_cem43_min > 1e-3
+    assert sum(play.dose_cem43_min for play in session.plays) == pytest.approx(session.dose_cem43_min, rel=1e-6)
+    assert session.dose_cem43_min == pytest.approx(float(cem43_min(trace.time_s, trace.skin_C)[-1]))
+    assert session.henriques == pytest.approx(float(henriques(trace.time_s, trace.skin_C)[-1]))
+    worst = session.worst("thermal dose")
+    assert worst is not None
+    assert worst.value > session.dose_cem43_min
+
+
+def test_what_is_safe_once_is_not_safe_in_a_session(rig: Rig) -> None:
+    icons = hot_set(9.5)
+    once = play_session(icons, SessionPlan(("hot",)), rig)
+    often = play_session(icons, SessionPlan(("hot",) * 4, gap_s=2.0), rig)
+    assert (once.verdict, often.verdict) == ("amber", "red")
+    assert "skin surface" in str(often.reason)
+    verdicts = [play.verdict for play in often.plays]
+    assert verdicts == sorted(verdicts, key=("green", "amber", "red").index)
+    over = {(each.quantity, each.severity, each.upper): each.seconds for each in often.time_beyond}
+    trace = often.trace
+    above = float(np.diff(trace.time_s)[trace.skin_C[:-1] > 42.0].sum())
+    assert over["skin surface", "hard", True] == pytest.approx(above)
+    assert above > 0
+
+
+def test_replayed_drives_move_the_baseline_and_a_tracked_display_hardly(six: IconSet, rig: Rig) -> None:
+    plan = SessionPlan(("cooling-step",) * 5)
+    replayed, tracked = (play_session(six, plan, rig, tracking=way) for way in ("replay", "display"))
+    drifts = [play.drift_K for play in replayed.plays]
+    assert drifts == pytest.approx([0.0, -0.80, -1.33, -1.69, -1.95], abs=0.02)
+    assert replayed.baseline_drift_K == drifts[-1]
+    assert abs(tracked.baseline_drift_K) < 0.25
+    assert replayed.recovery_s is not None
+    assert tracked.recovery_s is not None
+    assert replayed.recovery_s > tracked.recovery_s > 0
+
+
+def test_a_rate_is_not_averaged_away_in_a_long_session(rig: Rig) -> None:
+    icons = parse(
+        "cue 1\nset s { control display; baseline 32 °C }\n"
+        "icon jolt { step to 22 °C; hold for 1 s; step to 32 °C; hold for 1 s }\n"
+    )
+    plan = SessionPlan(("jolt",) * 24, gap_s=12.0)  # over 5 min, from where on the gate has 10 rows a second
+    limits = Limits.of({"skin_rate_K_per_s": 9.4})
+    session = play_session(icons, plan, rig, limits=limits)
+    assert session.duration_s > 300
+    assert session.verdict == "red"
+    rate = session.worst("rate of skin temperature")
+    assert rate is not None
+    assert (rate.passed, rate.severity) == (False, "hard")
+    skin, times = session.trace.skin_C, session.trace.time_s
+    fine, coarse = (float(np.abs(np.diff(skin[::k]) / np.diff(times[::k])).max()) for k in (1, 10))
+    assert coarse < 0.98 * fine < rate.value
+    assert fine <= rate.value + 1e-9
+
+
+def test_checks_in_stretches_are_those_of_one_run(six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    from thermicon.circuit.safety import sessioncorners
+
+    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
+    for each in (rig, sink):
+        drive = drive_of(SessionPlan(("cooling-step", "linear-warming")), {icon.name: icon for icon in six}, each)
+        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 5_000)
+        whole = sessioncorners.fine_checks(drive, each, each.limits)
+        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 333)
+        parts = sessioncorners.fine_checks(drive, each, each.limits)
+        assert len(whole) == len(parts) > 8
+        for one, other in zip(whole, parts, strict=True):
+            assert one.quantity == other.quantity
+            assert one.value == pytest.approx(other.value, abs=2e-4)
+
+
+def test_icons_that_prescribe_current_are_played_by_their_means(rig: Rig) -> None:
+    icons = parse("cue 1\nset s { control current }\nicon push { to 0.4 A over 2 s; hold for 1 s; return over 1 s }\n")
+    session = play_session(icons, SessionPlan(("push",)), rig)
+    alone = simulate(icons["push"], rig)
+    assert np.abs(session.trace.skin_C - alone.skin_C).max() < 5e-3
+    with pytest.raises(SessionError, match=r"push prescribes the current.*use tracking replay"):
+        play_session(icons, SessionPlan(("push",)), rig, tracking="display")
+
+
+def test_a_loop_and_a_sink_of_its_own_are_played(six: IconSet, rig: Rig) -> None:
+    loop = rig.with_set(
+        [
+            "controller.kp_A_per_K=0.4",
+            "controller.ki_A_per_Ks=0.3",
+            "controller.kd_As_per_K=0.0",
+            "controller.lag_s=0.05",
+        ]
+    )
+    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
+    for other in (loop, sink):
+        session = play_session(six, SessionPlan(("cooling-step", "warming-step")), other)
+        alone = simulate(six["cooling-step"], other)
+        assert np.abs(session.trace.skin_C[:801] - alone.skin_C).max() < 1e-6
+        assert (session.heat_to_sink_W is None) == (other is sink)
+    tracked = play_session(six, SessionPlan(("cooling-step", "warming-step")), loop, tracking="display")
+    assert abs(tracked.trace.display_C[:801] - simulate(six["cooling-step"], loop).display_C).max() < 1e-6
+
+
+def test_shuffled_plans_are_balanced_and_seeded() -> None:
+    names = ["a", "b", "c"]
+    plan = SessionPlan.shuffled(names, 8, seed=3)
+    assert {name: plan.order.count(name) for name in names} == dict.fromkeys(names, 8)
+    assert plan == SessionPlan.shuffled(names, 8, seed=3)
+    assert plan.order != SessionPlan.shuffled(names, 8, seed=4).order
+    assert plan.order != tuple(names * 8)
+
+
+def test_an_order_file_names_icons_by_line_or_comma(six: IconSet, tmp_path: Path) -> None:
+    path = tmp_path / "order.txt"
+    path.write_text("# block 1\ncooling-step, double-dip\n\nwarming-step # the last\n", encoding="utf-8")
+    order = read_order(path, six)
+    assert order == ("cooling-step", "double-dip", "warming-step")
+    path.write_text(order_text(SessionPlan(order)), encoding="utf-8")
+    assert read_order(path, six) == order
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("cooling-step\n\ncoolingstep\n", r":3: no icon is called 'coolingstep'; did you mean cooling-step"),
+        ("# nothing\n,\n", "no icon in this order"),
+        ("", "the file is empty; a file of an order was expected"),
+        ("cooling-step\n" * (MOST_PLAYS + 1), "5,001 plays are too many; a session has at most 5,000"),
+    ],
+)
+def test_a_wrong_order_is_told_with_its_line(six: IconSet, tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "order.txt"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SessionError, match=message):
+        read_order(path, six)
+
+
+def test_impossible_plans_are_refused_before_any_work(six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(SessionError, match="at least one play"):
+        SessionPlan(())
+    for gap in (-1.0, math.nan, math.inf, 3601.0):
+        with pytest.raises(SessionError, match=r"gap of .* s is outside 0 to 3600 s"):
+            SessionPlan(("a",), gap_s=gap)
+    with pytest.raises(SessionError, match="0 repeats are not possible"):
+        SessionPlan.shuffled(["a"], 0)
+    with pytest.raises(SessionError, match="1,000,000 repeats of 2 icons: 2,000,000 plays are too many"):
+        SessionPlan.shuffled(["a", "b"], 1_000_000)
+    monkeypatch.setattr("thermicon.circuit.safety.sessiondrive.design", None)  # nothing may be designed
+    with pytest.raises(SessionError, match=rf"last \d+ s; the limit is {LONGEST_S:g} s: play fewer, shorten the gap"):
+        play_session(six, SessionPlan(("cooling-step",) * 100, gap_s=120.0), rig)
+    fast = rig.with_(**{"driver.update_Hz": 10_000.0})
+    with pytest.raises(SessionError, match=r"driver's 10000 Hz are \d+ rows; the limit is 1,500,000"):
+        play_session(six, SessionPlan(("cooling-step",) * 60), fast)
+    with pytest.raises(SessionError, match="tracking 'ideal' is not known"):
+        play_session(six, SessionPlan(("cooling-step",)), rig, tracking="ideal")
+
+
+def test_a_plan_needs_its_icons_and_a_rig_that_holds_them(six: IconSet, rig: Rig) -> None:
+    only: list[Icon] = [six["cooling-step"]]
+    with pytest.raises(SessionError, match="the plan names warming-step, which is not among the icons"):
+        play_session(only, SessionPlan(("warming-step",)), rig)
+    with pytest.raises(RigError, match="cannot be held"):
+        play_session(six, SessionPlan(("cooling-step",)), rig.with_(**{"driver.current_limit_A": 0.01}))
+
+
+def test_a_session_is_frozen_and_tabular(six: IconSet, rig: Rig) -> None:
+    session = play_session(six, SessionPlan(("cooling-step", "warming-step")), rig)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        session.energy_J = 0.0  # type: ignore[misc]
+    frame = session.to_frame()
+    assert list(frame["icon"]) == ["cooling-step", "warming-step"]
+    assert list(frame.columns[:4]) == ["icon", "start_s", "end_s", "verdict"]
+    assert "Session(green: 2 plays in 26 s on thenar" in repr(session)
+    assert session._repr_html_().startswith("<svg") or "<svg" in session._repr_html_()
+    assert session.plot().get_xlabel()
+    assert session.duration_s == 10.0 + 2 * duration_s(six["cooling-step"], rig)

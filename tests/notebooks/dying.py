@@ -1,0 +1,136 @@
+"""Run by a test in a process of its own: exports that end at each of their events in turn.
+
+Arguments: folder, case, way (kill, interrupt, full), first event, step, swap or plain (two renames). Prints a JSON line
+for each event: what the folder held then, and what it held after the next export.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import hashlib
+import io
+import json
+import os
+import shutil
+import signal
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from thermicon.circuit.delivery.claims import claims_of
+from thermicon.notebooks import exportfolder, swapping
+from thermicon.notebooks.outputs import OutputError
+
+EVENTS = (
+    "mkdir",
+    "open",
+    "write",
+    "ftruncate",
+    "fsync",
+    "rename",
+    "replace",
+    "link",
+    "unlink",
+    "rmdir",
+    "chmod",
+    "close",
+)
+
+
+def drive(name: str, content: bytes) -> dict[str, bytes]:
+    """A drive with its sidecar, as far as their claims go."""
+    about = {"thermicon": "0", "file": f"{name}.csv", "drive_sha256": hashlib.sha256(content).hexdigest()}
+    return {f"{name}.json": json.dumps(about).encode(), f"{name}.csv": content}
+
+
+OLD = {**drive("a", b"old"), **drive("b", b"stays"), "notes.txt": b"mine"}
+NEW = {**drive("a", b"new"), **drive("c", b"new too")}
+ADDED = drive("c", b"new too")
+CASES: dict[str, tuple[Mapping[str, bytes] | None, Mapping[str, bytes], bool]] = {
+    "new": (None, NEW, False),
+    "empty": ({}, NEW, False),
+    "added": (OLD, ADDED, False),
+    "forced": (OLD, NEW, True),
+}
+
+
+def held(folder: Path) -> dict[str, str] | None:
+    """What a folder holds; None where it is missing."""
+    if not folder.is_dir():
+        return None
+    return {path.name: path.read_bytes().decode() for path in folder.iterdir()}
+
+
+def patch(at: int, way: str) -> Callable[[], int]:
+    """Let the event of this number end the process, interrupt it, or fail; returns a count of the events so far."""
+    count = 0
+
+    def meets(real: Callable[..., Any]) -> Callable[..., Any]:
+        def event(*arguments: Any, **extra: Any) -> Any:
+            nonlocal count
+            count += 1
+            if count == at:
+                if way == "kill":
+                    os.kill(os.getpid(), signal.SIGKILL)
+                if way == "interrupt":
+                    raise KeyboardInterrupt
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return real(*arguments, **extra)
+
+        return event
+
+    for name in EVENTS:
+        setattr(os, name, meets(getattr(os, name)))
+    io.open = meets(io.open)
+    exportfolder.exchange = meets(exportfolder.exchange)  # type: ignore[attr-defined]
+    swapping.swap = meets(swapping.swap)
+    return lambda: count
+
+
+def end_at(number: int, way: str, goal: Path, files: Mapping[str, bytes], force: bool) -> int:
+    """Export in a child that meets its end at an event; returns 0 where it had fewer events, else how it ended."""
+    child = os.fork()
+    if child:
+        _, status = os.waitpid(child, 0)
+        return os.waitstatus_to_exitcode(status)
+    code, leave = 9, os._exit
+    counted = patch(number, way)
+    with contextlib.suppress(BaseException):
+        try:
+            exportfolder.publish(files, goal, force)
+            code = 0 if counted() < number else 7
+        except KeyboardInterrupt:
+            code = 8
+        except OutputError as error:
+            code = 6 if "No space left" in str(error) else 5
+    leave(code)
+
+
+def main(folder: Path, case: str, way: str, first: int, step: int, plain: bool) -> None:
+    """End one case at every event that is due."""
+    before, files, force = CASES[case]
+    if plain:
+        swapping.swap = lambda one, other: False
+    os.chdir(folder)
+    claims_of(b"{}")  # loads what an export needs, once for all children
+    for number in range(first, 10_000, step):
+        goal = folder / "drives"
+        shutil.rmtree(goal, ignore_errors=True)
+        if before is not None:
+            goal.mkdir()
+            for name, content in before.items():
+                (goal / name).write_bytes(content)
+        code = end_at(number, way, goal, files, force)
+        if code == 0:
+            break
+        told = {"event": number, "code": code, "then": held(goal)}
+        left = [path.name for path in folder.iterdir() if path.name != "drives"]
+        exportfolder.publish(drive("later", b"last"), goal)
+        told |= {"after": held(goal), "left": left, "at_last": sorted(path.name for path in folder.iterdir())}
+        print(json.dumps(told), flush=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2], sys.argv[3], int(sys.argv[4]), int(sys.argv[5]), sys.argv[6] == "plain")

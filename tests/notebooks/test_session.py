@@ -1,0 +1,223 @@
+"""``thermicon session``: the report, its files, and every way to ask for what cannot be."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, SessionPlan, play_session
+from thermicon.icons import read_cue
+from thermicon.notebooks.sessionfigure import envelope, session_figure
+
+Cli = Callable[..., Any]
+
+HOT = """cue 1
+set hot { site thenar; control display; baseline 32 °C }
+icon hot { warm by 9.5 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }
+"""
+
+KEYS = (
+    *("thermicon", "content_hash", "verdict", "reason", "findings", "what_it_is_not", "scenarios", "rig", "tracking"),
+    *("seed", "gap_s", "duration_s", "rate_Hz", "dose_cem43_min", "dose_cem43_worst_min", "dose_cem43_limit_min"),
+    *("henriques", "henriques_worst", "henriques_limit", "baseline_drift_K", "recovery_s", "energy_J", "rest_A"),
+    *(f"{place}_{side}_C" for place in ("skin", "display", "hot_plate") for side in ("min", "max")),
+    *(f"{place}_receptor_{side}_C" for place in ("cold", "warm") for side in ("min", "max")),
+    *("heat_to_sink_min_W", "heat_to_sink_max_W", "time_beyond", "checks", "uncertainty", "limits", "plays"),
+    *("rig_changes", "rig_text"),
+)
+
+
+@pytest.fixture
+def order(tmp_path: Path) -> Path:
+    path = tmp_path / "order.txt"
+    path.write_text("cool-step, warm-step # a pair\ncool-step\n", encoding="utf-8")
+    return path
+
+
+def test_an_order_is_played_and_reported(cli: Cli, two: Path, order: Path) -> None:
+    said = cli("session", two, "--order", order)
+    assert said.exit_code == 0
+    lines = said.stdout.splitlines()
+    assert lines[0] == "3 plays in 42 s on thenar, 10 s apart"
+    assert lines[1].startswith("safety green in 27 scenarios")
+    for words in ("  dose       0 min CEM43", "the limit of a session is 1", "  baseline   −0.", "back within 0.1 K"):
+        assert words in said.stdout
+    table = [line.split() for line in lines if "-step" in line]
+    assert [(row[0], row[1], row[2], row[-1]) for row in table] == [
+        ("1", "cool-step", "0", "green"),
+        ("2", "warm-step", "18", "green"),
+        ("3", "cool-step", "34", "green"),
+    ]
+    assert "no medical or ethical clearance" in said.stderr
+
+
+def test_the_json_has_the_keys_of_the_contract(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, again = tmp_path / "a.json", tmp_path / "b.json"
+    for path in (out, again):
+        assert cli("session", two, "--random", "--repeats", 3, "--gap", 4, "--seed", 5, "--json", path).exit_code == 0
+    assert out.read_bytes() == again.read_bytes()
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert set(found) == set(KEYS)
+    assert (found["verdict"], found["findings"], found["reason"]) == ("green", [], None)
+    assert (found["seed"], found["gap_s"], found["tracking"], found["rig"]) == (5, 4.0, "replay", "thenar")
+    plan = SessionPlan.shuffled(["cool-step", "warm-step"], 3, seed=5, gap_s=4.0)
+    session = play_session(read_cue(two), plan, Rig.load("thenar"))
+    assert [play["icon"] for play in found["plays"]] == list(plan.order)
+    assert [play["start_s"] for play in found["plays"]] == [play.start_s for play in session.plays]
+    assert found["baseline_drift_K"] == session.baseline_drift_K == max(session.to_frame()["drift_K"], key=abs)
+    assert found["energy_J"] == pytest.approx(sum(play["energy_J"] for play in found["plays"]))
+    assert {"icon", "start_s", "verdict"} <= set(found["plays"][0])
+    assert found["rig_text"] == Rig.load("thenar").document
+
+
+def test_an_unsafe_session_is_a_report_and_leaves_with_0(cli: Cli, tmp_path: Path) -> None:
+    cue, order, out = tmp_path / "hot.cue", tmp_path / "order.txt", tmp_path / "out.json"
+    cue.write_text(HOT, encoding="utf-8")
+    order.write_text("hot\n", encoding="utf-8")
+    said = cli("session", cue, "--order", order, "--repeats", 4, "--gap", 2, "--json", out)
+    assert said.exit_code == 0
+    assert "safety red" in said.stdout
+    assert "NOT SAFE: skin surface reaches" in said.stdout
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert found["verdict"] == "red"
+    assert found["reason"] == found["findings"][0]["text"]
+    assert found["findings"][0]["severity"] == "hard"
+    assert (found["plays"][0]["verdict"], found["plays"][-1]["verdict"]) == ("amber", "red")
+
+
+def test_the_rig_can_be_changed_and_the_display_tracked(cli: Cli, two: Path, order: Path, tmp_path: Path) -> None:
+    drifts = {}
+    for way in ("replay", "display"):
+        out = tmp_path / f"{way}.json"
+        said = cli(
+            *("session", two, "--order", order, "--tracking", way, "--json", out),
+            *("--rig", "forearm", "--set", "contact.area_cm2=8"),
+        )
+        assert said.exit_code == 0
+        assert "is for the site thenar" in said.stderr
+        found = json.loads(out.read_text(encoding="utf-8"))
+        assert (found["rig"], found["tracking"]) == ("forearm", way)
+        assert any("contact.area_cm2" in change for change in found["rig_changes"])
+        drifts[way] = abs(found["baseline_drift_K"])
+    assert drifts["display"] < 0.5 * drifts["replay"]
+
+
+def test_a_written_order_is_read_again(cli: Cli, two: Path, tmp_path: Path) -> None:
+    first, path, second = tmp_path / "a.json", tmp_path / "order.txt", tmp_path / "b.json"
+    cli("session", two, "--random", "--repeats", 2, "--order-out", path, "--json", first)
+    assert cli("session", two, "--order", path, "--json", second).exit_code == 0
+    one, other = (json.loads(out.read_text(encoding="utf-8")) for out in (first, second))
+    assert one["plays"] == other["plays"]
+    assert (one["seed"], other["seed"]) == (0, None)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ([], "give either --order FILE or --random"),
+        (["--random", "--order", "o.txt"], "give either --order FILE or --random"),
+        (["--random", "--gap", "-1"], "-1 s is outside 0 to 3600 s"),
+        (["--random", "--gap", "nan"], "nan s is outside 0 to 3600 s"),
+        (["--random", "--gap", "1e9"], "1e+09 s is outside 0 to 3600 s"),
+        (["--random", "--repeats", "0"], "0 is not a number of repeats of 1 or more"),
+        (["--random", "--seed", "-1"], "-1 is outside 0 to"),
+        (["--random", "--tracking", "ideal"], "'ideal' is none of replay, display"),
+    ],
+)
+def test_a_command_line_that_makes_no_sense_is_a_usage_error(
+    cli: Cli, two: Path, options: list[str], message: str
+) -> None:
+    said = cli("session", two, *options)
+    assert said.exit_code == 2
+    assert message in " ".join(said.stderr.replace("│", " ").split())
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("cool-step\nwarmstep\n", "order.txt:2: no icon is called 'warmstep'; did you mean warm-step"),
+        ("# only a comment\n", "there is no icon in this order, only comments"),
+        ("", "the file is empty"),
+        ("cool-step\0", "this is a binary file"),
+    ],
+)
+def test_a_wrong_order_leaves_with_1_and_nothing_written(
+    cli: Cli, two: Path, tmp_path: Path, text: str, message: str
+) -> None:
+    order, out = tmp_path / "order.txt", tmp_path / "out.json"
+    order.write_text(text, encoding="utf-8")
+    said = cli("session", two, "--order", order, "--json", out, "--figure", tmp_path / "out.png")
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert message in said.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["order.txt", "two.cue"]
+
+
+def test_files_that_cannot_be_read_or_written_are_bad_input(cli: Cli, two: Path, order: Path, tmp_path: Path) -> None:
+    for arguments, message in (
+        (("--order", tmp_path / "none.txt"), "none.txt: no such file of an order"),
+        (("--order", tmp_path), "this is a directory, not a file of an order"),
+        (("--order", order, "--figure", tmp_path / "a.gif"), "a figure is written as .png or .pdf or .svg, not .gif"),
+        (("--order", order, "--json", tmp_path / "no" / "a.json"), "does not exist; make it first"),
+    ):
+        said = cli("session", two, *arguments)
+        assert (said.exit_code, said.stdout) == (1, "")
+        assert message in said.stderr
+
+
+def test_a_million_plays_are_refused_before_any_work(cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def never(*_: object, **__: object) -> None:
+        raise AssertionError("nothing may be played")
+
+    monkeypatch.setattr("thermicon.circuit.play_session", never)
+    said = cli("session", two, "--random", "--repeats", 500_000)
+    assert said.exit_code == 1
+    assert "500,000 repeats of 2 icons: 1,000,000 plays are too many; a session has at most 5,000" in said.stderr
+
+
+def test_a_figure_is_complete_or_absent(
+    cli: Cli, two: Path, order: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    picture = tmp_path / "out.png"
+    assert cli("session", two, "--order", order, "--figure", picture).exit_code == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+    def stops(self: object, path: Path, **_: object) -> None:
+        Path(path).write_bytes(b"half")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", stops)
+    before = picture.read_bytes()
+    assert cli("session", two, "--order", order, "--figure", picture).exit_code == 130
+    assert picture.read_bytes() == before
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_the_figure_shows_plays_limits_and_dose(two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = play_session(read_cue(two), SessionPlan(("cool-step", "warm-step")), Rig.load("thenar"))
+    figure = session_figure(session)
+    changes, temperatures, plate, dose = figure.axes
+    labels = {text.get_text() for ax in figure.axes for text in ax.get_legend().get_texts()}
+    assert {"cooling in a play", "warming", "skin", "display", "cold receptor", "hot plate"} <= labels
+    assert {"soft limit of skin, 40 °C", "limit per session"} <= labels
+    assert [text.get_text() for text in changes.texts] == ["cool-step", "warm-step"]
+    assert "hot plate" in plate.get_ylabel()
+    assert dose.get_yscale() == "log"
+    assert temperatures.get_ylabel() == "temperature (°C)"
+    assert len(changes.patches) >= 4
+    monkeypatch.setattr("thermicon.notebooks.sessionfigure.MOST_BARS", 1)  # many plays are lines and not bars
+    crowded = session_figure(session).axes[0]
+    assert not crowded.patches
+    assert len(crowded.collections) == 2
+
+
+def test_a_long_session_is_drawn_with_every_peak() -> None:
+    time, values = np.arange(100_000.0), np.zeros(100_000)
+    values[77_777], values[123] = 5.0, -3.0
+    _, drawn = envelope(time, values)
+    assert len(drawn) <= 4_000
+    assert (drawn.max(), drawn.min()) == (5.0, -3.0)

@@ -1,0 +1,321 @@
+"""``export --verify``: whatever does not belong together is told, with the file and the cure."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Device, Rig, pack, prepare
+from thermicon.circuit.delivery import verify as verifying
+from thermicon.circuit.delivery.claims import claims_of
+from thermicon.circuit.delivery.digests import digest
+from thermicon.circuit.delivery.formats import format_names, load_format
+from thermicon.circuit.delivery.sidecar import sealed, sidecar_text
+from thermicon.circuit.delivery.verify import verify
+from thermicon.icons import load_library
+
+Cli = Callable[..., Any]
+SIX = load_library("six-icons")
+
+
+def exported(form_name: str, *names: str, device: str | None = None) -> dict[str, bytes]:
+    """The files of an export, without a disk."""
+    form, rig = load_format(form_name), Rig.load("thenar")
+    return pack([prepare(SIX[name], rig, Device.load(device or form.device), form) for name in names], form)
+
+
+@pytest.fixture(scope="module")
+def by_format() -> dict[str, dict[str, bytes]]:
+    """The same icon in every format."""
+    return {name: exported(name, "warming-step") for name in format_names()}
+
+
+@pytest.fixture(scope="module")
+def pair() -> dict[str, bytes]:
+    """Two icons for PsychoPy: drives, sidecars and the set's own files."""
+    return exported("psychopy", "warming-step", "cooling-step")
+
+
+@pytest.fixture
+def out(pair: dict[str, bytes], tmp_path: Path) -> Path:
+    """The two icons on a disk."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    for name, content in pair.items():
+        (folder / name).write_bytes(content)
+    return folder
+
+
+def changed(about: bytes, **keys: Any) -> bytes:
+    """A sidecar with other content, and with a digest of its own that is right again."""
+    return sidecar_text(sealed({**json.loads(about), **keys}))
+
+
+def said(files: dict[str, bytes]) -> str:
+    found = verify(files)
+    assert not found.well
+    return "\n".join(str(finding) for finding in found.findings if finding.kind == "wrong")
+
+
+class TestWell:
+    """What was exported belongs together."""
+
+    @pytest.mark.parametrize("name", format_names())
+    def test_every_format(self, by_format: dict[str, dict[str, bytes]], name: str) -> None:
+        found = verify(by_format[name])
+        assert found.findings == ()
+        (pair,) = found.pairs
+        if name == "tcs2-protocol-ini":
+            assert pair.figures is None
+            return
+        assert pair.figures is not None
+        if pair.unit == "°C":
+            assert (pair.figures.least, pair.figures.greatest) == pytest.approx((32.0, 36.0))
+        else:
+            assert pair.figures.least == pytest.approx(-6.73, abs=0.01)
+        if pair.figures.duration_s is not None:
+            assert pair.figures.duration_s == pytest.approx(8.01, abs=0.02)
+
+    def test_a_set_a_bridge_and_two_formats_in_one_folder(self, pair: dict[str, bytes]) -> None:
+        assert verify(pair).findings == ()
+        both = {**exported("c-array", "double-dip", device="pwm-h-bridge-8"), **exported("csv", "cold-to-warm")}
+        assert verify(both).findings == ()
+
+    def test_another_program_is_told_and_is_not_wrong(self, pair: dict[str, bytes]) -> None:
+        name = "warming-step.json"
+        older = {**pair, name: changed(pair[name], program={"version": "0.0.9", "code_sha256": "0"}, thermicon="0.0.9")}
+        found = verify(older)
+        assert found.well
+        assert "was exported by thermicon 0.0.9, this is " in str(found.findings[0])
+        program = {**json.loads(pair[name])["program"], "code_sha256": "0"}
+        found = verify({**pair, name: changed(pair[name], program=program)})
+        assert found.well
+        assert "by other code of version" in str(found.findings[0])
+
+    def test_another_shipped_rig_of_that_name_is_told(self, pair: dict[str, bytes]) -> None:
+        name = "warming-step.json"
+        rig = json.loads(pair[name])["rig"]
+        rig["document"]["title"] = "as it was"
+        known = digest(json.dumps(rig["document"], sort_keys=True, ensure_ascii=False).encode())
+        found = verify({**pair, name: changed(pair[name], rig={**rig, "content_hash": known}, rig_sha256=known)})
+        assert found.well
+        assert "a rig called thenar that is not the shipped one of today" in str(found.findings[0])
+
+
+class TestTampered:
+    """One byte, one file, one name: whatever was changed after the export is wrong."""
+
+    def test_any_byte_of_any_file(self, by_format: dict[str, dict[str, bytes]], pair: dict[str, bytes]) -> None:
+        chance = random.Random(1)
+        for files in (*by_format.values(), pair):
+            for name, content in files.items():
+                places = {0, len(content) // 2, len(content) - 1, *(chance.randrange(len(content)) for _ in range(3))}
+                for place in places:
+                    other = bytearray(content)
+                    other[place] ^= 1 << chance.randrange(8)
+                    assert not verify({**files, name: bytes(other)}).well, (name, place)
+
+    @pytest.mark.slow
+    def test_every_third_byte_of_a_sidecar(self, by_format: dict[str, dict[str, bytes]]) -> None:
+        files, chance = by_format["tcs2-serial"], random.Random(2)
+        for place in range(0, len(files["warming-step.json"]), 3):
+            other = bytearray(files["warming-step.json"])
+            other[place] ^= 1 << chance.randrange(8)
+            assert not verify({**files, "warming-step.json": bytes(other)}).well, place
+
+    @pytest.mark.parametrize("change", [b"\r", b" ", b"\n", b"\0"])
+    def test_any_byte_more(self, pair: dict[str, bytes], change: bytes) -> None:
+        for name, content in pair.items():
+            assert not verify({**pair, name: content + change}).well, name
+
+    def test_any_file_missing(self, pair: dict[str, bytes]) -> None:
+        for name in pair:
+            files = {other: content for other, content in pair.items() if other != name}
+            words = "has no sidecar, so nothing says what it is" if name.endswith(".json") else f"{name}: is missing"
+            assert words in said(files)
+
+    def test_sidecars_swapped(self, pair: dict[str, bytes]) -> None:
+        one, other = "warming-step.json", "cooling-step.json"
+        text = said({**pair, one: pair[other], other: pair[one]})
+        assert "warming-step.json: describes cooling-step.csv, which this name does not go with; rename it" in text
+
+    def test_drives_swapped(self, pair: dict[str, bytes]) -> None:
+        one, other = "warming-step.csv", "cooling-step.csv"
+        text = said({**pair, one: pair[other], other: pair[one]})
+        assert "warming-step.csv: is not the drive that warming-step.json was written for: its digest differs" in text
+
+    def test_a_drive_renamed(self, pair: dict[str, bytes]) -> None:
+        files = dict(pair)
+        files["other.csv"] = files.pop("warming-step.csv")
+        assert "warming-step.csv: is missing; warming-step.json belongs to it" in said(files)
+        assert "other.csv: has no sidecar" in said(files)
+
+    def test_a_pair_renamed_together(self, pair: dict[str, bytes]) -> None:
+        files = dict(pair)
+        files["other.csv"], files["other.json"] = files.pop("warming-step.csv"), files.pop("warming-step.json")
+        assert "other.json: describes warming-step.csv, which this name does not go with" in said(files)
+
+    def test_a_copy_of_a_sidecar(self, pair: dict[str, bytes]) -> None:
+        files = {**pair, "warming-step.csv.json": pair["warming-step.json"]}
+        assert "describes warming-step.csv, as warming-step.json does; remove the one that is a copy" in said(files)
+
+    def test_files_of_two_exports(self, pair: dict[str, bytes]) -> None:
+        alone = exported("psychopy", "warming-step")
+        assert "conditions.csv: is not the set's file that warming-step.json was written for" in said(
+            {**pair, "warming-step.json": alone["warming-step.json"]}
+        )
+
+    def test_a_sidecar_that_is_only_laid_out_anew(self, pair: dict[str, bytes]) -> None:
+        neat = json.dumps(json.loads(pair["warming-step.json"]), ensure_ascii=False).encode()
+        assert "says the same but is laid out differently" in said({**pair, "warming-step.json": neat})
+
+    @pytest.mark.parametrize(
+        ("keys", "words"),
+        [
+            ({"rig_sha256": "0"}, r"holds another rig than the one of its digest \(rig_sha256\)"),
+            ({"device_sha256": "0"}, "holds another device than the one of its digest"),
+            ({"device": {"name": "x"}}, "holds another device than the one of its digest"),
+            ({"icon": None}, "holds no icon"),
+            ({"drive_sha256": None}, "holds no digest of warming-step.csv; export the icon again"),
+            ({"rig": {"document": {}}}, "holds another rig"),
+        ],
+    )
+    def test_a_sidecar_sealed_anew(self, pair: dict[str, bytes], keys: dict[str, Any], words: str) -> None:
+        assert re.search(words, said({**pair, "warming-step.json": changed(pair["warming-step.json"], **keys)}))
+
+    def test_another_icon_under_the_hash(self, pair: dict[str, bytes]) -> None:
+        icon = json.loads(pair["warming-step.json"])["icon"]
+        icon["text"] = icon["text"].replace("4 °C", "5 °C")
+        assert "holds another icon than the one of its content_hash" in said(
+            {**pair, "warming-step.json": changed(pair["warming-step.json"], icon=icon)}
+        )
+
+    @pytest.mark.parametrize("name", [n for n in format_names() if n not in ("tcs2-protocol-ini", "psychopy")])
+    def test_a_drive_of_another_icon_with_its_digest(self, by_format: dict[str, dict[str, bytes]], name: str) -> None:
+        files, other = by_format[name], exported(name, "linear-cooling")
+        beside = next(each for each in files if each.endswith(".json"))
+        about = json.loads(files[beside])
+        drive = next(content for each, content in other.items() if not each.endswith(".json"))
+        forged = {about["file"]: drive, beside: changed(files[beside], drive_sha256=digest(drive))}
+        assert "goes " in said(forged)
+        assert "as its sidecar says" in said(forged)
+
+
+class TestHostile:
+    """Folders that nobody exported."""
+
+    @pytest.mark.parametrize(
+        "content",
+        [
+            b"", b"[]", b"{}", b"nan", b"[" * 100_000, b"{" * 100_000, b'{"a": ' + b"9" * 5000 + b"}",
+            b'{"thermicon": "\\ud800", "file": "a.csv"}', b'{"thermicon": 1, "file": 2}', b"\xff\xfe",
+            b'{"thermicon": [], "file": "a.csv", "rig": [], "device": 3, "icon": [], "played": {"segments": []}}',
+            b'{"thermicon": {}, "file": "a.csv", "format": {"name": []}, "rig": {"name": {}, "content_hash": {}}}',
+            b'{"thermicon": {}, "file": "a.csv", "set_files": {"../../x": []}, "program": 1, "icon": {"text": 1}}',
+            b'{"thermicon": {}, "file": "a.csv", "format": {"name": "wav", "frames_per_update": 0}, "played": '
+            b'{"samples": 1e999, "duration_s": NaN, "offset_V": 1, "step_V": 1}}',
+        ],
+    )  # fmt: skip
+    def test_anything_may_be_in_a_sidecar(self, content: bytes) -> None:
+        start = time.monotonic()
+        assert not verify({"a.json": content, "a.csv": b"x"}).well
+        assert time.monotonic() - start < 5
+
+    def test_no_sidecar_at_all(self) -> None:
+        assert "holds no sidecar; give a folder that was exported" in said({"notes.txt": b""})
+
+    def test_a_claim_is_read_only_from_an_object(self) -> None:
+        assert claims_of(b'{"thermicon": "1"}') is None
+
+
+class TestCommand:
+    """The words and exit codes."""
+
+    def test_all_well(self, cli: Cli, out: Path) -> None:
+        (out / "README.txt").write_text("mine")
+        done = cli("export", "--verify", out)
+        assert done.exit_code == 0, done.stderr
+        assert "warming-step.csv   warming-step.json" in done.stdout
+        assert f"{out}: 2 drives and their sidecars belong together" in " ".join(done.stdout.split())
+        assert done.stderr == "note: README.txt: does not belong to an export and is not looked into\n"
+
+    def test_what_is_wrong_is_named_with_the_cure(self, cli: Cli, out: Path) -> None:
+        text = (out / "warming-step.csv").read_text()
+        (out / "warming-step.csv").write_text(text.replace("rest", "Rest", 1))
+        done = cli("export", "--verify", out)
+        assert done.exit_code == 1
+        rows = {line.split()[0]: line.split()[-1] for line in done.stdout.splitlines() if ".csv" in line}
+        assert rows == {"cooling-step.csv": "yes", "warming-step.csv": "NO"}
+        assert (
+            "wrong: warming-step.csv: is not the drive that warming-step.json was written for: its digest differs; put "
+            "the file back as it was exported, or export the icon again\n"
+        ) in done.stderr
+        assert done.stderr.endswith("1 thing does not belong together\n")
+
+    def test_an_export_verifies_itself(self, cli: Cli, two: Path, tmp_path: Path) -> None:
+        out = tmp_path / "drives"
+        assert cli("export", two, "--to", "csv", "-o", out).exit_code == 0
+        done = cli("export", two, "--icon", "cool-step", "--to", "tdms", "-o", out, "--force")
+        assert done.exit_code == 0, done.stderr
+        assert f"removed from {out}, since their sidecars now describe other drives: cool-step.csv" in done.stderr
+        assert sorted(path.name for path in out.iterdir()) == [
+            "cool-step.json", "cool-step.tdms", "warm-step.csv", "warm-step.json",
+        ]  # fmt: skip
+        assert cli("export", "--verify", out).exit_code == 0
+
+    def test_links_and_folders_are_told(self, cli: Cli, out: Path) -> None:
+        (out / "sub").mkdir()
+        shutil.move(out / "warming-step.csv", out.parent / "elsewhere.csv")
+        (out / "warming-step.csv").symlink_to(out.parent / "elsewhere.csv")
+        done = cli("export", "--verify", out)
+        assert done.exit_code == 1
+        assert "note: sub is a folder and is not looked into" in done.stderr
+        assert "wrong: warming-step.csv: is missing" in done.stderr
+
+    def test_nothing_of_a_file_reaches_the_terminal_raw(self, cli: Cli, out: Path) -> None:
+        (out / "a.json").write_text('{"thermicon": "\\u001b[2J", "file": "a\\u001b[1A.csv"}')
+        done = cli("export", "--verify", out)
+        assert done.exit_code == 1
+        assert "\x1b" not in done.stdout + done.stderr
+
+    @pytest.mark.parametrize(
+        ("arguments", "words", "code"),
+        [
+            (("six-icons", "--verify", "out"), "leave out the file six-icons", 2),
+            (("--verify", "out", "--to", "csv"), "leave out --to", 2),
+            (("--verify", "out", "-o", "out"), "leave out -o", 2),
+            (("--verify", "out", "--force"), "leave out --force and --tail", 2),
+            ((), "Missing argument 'FILE'", 2),
+            (("--verify", "nowhere"), "cannot verify nowhere: there is no such folder", 1),
+            (("--verify", "two.cue"), "cannot verify two.cue: it is a file; give the folder of an export", 1),
+        ],
+    )
+    def test_what_cannot_be(
+        self, cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], words: str, code: int
+    ) -> None:
+        monkeypatch.chdir(two.parent)
+        done = cli("export", *arguments)
+        assert done.exit_code == code
+        assert words in " ".join(done.stderr.replace("│", " ").split())
+
+    def test_an_export_that_was_ended_between_two_renames_is_told(self, cli: Cli, tmp_path: Path) -> None:
+        (tmp_path / ".out.thermicon-part" / "old").mkdir(parents=True)
+        done = cli("export", "--verify", tmp_path / "out")
+        assert done.exit_code == 1
+        assert "there is no such folder; an export was ended half way, and the next one into" in done.stderr
+
+
+def test_verifying_is_quick(pair: dict[str, bytes]) -> None:
+    verify(pair)
+    start = time.monotonic()
+    for _ in range(5):
+        assert verifying.verify(pair).well
+    assert time.monotonic() - start < 5.0
