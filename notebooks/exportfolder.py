@@ -11,13 +11,13 @@ import errno
 import os
 import shutil
 import stat
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from thermicon.notebooks.belonging import replaced_with
 from thermicon.notebooks.locking import lock
-from thermicon.notebooks.outputs import OutputError, check_folder, stopped_cleanly
+from thermicon.notebooks.outputs import OutputError, check_folder, interrupts_wait
 from thermicon.notebooks.swapping import exchange
 
 CURE = "give a folder of its own, such as -o drives"
@@ -64,13 +64,14 @@ def publish(files: Mapping[str, bytes], folder: Path, replace: bool = False, how
     ...     sorted(path.name for path in (Path(made) / "drives").iterdir())
     ['a.csv', 'a.json']
     """
-    goal = check_export_folder(folder)
     try:
-        with stopped_cleanly(), _stage(goal, folder) as stage:
+        goal = check_export_folder(folder)
+        with interrupts_wait() as stop, _stage(goal, folder) as stage:
             there = _listed(goal, folder) if goal.exists() else {}
             _keep(files, there, folder, replace, how)
             gone = replaced_with(files, {name: goal / name for name in there}, folder)
-            _build(stage / NEW, files, goal, [name for name in there if name not in files and name not in gone])
+            staying = [name for name in there if name not in files and name not in gone]
+            _build(stage / NEW, files, goal, staying, stop)
             if there:
                 exchange(stage / NEW, goal, stage / OLD)
                 _adopt(stage, goal, there, files)
@@ -167,16 +168,23 @@ def _recover(stage: Path, goal: Path) -> None:
             shutil.rmtree(left)
 
 
-def _build(new: Path, files: Mapping[str, bytes], goal: Path, staying: Collection[str]) -> None:
-    """Make the next state of a folder: what stays as links to the same files, what is new flushed to the disk."""
+def _build(
+    new: Path, files: Mapping[str, bytes], goal: Path, staying: Collection[str], stop: Callable[[], None]
+) -> None:
+    """Make the next state of a folder: what stays as links to the same files, what is new flushed to the disk.
+
+    ``stop`` is called after every file, and may end it.
+    """
     new.mkdir()
     for name in staying:
         _link(goal / name, new / name)
+        stop()
     for name, content in files.items():
         with (new / name).open("xb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
+        stop()
     if goal.exists():
         new.chmod(stat.S_IMODE(goal.stat().st_mode))
     _flush(new)

@@ -6,7 +6,7 @@ import contextlib
 import os
 import signal
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import FrameType
@@ -45,7 +45,7 @@ def check_folder(path: Path) -> None:
     """Fail now where the folder ``path`` could neither be used nor be made."""
     if path.is_dir():
         _check_folder(path, path)
-    elif path.exists():
+    elif path.exists() and not path.is_dir():  # it may have been made in between
         raise OutputError(f"cannot write into {path}: it is a file; give the name of a folder")
     else:
         _check_folder(path, path.parent)
@@ -141,3 +141,33 @@ def stopped_cleanly() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def interrupts_wait() -> Iterator[Callable[[], None]]:
+    """Have Ctrl-C and SIGTERM wait, so that tidying up is never cut short.
+
+    They act like Ctrl-C when the function that the block gets is called, and at its end.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+    came: list[int] = []
+
+    def wait(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+
+    def check() -> None:
+        if came:
+            raise KeyboardInterrupt
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    held = {number: action for number, action in before.items() if action not in (None, signal.SIG_IGN)}
+    for number in held:
+        signal.signal(number, wait)
+    try:
+        yield check
+    finally:
+        for number, action in held.items():
+            signal.signal(number, action)
+    check()

@@ -28,7 +28,7 @@ def swap(one: Path, other: Path) -> bool:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     a, b = Path(folder) / "a", Path(folder) / "b"
     ...     _ = a.write_text("1"), b.write_text("2")
-    ...     a.read_text() == ("2" if swap(a, b) else "1")
+    ...     ("2" if swap(a, b) else "1") == a.read_text()
     True
     """
     if not sys.platform.startswith("linux"):

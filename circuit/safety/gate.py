@@ -29,7 +29,6 @@ from thermicon.circuit.safety.repeated import (
 from thermicon.circuit.safety.repetition import Cycle
 from thermicon.circuit.safety.scenarios import rest_of
 from thermicon.circuit.safety.single import Single
-from thermicon.circuit.safety.tally import Tally
 from thermicon.circuit.solver.batch_inputs import State
 from thermicon.circuit.solver.drive import Drive
 
@@ -46,7 +45,7 @@ class Gate:
     `checks` has every rule once, in the scenario that goes farthest; times count from the first row of that play.
     `after_C` is the skin of the rig as given, 60 s after the last sample, for each ending; `drift_C` where zero
     current takes it in the end, None for a device without a current. `repeated` is the verdict on playing it again and
-    again, which `checks` include; `demands` is what the hardware must prevent.
+    again, which `checks` include; `demands` is what the hardware must prevent: both None where one play was asked for.
     """
 
     rig_name: str
@@ -57,8 +56,8 @@ class Gate:
     checks: tuple[Check, ...]
     after_C: dict[str, float]
     drift_C: float | None
-    repeated: Repeated
-    demands: Demands
+    repeated: Repeated | None
+    demands: Demands | None
 
     def __repr__(self) -> str:
         return f"Gate({self.colour}: {len(self.checks)} rules in {self.scenarios} scenarios on {self.rig_name})"
@@ -84,8 +83,8 @@ class Gate:
         found = next((finding for finding in self.findings if finding.severity == "hard"), None)
         if found is None:
             return None
-        again = found in self.repeated.checks
-        return f"{found}; {self.repeated.cure}" if again else str(found)
+        again = self.repeated is not None and found in self.repeated.checks
+        return f"{found}; {self.repeated.cure}" if again and self.repeated is not None else str(found)
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -109,9 +108,9 @@ class Gate:
             "ending_s": ENDING_S,
             "skin_after_ending_C": dict(self.after_C),
             "skin_in_the_end_at_zero_current_C": self.drift_C,
-            "repeated": self.repeated.to_dict(),
-            "recovery_s": self.repeated.recovery_s,
-            "shortest_pause_s": self.repeated.shortest_pause_s,
+            "repeated": None if self.repeated is None else self.repeated.to_dict(),
+            "recovery_s": None if self.repeated is None else self.repeated.recovery_s,
+            "shortest_pause_s": None if self.repeated is None else self.repeated.shortest_pause_s,
             "findings": [as_dict(finding) for finding in self.findings],
             "checks": [as_dict(check) for check in self.checks],
         }
@@ -125,6 +124,7 @@ def gate(
     bridge_A: float | None = None,
     limits: Limits | None = None,
     pause_s: float | None = None,
+    once: bool = False,
 ) -> Gate:
     """Check a drive against every rule of safety, on the rig and in all corners of its uncertainty.
 
@@ -146,6 +146,8 @@ def gate(
         In the place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the recovery time.
+    once
+        Judge one play and its endings only, as of a session that is a sequence already.
 
     Raises
     ------
@@ -223,11 +225,12 @@ def _gated(
     display = [check.value for check in every if check.quantity == "display"]
     reach = (min(display), max(display))
     return tuple(
-        _gate(single, repeated, own, reach) for single, repeated, own in zip(singles, repeats, tallies, strict=True)
+        _gate(single, repeated, single.demands(repeated, own, reach))
+        for single, repeated, own in zip(singles, repeats, tallies, strict=True)
     )
 
 
-def _gate(single: Single, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Gate:
+def _gate(single: Single, repeated: Repeated | None, demands: Demands | None) -> Gate:
     rig = single.ensemble.rig
     return Gate(
         rig.name,
@@ -235,11 +238,11 @@ def _gate(single: Single, repeated: Repeated, played: list[Tally], reach_C: tupl
         rig.uncertainty,
         single.limits,
         len(single.ensemble.corners) * len(ENDINGS),
-        worst_of([single.checks, repeated.checks]),
+        single.checks if repeated is None else worst_of([single.checks, repeated.checks]),
         {ending: float(single.after_C[ending][0]) for ending in ENDINGS},
         single.drift_C,
         repeated,
-        single.demands(repeated, played, reach_C),
+        demands,
     )
 
 
@@ -249,7 +252,8 @@ def _lines(one: Gate) -> Iterator[str]:
         f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
         f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
     )
-    yield f"played again and again: {again.text}"
+    if again is not None:
+        yield f"played again and again: {again.text}"
     table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:
@@ -264,7 +268,7 @@ def _lines(one: Gate) -> Iterator[str]:
         yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
     if claims := surer(unsure):
         yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in one.demands.faults:
+    for fault in () if one.demands is None else one.demands.faults:
         yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
     yield WHAT_IT_IS_NOT
 

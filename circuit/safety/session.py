@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
+from thermicon.circuit.safety.checks import Check, as_dict, beyond, colour_of, findings_of
 from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT, Gate
-from thermicon.circuit.safety.limits import Check, as_dict, colour_of, findings_of
-from thermicon.circuit.safety.sessioncorners import beyond
 from thermicon.circuit.safety.sessionplan import SessionPlan
 from thermicon.circuit.solver.trace import Trace
 

@@ -11,13 +11,14 @@ from thermicon.circuit.inputs import nearest
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.checks import findings_of
 from thermicon.circuit.safety.exposure import cem43_min, henriques
 from thermicon.circuit.safety.gate import gate
-from thermicon.circuit.safety.limits import WATCHED, SafetyVerdict, checks_of, findings_of
+from thermicon.circuit.safety.limits import SafetyVerdict, checks_of
 from thermicon.circuit.safety.session import Play, Session, TimeBeyond
-from thermicon.circuit.safety.sessioncorners import fine_checks, merged
 from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
 from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
+from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import Drive
 from thermicon.circuit.solver.simulate import simulate_current
 from thermicon.circuit.solver.trace import CLOSE_K, Trace
@@ -54,7 +55,7 @@ def play_session(
     played = drive_of(plan, known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     rules = rig.limits if limits is None else limits
-    verdict = gate(played.drive, rig, rest_A=played.rest_A, limits=limits)
+    verdict = gate(played.drive, rig, rest_A=played.rest_A, limits=limits, once=True)
     power = np.append(trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s), 0.0)
     plays = _plays(plan, played, trace, rules, power)
     return Session(
@@ -64,7 +65,7 @@ def play_session(
         trace=trace,
         plays=plays,
         gate=verdict,
-        checks=merged(verdict.checks, fine_checks(played, rig, rules)),
+        checks=verdict.checks,
         time_beyond=_times_beyond(rules, trace),
         dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
         henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),

@@ -23,7 +23,6 @@ from thermicon.circuit import (
     simulate,
     summarise,
 )
-from thermicon.circuit.safety.sessiondrive import drive_of
 from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS, order_text, read_order
 from thermicon.icons import Icon, IconSet, parse, read_cue
 
@@ -157,22 +156,6 @@ def test_a_rate_is_not_averaged_away_in_a_long_session(rig: Rig) -> None:
     fine, coarse = (float(np.abs(np.diff(skin[::k]) / np.diff(times[::k])).max()) for k in (1, 10))
     assert coarse < 0.98 * fine < rate.value
     assert fine <= rate.value + 1e-9
-
-
-def test_checks_in_stretches_are_those_of_one_run(six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
-    from thermicon.circuit.safety import sessioncorners
-
-    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
-    for each in (rig, sink):
-        drive = drive_of(SessionPlan(("cooling-step", "linear-warming")), {icon.name: icon for icon in six}, each)
-        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 5_000)
-        whole = sessioncorners.fine_checks(drive, each, each.limits)
-        monkeypatch.setattr(sessioncorners, "STRETCH_ROWS", 333)
-        parts = sessioncorners.fine_checks(drive, each, each.limits)
-        assert len(whole) == len(parts) > 8
-        for one, other in zip(whole, parts, strict=True):
-            assert one.quantity == other.quantity
-            assert one.value == pytest.approx(other.value, abs=2e-4)
 
 
 def test_icons_that_prescribe_current_are_played_by_their_means(rig: Rig) -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import signal
 import stat
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -259,6 +259,19 @@ class TestFiles:
         assert names(tmp_path) == ["out"]
         assert not (out / "b.csv").exists()
 
+    @posix
+    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+    def test_a_request_to_end_leaves_nothing(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+    ) -> None:
+        real = os.fsync
+        monkeypatch.setattr(os, "fsync", lambda file: (os.kill(os.getpid(), number), real(file)))
+        before = signal.getsignal(number)
+        with pytest.raises(KeyboardInterrupt):
+            publish(drive("a", b"1"), tmp_path / "out")
+        assert names(tmp_path) == []
+        assert signal.getsignal(number) is before
+
     def test_two_renames_where_folders_cannot_be_exchanged(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
@@ -366,38 +379,3 @@ class TestTwoAtOnce:
         loser = next(text for run, text in zip(runs, said, strict=True) if run.returncode)
         assert "exists already and is kept" in loser or "another export is writing into out" in loser
         assert len(names(tmp_path / "out")) == 2
-
-
-def test_the_next_command_sweeps_the_draft_of_one_that_was_killed(tmp_path: Path) -> None:
-    script = (
-        "import os, signal, sys\nfrom pathlib import Path\n"
-        "from thermicon.notebooks.outputs import complete_or_absent\n"
-        "with complete_or_absent(Path(sys.argv[1])) as draft:\n"
-        "    draft.write_text('half')\n    os.kill(os.getpid(), signal.SIGKILL)\n"
-    )
-    run = subprocess.run([sys.executable, "-c", script, tmp_path / "trace.csv"], check=False)
-    assert run.returncode == -9
-    (left,) = tmp_path.iterdir()
-    mine = tmp_path / left.name.replace("thermicon-part", "part")
-    mine.write_text("not a draft of ours")
-    again = "from pathlib import Path; import sys\nfrom thermicon.notebooks.outputs import complete_or_absent\n"
-    again += "with complete_or_absent(Path(sys.argv[1])) as draft: draft.write_text('x')\n"
-    subprocess.run([sys.executable, "-c", again, tmp_path / "other.json"], check=True)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([mine.name, "other.json"])
-
-
-@posix
-def test_a_draft_that_is_being_written_is_not_swept_and_an_old_one_of_a_reused_number_is(tmp_path: Path) -> None:
-    from thermicon.notebooks.drafts import draft_of, sweep
-
-    with draft_of(tmp_path / "a.csv") as draft:
-        sweep(tmp_path)
-        assert draft.exists()
-    reused = tmp_path / f".b.{os.getppid()}-0.thermicon-part.csv"
-    reused.write_text("half")
-    sweep(tmp_path)
-    assert reused.exists()
-    long_ago = time.time() - 2 * 86_400
-    os.utime(reused, (long_ago, long_ago))
-    sweep(tmp_path)
-    assert not reused.exists()
