@@ -77,11 +77,14 @@ LIMITS: dict[str, tuple[float, float]] = {
     "slew rate": (1e-6, 1e15),  # the fastest amplifiers slew some 1e10 V/s
     "set-point range": (-100.0, 200.0),
     "set-point step": (1e-4, 10.0),
+    "set-point gain": (1e-6, 1e3),
+    "set-point offset": (-1000.0, 1000.0),
     "tick": (1e-3, 10.0),
     "segments": (1, 1e6),
     "segment length": (1, 1e6),
     "baseline range": (-100.0, 200.0),
     "ramp rate": (1e-3, 1e5),
+    "lag": (0.0, 60.0),
 }
 """What any number of a quantity may be, in its unit: wider than hardware, so that a slip is told and no file takes all
 memory."""

@@ -16,7 +16,7 @@ from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.icons import load_library
 
-RIG = Rig.load("thenar")
+RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
 CFLAGS = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]
 

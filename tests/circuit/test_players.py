@@ -21,7 +21,7 @@ from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
 from thermicon.icons import load_library
 
-RIG = Rig.load("thenar")
+RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
 MUST = must_prevent([{"hardware_must_prevent": MADE_UP}])
 

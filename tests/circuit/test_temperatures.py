@@ -160,7 +160,7 @@ class TestSpread:
 
     def test_export_and_sidecar_say_it_and_advise_a_loop(self) -> None:
         form = load_format("csv")
-        ready = prepare(load_library("six-icons")["warming-step"], RIG, Device.load("pwm-h-bridge-8"), form)
+        ready = prepare(load_library("six-icons")["warming-step"], RIG, Device.load("pwm-h-bridge-10"), form)
         assert ready.spread is not None
         assert "move by +" in str(ready.spread)
         assert "--device closed-loop-controller --to setpoint-csv" in str(ready.spread)
