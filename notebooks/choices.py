@@ -92,7 +92,8 @@ def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
             f"  - over the range of the model's parameters {percent(low)} to {percent(high)} correct, "
             f"{least:.2f} to {most:.2f} bits"
         )
-    yield f"  - together they last {number(chosen['total_s'])} s and take {number(chosen['total_J'])} J"
+    energy = "" if chosen["total_J"] is None else f" and take {number(chosen['total_J'])} J"
+    yield f"  - together they last {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:
         asked = min(chosen["people"], ONE_BY_ONE)
         yield (

@@ -67,10 +67,17 @@ def export_file(
 
 
 def tell(ready: Sequence[Prepared]) -> None:
-    """Say of every icon how it is played and how far that is from the design, and what is to be known of it."""
+    """Say of every icon how it is played and how far that is from the design, and what is to be known of it.
+
+    Where the drives are played open loop, one more line says what a module that was not measured leaves open.
+    """
     for one in ready:
         for line in told_of(one):
             note(line)
+    spreads = [(one.spread, one.realised.icon.name) for one in ready if one.spread is not None]
+    if spreads:
+        widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
+        note(f"{name}: {widest}")
 
 
 def told_of(one: Prepared) -> Iterator[str]:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from thermicon.notebooks.overview import COOL, GREY, INK, TARGET, WARM
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Prepared
+    from thermicon.circuit import Prepared, Realised
     from thermicon.notebooks.exporting import Ready
 
 PLACES = (("skin", "skin_C", INK, "-"), ("cold receptor", "cold_receptor_C", COOL, "-."),
@@ -30,17 +31,15 @@ def export_figure(ready: Ready, place: int = 0, size: tuple[float, float] = (8.0
 
     one = ready.prepared[place]
     figure = Figure(figsize=size, layout="constrained")
-    axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1.0, 1.0])
     realised = one.realised
+    axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1.0, 1.0])
     designed, delivered = realised.designed_trace, realised.trace
     time_s = delivered.time_s
     axes[0].plot(time_s, designed.skin_C, color=TARGET, lw=6.0, solid_capstyle="butt", label="skin, designed")
     axes[0].plot(time_s, delivered.skin_C, color=INK, lw=1.4, label="skin, delivered")
     axes[0].plot(time_s, delivered.display_C, color=GREY, lw=1.1, ls=(0, (6, 2)), label="display, delivered")
     axes[0].set_ylabel("temperature (°C)")
-    axes[1].plot(time_s, designed.current_A, color=TARGET, lw=4.0, drawstyle="steps-post", label="current, designed")
-    axes[1].plot(time_s, delivered.current_A, color=INK, lw=1.0, drawstyle="steps-post", label="current, delivered")
-    axes[1].set_ylabel("current (A)")
+    _drive_panel(axes[1], realised)
     for name, column, colour, style in PLACES:
         apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
         axes[2].plot(time_s, apart, color=colour, lw=1.2, ls=style, label=name)
@@ -54,6 +53,18 @@ def export_figure(ready: Ready, place: int = 0, size: tuple[float, float] = (8.0
     figure.align_ylabels(axes)
     figure.suptitle(title_of(one), fontsize=11)
     return figure
+
+
+def _drive_panel(ax: Axes, realised: Realised) -> None:
+    """What the device puts out: current, or the set-points of a thermode and the display behind them."""
+    designed, delivered = realised.designed_trace, realised.trace
+    time_s, label, style = delivered.time_s, "current", "steps-post"
+    wide, thin = designed.current_A, delivered.current_A
+    if not delivered.has_current:
+        label, style, wide, thin = "display", "default", designed.display_C, delivered.display_C
+    ax.plot(time_s, wide, color=TARGET, lw=4.0, drawstyle=style, label=f"{label}, designed")
+    ax.plot(time_s, thin, color=INK, lw=1.0, drawstyle=style, label=f"{label}, delivered")
+    ax.set_ylabel("current (A)" if delivered.has_current else "display (°C)")
 
 
 def title_of(one: Prepared) -> str:

@@ -97,7 +97,9 @@ def traces_of(drawing: Drawing) -> Frame:
     dt, rows = uniform_clock(trace.time_s)
     every = max(1, math.ceil((rows - 1) / MOST_POINTS))
     curves = _Curves(slice(0, rows, every))
-    panels = [_temperature(drawing, curves), _heat(drawing, curves), _current(drawing, curves)]
+    panels = [_temperature(drawing, curves), _heat(drawing, curves)]
+    if drawing.trace.has_current:  # a thermode has none
+        panels.append(_current(drawing, curves))
     if len(percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
     time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}

@@ -69,12 +69,10 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
         known.one(name) for name in ("complete adaptation", "threshold in old age", "contact resistance spread")
     )
     thermode = known.one("thermode area of the forced-choice thresholds")
-    area, limit = round(rig.contact.area_m2 * 1e4, 6), rig.driver.current_max_A
+    area = round(rig.contact.area_m2 * 1e4, 6)
     smallest = round(min(Rig.load(name).contact.area_m2 for name in rig_names()) * 1e4, 6)
-    greatest = math.floor(10 * _greatest_cooling_A(rig)) / 10
     contact = f"light touch of 3e-4 to 3e-3 m²·K/W, as the shipped rigs say of theirs; {spread.source}"
     areas = f"the finger pad of the fingertip rig; {thermode.quantity}: {thermode.source}"
-    greatest_said = "up to the current of greatest cooling of the rig's module"
     return (
         Knob("contact", "contact resistance", "×", FIRMEST_TIMES, LIGHTEST_TIMES, 0.05, 1.0,
              "resistance between display and skin, as a multiple of the rig's", contact),
@@ -89,8 +87,16 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
         Knob("age", "age", "years", YOUNGEST_YEARS, OLDEST_YEARS, 1.0, YOUNG_YEARS,
              "thresholds of both channels, from none to a doubling at 65: the middle is taken",
              f"{old.quantity}: {old.source} ({old.use})"),
-        Knob("limit", "current limit", "A", min(LEAST_A, limit), max(greatest, limit), 0.05, limit,
-             "how fast and how far the driver can go", greatest_said),
+        *([_limit_knob(rig)] if rig.thermode is None else []),
+    )  # fmt: skip
+
+
+def _limit_knob(rig: Rig) -> Knob:
+    """The current limit; a thermode has none."""
+    limit, greatest = rig.driver.current_max_A, math.floor(10 * _greatest_cooling_A(rig)) / 10
+    return Knob(
+        "limit", "current limit", "A", min(LEAST_A, limit), max(greatest, limit), 0.05, limit,
+        "how fast and how far the driver can go", "up to the current of greatest cooling of the rig's module",
     )  # fmt: skip
 
 
@@ -186,8 +192,9 @@ _OF_SITE = ("site", "cold_receptor_mm", "warm_receptor_mm", "depth_from", "layer
 
 
 def _held(rig: Rig) -> Rig:
-    """The rig, if there is a current that holds its skin at rest; RigError otherwise."""
-    hold(rig, "skin", rig.skin.rest_C)
+    """The rig, if there is a current that holds its skin at rest; RigError otherwise. A thermode needs none."""
+    if rig.thermode is None:
+        hold(rig, "skin", rig.skin.rest_C)
     return rig
 
 

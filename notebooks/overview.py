@@ -25,10 +25,11 @@ def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence
     """
     from matplotlib.figure import Figure
 
-    panels = [_temperatures, _heat_flow, _current]
+    panels = [_temperatures, _heat_flow, *([_current] if trace.has_current else [])]
     figure = Figure(figsize=(8.0, 8.4 if percept is not None else 6.4), layout="constrained")
     count = len(panels) + (percept is not None)
-    axes = figure.subplots(count, 1, sharex=True, height_ratios=[1.5, 1.2, 0.9, 1.1][:count])
+    heights = [1.5, 1.2, *([0.9] if trace.has_current else []), *([] if percept is None else [1.1])]
+    axes = figure.subplots(count, 1, sharex=True, height_ratios=heights)
     for panel, ax in zip(panels, axes, strict=False):
         panel(trace, ax)
     if percept is not None:

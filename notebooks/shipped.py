@@ -50,8 +50,8 @@ def show_devices() -> None:
     made = table("device", "driven by", "range", "steps", "rate")
     devices = [Device.load(name) for name in device_names()]
     for device in devices:
-        low, high = device.interval("set-point range" if device.driven_by == "set-points" else "output range")
-        unit = {"volts": "V", "set-points": "°C"}.get(device.driven_by, "A")
+        low, high = device.interval("set-point range" if device.unit == "°C" else "output range")
+        unit = {"V": "V", "°C": "°C"}.get(device.unit, "A")
         bits, step = device.record("resolution"), device.record("set-point step")
         steps = f"{bits.central:g} bits" if bits else f"{step.central:g} K" if step else "–"
         fastest = next(

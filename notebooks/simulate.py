@@ -176,6 +176,12 @@ def headline(trace: Trace) -> str:
     return f"{start}, reached ({told}{steps})"
 
 
+def _current(trace: Trace) -> str:
+    if not trace.has_current:
+        return "none: a thermode follows temperatures in a loop of its own"
+    return span(float(trace.current_A.min()), float(trace.current_A.max()), "A", 2)
+
+
 def describe(trace: Trace) -> str:
     """Say what a person wants to know of a run first: outcome, drive, extremes, changes at the receptors."""
     peaks = []
@@ -185,7 +191,7 @@ def describe(trace: Trace) -> str:
         peaks.append(f"{name} {span(low, high, 'K', 2)}")
     lines = [
         headline(trace),
-        f"  current   {span(float(trace.current_A.min()), float(trace.current_A.max()), 'A', 2)}",
+        f"  current   {_current(trace)}",
         f"  display   {span(float(trace.display_C.min()), float(trace.display_C.max()), '°C')}",
         f"  skin      {span(float(trace.skin_C.min()), float(trace.skin_C.max()), '°C')}",
         f"  change    {'; '.join(peaks)}",

@@ -35,7 +35,7 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    from thermicon.circuit.rig.rigfile import unit_of
+    from thermicon.circuit.rig.keyunits import unit_of
 
     figure = Figure(figsize=(9.6, 8.2), layout="constrained")
     axes = list(figure.subplots(3, 3, sharex=True).flat)

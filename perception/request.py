@@ -72,6 +72,8 @@ def usable(asked: Choosing, icons: Sequence[Icon], traces: Sequence[Trace], rig:
     Raises `ChoiceError` for an icon that must be in and is unknown or sorted out, and where too few are left.
     """
     check_asked(asked, [icon.name for icon in icons])
+    if asked.most_J is not None and rig.thermode is not None:
+        raise ChoiceError(f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy")
     shapes: dict[object, str] = {}
     excluded: dict[str, str] = {}
     wanted = sorted(range(len(icons)), key=lambda k: (icons[k].name not in asked.must, k))
@@ -101,12 +103,16 @@ def usable(asked: Choosing, icons: Sequence[Icon], traces: Sequence[Trace], rig:
 def energy_J(trace: Trace, until_s: float) -> float:
     """Energy (J) that the driver puts into the module until a time: ∫ V·I dt, with the current held between rows.
 
+    NaN on a thermode, which states none.
+
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import read_cue
     >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"))
     >>> energy_J(trace, 4.0) < energy_J(trace, 8.0)
     True
     """
+    if not trace.has_current:
+        return math.nan
     steps = np.diff(np.minimum(trace.time_s, until_s))
     return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
 

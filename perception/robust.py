@@ -159,12 +159,19 @@ def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
         rig.with_(
             **{
                 "ambient.temperature_C": rig.ambient.temperature_C + AMBIENT_SD_K * float(np.clip(ambient[k], -2, 2)),
-                "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * float(sink[k])),
-                "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * float(gain[k])),
+                **(_pump_drawn(rig, float(sink[k]), float(gain[k])) if rig.thermode is None else {}),
             }
         )
         for k, rig in enumerate(rigs)
     ]
+
+
+def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
+    """Heat sink and module with their draws; a thermode has neither."""
+    return {
+        "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * sink),
+        "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * gain),
+    }
 
 
 def _values(d: Array, lapse: Array, durations: Array, rows: Sequence[int], objective: Objective, seed: int) -> Array:

@@ -13,7 +13,7 @@ import pytest
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("steady")
 
-DEBIAN_PACKAGE = {"chromium": "chromium", "ngspice": "ngspice"}
+DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}
 
 
 def find_tool(name: str) -> str:

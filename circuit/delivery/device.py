@@ -13,10 +13,13 @@ from thermicon.circuit.delivery.devicefile import DeviceError, DrivenBy, read_de
 from thermicon.circuit.inputs import nearest, read_text
 from thermicon.circuit.records import Record
 
+FINEST_SETPOINT_K = 0.001
+"""Step of set-points where a controller states none: a tenth of what the best display thermistors resolve."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Whole codes to a physical command: `offset + step · code`, codes `lowest` … `highest`; `unit` is V, A or 1."""
+    """Whole codes to a command: `offset + step · code`, codes `lowest` … `highest`; `unit` is V, A, 1 or °C."""
 
     offset: float
     step: float
@@ -29,8 +32,9 @@ class Scale:
 class Device:
     """What plays a drive, and how; all numbers come from `records`, each with its source.
 
-    `driven_by` is what it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, or
-    temperature set-points. `played`: whether thermicon ever drove one.
+    `driven_by` is what it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, segments
+    of temperature set-points that a thermode follows by itself, or temperatures against time, which a controller
+    around the rig's own module follows. `played`: whether thermicon ever drove one.
 
     >>> Device.load("dac-16")
     Device('dac-16', volts, never played)
@@ -83,13 +87,18 @@ class Device:
     @property
     def unit(self) -> str:
         """Unit of what it puts out: V, A, 1 (duty) or °C."""
-        return {"volts": "V", "amperes": "A", "duty": "1", "set-points": "°C"}[self.driven_by]
+        return {"volts": "V", "amperes": "A", "duty": "1", "set-points": "°C", "temperatures": "°C"}[self.driven_by]
 
     def scale(self, peak: float) -> Scale:
         """Return its codes for a waveform whose largest command has size `peak`, in the device's unit.
 
         Fixed levels do not hang on the waveform; others are set to its peak, rounded up to a thousandth.
         """
+        if self.driven_by == "temperatures":
+            low, high = self.interval("set-point range")
+            record = self.record("set-point step")
+            step = FINEST_SETPOINT_K if record is None else record.central
+            return Scale(0.0, step, math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9), self.unit)
         record = self.record("resolution")
         assert record is not None
         bits = round(record.central)

@@ -26,7 +26,7 @@ class DeviceError(InputError):
     """A device that cannot be, or that cannot do what is asked: what, where, value, limit, unit, cure."""
 
 
-DrivenBy = Literal["volts", "amperes", "duty", "set-points"]
+DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
 
 UNITS = {
     "resolution": "bit",
@@ -35,11 +35,14 @@ UNITS = {
     "carrier frequency": "Hz",
     "set-point range": "°C",
     "set-point step": "K",
+    "set-point gain": "V/K",
+    "set-point offset": "V",
     "tick": "s",
     "segments": "segments",
     "segment length": "ticks",
     "baseline range": "°C",
     "ramp rate": "K/s",
+    "lag": "s",
 }
 """Quantities a device may state, each with its unit; those whose unit hangs on what drives it are below."""
 
@@ -56,6 +59,7 @@ NEEDED: dict[str, tuple[str, ...]] = {
     "set-points": (
         "set-point range", "set-point step", "tick", "segments", "segment length", "baseline range", "ramp rate",
     ),
+    "temperatures": ("set-point range", "update rate"),
 }  # fmt: skip
 
 INTERVALS = ("output range", "set-point range", "baseline range", "segment length")
@@ -73,11 +77,14 @@ LIMITS: dict[str, tuple[float, float]] = {
     "slew rate": (1e-6, 1e15),  # the fastest amplifiers slew some 1e10 V/s
     "set-point range": (-100.0, 200.0),
     "set-point step": (1e-4, 10.0),
+    "set-point gain": (1e-6, 1e3),
+    "set-point offset": (-1000.0, 1000.0),
     "tick": (1e-3, 10.0),
     "segments": (1, 1e6),
     "segment length": (1, 1e6),
     "baseline range": (-100.0, 200.0),
     "ramp rate": (1e-3, 1e5),
+    "lag": (0.0, 60.0),
 }
 """What any number of a quantity may be, in its unit: wider than hardware, so that a slip is told and no file takes all
 memory."""

@@ -7,14 +7,18 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.formats import Format, FormatError, psychopy
-from thermicon.circuit.delivery.realise import Realised, realise
+from thermicon.circuit.delivery.formats import Format, FormatError
+from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.delivery.prevent import must_prevent
+from thermicon.circuit.delivery.realise import realise
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.refusal import Refusal, refusals_of
 from thermicon.circuit.delivery.sidecar import sealed, sidecar, sidecar_text
+from thermicon.circuit.delivery.spread import OpenLoopSpread, open_loop_spread
 from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.repeated import check_pause
-from thermicon.circuit.solver.difference import Difference, difference
+from thermicon.circuit.solver.difference import Difference
 from thermicon.icons import Icon
 
 
@@ -61,6 +65,7 @@ class Prepared:
     verdict: Verdict
     apart: Difference
     refusals: tuple[Refusal, ...]
+    spread: OpenLoopSpread | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -135,8 +140,8 @@ def prepare_set(
 
 
 def _judged(realised: Realised, verdict: Verdict) -> Prepared:
-    apart = difference(realised.designed_trace, realised.trace)
-    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart))
+    apart = realised.apart
+    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart), open_loop_spread(realised))
 
 
 def _bare(warning: str) -> str:
@@ -188,7 +193,7 @@ def pack(
         if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
             raise FormatError(f"{name}: {unsafe[0]}")
         drive = form.file_name(one.realised)
-        if form.name == psychopy.FORMAT.name and drive.casefold() in psychopy.SET_FILES:
+        if drive.casefold() in form.set_files:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
@@ -197,10 +202,12 @@ def pack(
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
     shared: dict[str, bytes] = {}
-    if form.name == psychopy.FORMAT.name and ready:
+    if form.player is not None and ready:
         names = [one.realised.icon.name for one in ready]
-        named = [(one.realised, drives[name][0], beside(name, form)) for one, name in zip(ready, names, strict=True)]
-        shared = psychopy.set_files(named)
+        played = [
+            Played(one.realised, drives[name][0], beside(name, form)) for one, name in zip(ready, names, strict=True)
+        ]
+        shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
     files: dict[str, bytes] = {}
     for one in ready:
         name = one.realised.icon.name
@@ -209,7 +216,7 @@ def pack(
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         about = sidecar(
             one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
-            demanded=one.verdict.demanded, drive=content, set_files=shared,
+            demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
         )  # fmt: skip
         files[beside(name, form)] = sidecar_text(sealed(about))
         files[drive] = content

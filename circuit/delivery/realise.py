@@ -1,95 +1,38 @@
 """What a device makes of a cue: quantised, held, limited, and simulated again.
 
-The file of every device begins with the rest: for one update (`lead_s`) the current, duty or set-point that holds the
-baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
+The file of a device that plays samples begins with the rest: for one update (`lead_s`) the current or duty that holds
+the baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.samples import Samples, current_of, rate_of, sample, within
-from thermicon.circuit.delivery.setpoints import Setpoints, setpoints_of
+from thermicon.circuit.delivery.realised import Narrowed, Realised
+from thermicon.circuit.delivery.regulated import realise_setpoints, traces_of_setpoints
+from thermicon.circuit.delivery.samples import Samples, current_of, led, rate_of, sample, within
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.temperatures import designed_until, follow_samples, realise_temperatures
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import bank_of, run_follow
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, baseline_C, design
+from thermicon.circuit.solver.inverse import Design, design
 from thermicon.circuit.solver.pwm import steady_of
 from thermicon.circuit.solver.simulate import duration_s, simulate_current
 from thermicon.circuit.solver.steady import hold
-from thermicon.circuit.solver.trace import Outcome, Trace
+from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
-
-NO_DRIVER = {"driver.current_min_A": -20.0, "driver.current_limit_A": 20.0, "driver.voltage_limit_V": 200.0}
-"""A thermode has a driver of its own: that of the rig does not hold back what its set-points ask for."""
 
 BRIDGE_ROUNDS = 3
 """Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
 
 
-@dataclass(frozen=True, slots=True)
-class Narrowed:
-    """A device whose range is smaller than a design asks for: in words, the most it plays in A, and what that misses.
-
-    `outcome` says whether the best design within the range reaches the target; None where the cue prescribes current.
-    """
-
-    text: str
-    most_A: float
-    outcome: Outcome | None
-
-
-@dataclass(frozen=True, slots=True)
-class Realised:
-    """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
-
-    The device gets the best that its range allows: a design within that range. `played` is what goes into files,
-    `delivered` the current that then flows (for set-points: by which this rig's module would follow them), `trace` what
-    it does; `designed` and `designed_trace` the same without the device.
-    `outcome` says whether the design reaches its target, `narrowed` where the device's range is too small for it.
-    """
-
-    icon: Icon
-    rig: Rig
-    device: Device
-    requested_Hz: float
-    rate_Hz: float
-    lead_s: float
-    played: Samples | Setpoints
-    designed: Drive
-    delivered: Drive
-    designed_trace: Trace
-    trace: Trace
-    outcome: Outcome | None
-    warnings: tuple[str, ...]
-    narrowed: Narrowed | None = None
-
-    def __repr__(self) -> str:
-        return (
-            f"Realised({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at {self.rate_Hz:g} Hz, "
-            f"skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
-        )
-
-    @property
-    def told(self) -> tuple[str, ...]:
-        """What is to be known of the delivery: warnings, and what it asks of the rig's driver, where that plays it."""
-        own = self.device.driven_by in ("duty", "set-points")
-        return self.warnings if own else (*self.warnings, *self.trace.beyond)
-
-    @property
-    def end_s(self) -> float:
-        """Time in s of the row that marks the end."""
-        return float(self.delivered.time_s[-1])
-
-    @property
-    def file_s(self) -> float:
-        """How long in s the file plays; one of set-points has no rest before it, which the simulation begins with."""
-        return float(self.played.time_s[-1])
+__all__ = ["Narrowed", "Realised", "designed_until", "followed", "realise", "start_of", "traces_until"]
 
 
 def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> Realised:
@@ -101,24 +44,26 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.91 … 32.03 °C)
     """
-    end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     if device.driven_by == "set-points":
-        return _by_setpoints(icon, rig, device, end, rate_Hz)
+        return realise_setpoints(icon, rig, device, tail_s, rate_Hz)
+    if device.driven_by == "temperatures":
+        return realise_temperatures(icon, rig, device, tail_s, rate_Hz)
+    end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
     best = plan if narrow is rig else design(icon, narrow, end)
-    possible = _led(best, end, rate)
+    possible = led(best, end, rate)
     model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     samples, told = _sampled(device, rig, possible, rate, model)
     narrowed = _narrowed(device, rig, narrow, plan, best)
     if narrowed is not None:
         told = (narrowed.text, *told)
-    designed = designed_until(_led(plan, end, rate), (len(samples.codes) - 1) / rate)
+    designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     found = Realised(
-        icon, rig, device, requested, rate, 1.0 / rate, samples, designed, current_of(device, rig, samples), model,
-        model, plan.outcome, told, narrowed,
+        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
+        model, plan.outcome, told, None, narrowed,
     )  # fmt: skip
     return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
 
@@ -154,19 +99,14 @@ def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | 
 def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, the rest held at the end."""
     rig, played = realised.rig, realised.played
-    designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
     if isinstance(played, Setpoints):
-        delivered = designed_until(realised.delivered, end_s)
-    else:
-        delivered = _cut(current_of(realised.device, rig, played.until(end_s)), end_s)
-    return designed, simulate_current(delivered, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
-
-
-def designed_until(drive: Drive, end_s: float) -> Drive:
-    """The same drive with its last current held until a time in s."""
-    if end_s <= drive.time_s[-1] + 1e-9:
-        return drive
-    return Drive(np.append(drive.time_s, end_s), np.append(drive.current_A, drive.current_A[-1]), drive.held)
+        designed, delivered, _ = traces_of_setpoints(realised.icon, rig, realised.device, played, end_s, rate_Hz)
+        return designed, delivered
+    designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
+    until = played.until(end_s)
+    by_loop = realised.device.driven_by == "temperatures"
+    drive = _cut(follow_samples(rig, until) if by_loop else current_of(realised.device, rig, until), end_s)
+    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
@@ -198,43 +138,6 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         f"for up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)
-
-
-def _led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
-    """The design behind one update of rest, with the rest again from its end on."""
-    lead, drive = 1.0 / rate_Hz, plan.drive
-    if drive.held:
-        kept = drive.time_s[:-1] < end_s - 1e-9
-        times, currents = drive.time_s[:-1][kept], drive.current_A[:-1][kept]
-        return Drive([0.0, *(times + lead), end_s + lead], [plan.rest_A, *currents, plan.rest_A], held=True)
-    times, currents = drive.time_s + lead, drive.current_A
-    return Drive([0.0, *times], [plan.rest_A, *currents])
-
-
-def _by_setpoints(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Realised:
-    free = rig.with_(**NO_DRIVER)
-    plan, update = design(icon, free, end_s), rig.driver.update_Hz
-    lead = 1.0 / update
-    designed = _led(plan, end_s, update)
-    exact = icon.frame.control == "display"
-    if exact:
-        corners = icon.lower(baseline_C(icon, rig))
-        times, levels = np.array(corners.time_s), np.array(corners.value)
-        if end_s > times[-1] + 1e-9:
-            times, levels = np.append(times, end_s), np.append(levels, levels[-1])
-    else:
-        fine = simulate_current(designed, rig, rate_Hz=1.0 / device.most("tick"), start_C=plan.start_C)
-        inside = fine.time_s >= lead - 1e-9
-        times, levels = fine.time_s[inside] - lead, fine.display_C[inside]
-    setpoints = setpoints_of(device, times, levels, curve=not exact)
-    end = max(lead + float(setpoints.time_s[-1]), float(designed.time_s[-1]))
-    delivered = followed(free, setpoints, lead, end)
-    designed = designed_until(designed, float(delivered.time_s[-1]))
-    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    return Realised(
-        icon, rig, device, update, 1.0 / setpoints.tick_s, lead, setpoints, designed, delivered, model,
-        simulate_current(delivered, rig, rate_Hz=rate_Hz), plan.outcome, (),
-    )  # fmt: skip
 
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:

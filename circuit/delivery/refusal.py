@@ -15,7 +15,7 @@ from thermicon.circuit.solver.trace import Outcome
 
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.export import Verdict
-    from thermicon.circuit.delivery.realise import Realised
+    from thermicon.circuit.delivery.realised import Realised
     from thermicon.icons import Icon
 
 _SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
@@ -114,8 +114,10 @@ def lost_text(apart: Difference) -> str:
 
 def _out_of_reach(realised: Realised, outcome: Outcome) -> str:
     """The rig's own shortfall, with what it would take."""
-    rig, driver = realised.rig, realised.rig.driver
     text = outcome.reason or "the target is missed"
+    if realised.drives is None:  # a thermode, which has neither driver nor module
+        return f"{text}; ask for a slower or smaller change, or use a thermode that can"
+    rig, driver = realised.rig, realised.rig.driver
     held = [name for name, _ in outcome.limits]
     if not held or rig.controller is not None:
         return f"{text}; ask for a slower or smaller change"

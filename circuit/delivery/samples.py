@@ -14,6 +14,7 @@ from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.inverse import Design
 from thermicon.circuit.solver.pwm import duty_of, switched
 
 DENSEST_HZ = 10_000.0
@@ -40,7 +41,7 @@ class Samples:
 
     @property
     def command(self) -> Array:
-        """Commands (n + 1,) in the unit of the scale: V, A, or duty (signed, −1 … 1)."""
+        """Commands (n + 1,) in the unit of the scale: V, A, °C, or duty (signed, −1 … 1)."""
         return self.scale.offset + self.scale.step * self.codes.astype(np.float64)
 
     def rows(self) -> npt.NDArray[np.intp]:
@@ -151,6 +152,17 @@ def current_of(device: Device, rig: Rig, samples: Samples) -> Drive:
     gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
     rows = samples.rows()
     return Drive(times[rows], command[rows] * gain, held=True)
+
+
+def led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
+    """The design behind one update of rest, with the rest again from its end on."""
+    lead, drive = 1.0 / rate_Hz, plan.drive
+    if drive.held:
+        kept = drive.time_s[:-1] < end_s - 1e-9
+        times, currents = drive.time_s[:-1][kept], drive.current_A[:-1][kept]
+        return Drive([0.0, *(times + lead), end_s + lead], [plan.rest_A, *currents, plan.rest_A], held=True)
+    times, currents = drive.time_s + lead, drive.current_A
+    return Drive([0.0, *times], [plan.rest_A, *currents])
 
 
 def _means(drive: Drive, edges: Array) -> Array:

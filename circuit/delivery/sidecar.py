@@ -10,9 +10,11 @@ from typing import Any
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.digests import digest, digest_of_content, plain
 from thermicon.circuit.delivery.formats.form import Format, events_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.delivery.spread import OpenLoopSpread
+from thermicon.circuit.delivery.thermode import lag_of
 from thermicon.circuit.program import own_version, this_program
 from thermicon.circuit.records import Record
 from thermicon.circuit.safety.summary import summarise
@@ -35,12 +37,14 @@ def sidecar(
     demanded: Mapping[str, object],
     drive: bytes,
     set_files: Mapping[str, bytes],
+    spread: OpenLoopSpread | None = None,
 ) -> dict[str, Any]:
     """Return all there is to know of one exported drive; units are in the names.
 
     `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
     that was not, `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes of the files that
-    belong to it, named here by their digests.
+    belong to it, named here by their digests. `spread` is what a module that was not measured may do
+    under an open loop.
     """
     icon, rig, outcome, device = realised.icon, realised.rig, realised.outcome, _device(realised.device)
     text, told = str(icon), [*rig.warnings, *realised.told]
@@ -75,6 +79,7 @@ def sidecar(
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(realised),
         "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "open_loop_spread": None if spread is None else spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
         "safety": dict(safety),
@@ -122,29 +127,25 @@ def _played(realised: Realised) -> dict[str, object]:
             "greatest_level_C": float(played.level_C.max()),
             "icon_begins_at_s": 0.0,
             "duration_s": realised.file_s,
+            "lag_s": lag_of(realised.device),
             "clock": (
-                f"times of events count from the start command; those under safety count from {realised.lead_s:g} s "
-                f"before it, since the simulation begins with one update of baseline"
+                "times count from the start command; the display follows with the lag, which is a delay and not "
+                "counted as a miss or a loss"
             ),
         }
     return _samples(played, realised.lead_s)
-
-
-_NOT_ITS_OWN = ("current_", "voltage_", "energy_", "hot_plate_")
-"""What a device that gets set-points does not have: these would be those of the rig's own module."""
 
 
 def _predicted(realised: Realised) -> dict[str, object]:
     found: dict[str, object] = dict(summarise(realised.trace).to_dict())
     if not isinstance(realised.played, Setpoints):
         return found
-    told = {key: None if key.startswith(_NOT_ITS_OWN) else value for key, value in found.items()}
-    return {**told, "duration_s": realised.file_s}
+    return {**found, "duration_s": realised.file_s}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
     scale = samples.scale
-    unit = "duty" if scale.unit == "1" else scale.unit
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
     ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
     return {
         "samples": len(samples.codes),

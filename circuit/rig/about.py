@@ -5,6 +5,8 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
+from thermicon.circuit.rig.parts import Thermode
+
 if TYPE_CHECKING:
     from thermicon.circuit.rig.rig import Rig
 
@@ -23,12 +25,20 @@ def about(rig: Rig) -> str:
             f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
         ),
         ("receptors", str(rig.receptor_depths())),
-        ("module", rig.module_source),
+        ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
         *(("warning", text) for text in rig.warnings),
         *(("note", text) for text in rig.notes),
     ]
     head = f"{rig.name}: {rig.title}" if rig.title else rig.name
     return "\n".join([head, *(line for label, text in rows for line in _wrapped(label, text))])
+
+
+def _thermode(thermode: Thermode) -> str:
+    fine = f"set-points in steps of {thermode.resolution_K:g} K" if thermode.resolution_K else "set-points of any step"
+    return (
+        f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C at up to {thermode.slew_K_per_s:g} K/s, {fine} at "
+        f"{thermode.update_Hz:g} Hz, followed with a lag of {thermode.lag_s:g} s; no module, no current"
+    )
 
 
 def _wrapped(label: str, text: str) -> list[str]:

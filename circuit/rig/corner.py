@@ -10,6 +10,7 @@ from typing import Any
 from thermicon.circuit.inputs import signed
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
 from thermicon.circuit.rig.modules import PARAMETERS
+from thermicon.circuit.rig.parts import HeatSink
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
 
@@ -50,10 +51,9 @@ def perturbed(
         "thermal conductance": conductance_relative,
         "plates": plates_relative,
     }
-    shifts = {
-        "ambient": (ambient_K, rig.ambient.temperature_C),
-        "heat sink": (heat_sink_K, rig.heat_sink.temperature_C),
-    }
+    shifts = {"ambient": (ambient_K, rig.ambient.temperature_C)}
+    if heat_sink_K or rig.pump is not None:
+        shifts["heat sink"] = (heat_sink_K, rig.heat_sink.temperature_C)
     _check(rig, shares, shifts)
     if not any((*shares.values(), ambient_K, heat_sink_K)):
         return rig
@@ -69,12 +69,18 @@ def perturbed(
     if heat_sink_K:
         sink = replace(rig.heat_sink, temperature_C=rig.heat_sink.temperature_C + heat_sink_K)
         document["heat_sink"]["temperature_C"] = sink.temperature_C
-        changed = replace(changed, heat_sink=sink)
+        changed = _pumped(changed, heat_sink=sink)
     if seebeck_relative or conductance_relative or plates_relative:
         module = _module(rig, seebeck_relative, conductance_relative, plates_relative)
         document["module"] = _module_table(module)
-        changed = replace(changed, module=module)
+        changed = _pumped(changed, module=module)
     return replace(changed, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
+
+
+def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
+    """The rig with another heat sink or module."""
+    assert rig.pump is not None
+    return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
 
 
 def _deep_C(rig: Rig, ambient_C: float) -> float:

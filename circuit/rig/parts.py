@@ -1,4 +1,4 @@
-"""The parts of a rig beside module and skin: heat sink, driver, contact, air."""
+"""The parts of a rig beside module and skin: heat sink, driver, or a thermode in their place; contact, air."""
 
 from __future__ import annotations
 
@@ -43,6 +43,27 @@ class Driver:
             raise ValueError(
                 f"driver.current_min_A = {self.current_min_A:g} A: must be 0 (a drive that only cools) or below, "
                 f"and current_limit_A ({self.current_max_A:g} A) above 0"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Thermode:
+    """A display that measures itself and follows set-points: K/s, s (first order), K, °C, °C, Hz.
+
+    `resolution_K` is the step of its set-points, 0 where they are as fine as any.
+    """
+
+    slew_K_per_s: float
+    lag_s: float
+    resolution_K: float
+    lowest_C: float
+    highest_C: float
+    update_Hz: float
+
+    def __post_init__(self) -> None:
+        if not self.lowest_C < self.highest_C:
+            raise ValueError(
+                f"thermode.lowest_C = {self.lowest_C:g} °C: must be below thermode.highest_C ({self.highest_C:g} °C)"
             )
 
 

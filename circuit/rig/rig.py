@@ -22,11 +22,12 @@ from thermicon.circuit.rig.parts import (
     HeatSink,
     Probe,
     SinkController,
+    Thermode,
     Uncertainty,
 )
 from thermicon.circuit.rig.probefile import probes_of
 from thermicon.circuit.rig.receptors import HORNY_LAYER, ReceptorDepths
-from thermicon.circuit.rig.rigfile import RigError, RigTable, parse_toml, read_table
+from thermicon.circuit.rig.rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.settings import put_all, read_settings
 from thermicon.circuit.rig.skin import Column, Layer, Skin, column_of
@@ -40,8 +41,21 @@ HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 
 
 @dataclass(frozen=True, slots=True)
+class HeatPump:
+    """What makes a display warm and cool where a current is given: module, where its numbers are from, sink, driver."""
+
+    module: Peltier
+    origin: ModuleOrigin
+    heat_sink: HeatSink
+    driver: Driver
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
-    """Everything between the drive current and the receptors.
+    """Everything between the drive current, or the set-points of a thermode, and the receptors.
+
+    A rig has a `pump` (module, heat sink, driver) or a `thermode`, never both; `module`, `heat_sink` and `driver` of
+    one with a thermode raise RigError.
 
     >>> rig = Rig.load("thenar")
     >>> rig
@@ -55,10 +69,7 @@ class Rig:
     name: str
     title: str
     notes: tuple[str, ...]
-    module: Peltier
-    module_origin: ModuleOrigin
-    heat_sink: HeatSink
-    driver: Driver
+    pump: HeatPump | None
     contact: Contact
     ambient: Ambient
     skin: Skin
@@ -69,13 +80,18 @@ class Rig:
     limits: Limits
     probes: tuple[Probe, ...] = ()
     controller: Controller | None = None
+    thermode: Thermode | None = None
     changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
+        shown = (
+            f"driver {self.driver.current_min_A:g} … {self.driver.current_max_A:g} A"
+            if self.thermode is None
+            else f"thermode {self.thermode.lowest_C:g} … {self.thermode.highest_C:g} °C"
+        )
         return (
             f"Rig({self.name!r}, {self.skin.site}, {self.contact.area_m2 * 1e4:g} cm², "
-            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, "
-            f"driver {self.driver.current_min_A:g} … {self.driver.current_max_A:g} A)"
+            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {shown})"
         )
 
     def __hash__(self) -> int:
@@ -94,6 +110,39 @@ class Rig:
         if str(source) not in rig_names():
             raise RigError(f"{source}: no such rig; {nearest(str(source), rig_names())}")
         return _shipped(str(source))
+
+    def _pump_for(self, what: str) -> HeatPump:
+        if self.pump is None:
+            raise RigError(
+                f"rig {self.name} is a thermode: it has no {what}, and takes temperatures, not current; use a rig "
+                f"with a module, such as thenar"
+            )
+        return self.pump
+
+    @property
+    def module(self) -> Peltier:
+        """The Peltier module; raises RigError on a thermode."""
+        return self._pump_for("module").module
+
+    @property
+    def module_origin(self) -> ModuleOrigin:
+        """Where the numbers of the module come from; raises RigError on a thermode."""
+        return self._pump_for("module").origin
+
+    @property
+    def heat_sink(self) -> HeatSink:
+        """What the hot plate sits on; raises RigError on a thermode."""
+        return self._pump_for("heat sink").heat_sink
+
+    @property
+    def driver(self) -> Driver:
+        """The current source; raises RigError on a thermode."""
+        return self._pump_for("driver").driver
+
+    @property
+    def update_Hz(self) -> float:
+        """How often a second a driver changes its current, or a thermode its set-point."""
+        return self.driver.update_Hz if self.thermode is None else self.thermode.update_Hz
 
     @property
     def site(self) -> str:
@@ -136,7 +185,8 @@ class Rig:
         found += self.limits.hidden
         if resting := self.limits.passed_at_rest(self.skin.rest_C):
             found.append(resting)
-        return (*found, *self.module_origin.warnings, *self._left_from_another_module())
+        origin = () if self.pump is None else self.pump.origin.warnings
+        return (*found, *origin, *self._left_from_another_module())
 
     def _left_from_another_module(self) -> list[str]:
         stated = dict(text.split("=", 1) for text in self.changes)
@@ -211,8 +261,7 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
-def _heat_sink(table: RigTable) -> HeatSink:
-    sink = table.heat_sink
+def _heat_sink(sink: HeatSinkTable) -> HeatSink:
     own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
     missing = [name for name, value in own.items() if value is None]
     if not missing:
@@ -225,8 +274,22 @@ def _heat_sink(table: RigTable) -> HeatSink:
     return HeatSink(sink.temperature_C, sink.resistance_K_per_W)
 
 
+def _pump(table: RigTable) -> HeatPump | None:
+    module, sink, driver = table.module, table.heat_sink, table.driver
+    if module is None or sink is None or driver is None:
+        return None
+    lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
+    return HeatPump(
+        *module_of(module, (sink.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
+        _heat_sink(sink),
+        Driver(
+            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
+        ),
+    )
+
+
 def _assemble(table: RigTable, document: str) -> Rig:
-    driver, contact, skin = table.driver, table.contact, table.skin
+    contact, skin = table.contact, table.skin
     layers = tuple(
         Layer(
             layer.name,
@@ -257,16 +320,11 @@ def _assemble(table: RigTable, document: str) -> Rig:
     column = column_of(body, table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK)
     loss = table.ambient.film_W_per_m2K * (skin.rest_C - table.ambient.temperature_C)
     deep = skin.deep_C if skin.deep_C is not None else skin.rest_C - column.steady_drop_K(-loss)
-    lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
     return Rig(
         table.name,
         table.title,
         tuple(table.notes),
-        *module_of(table.module, (table.heat_sink.temperature_C + skin.rest_C) / 2, table.source.get("module")),
-        _heat_sink(table),
-        Driver(
-            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
-        ),
+        _pump(table),
         Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W),
         Ambient(**table.ambient.model_dump()),
         body,
@@ -277,4 +335,5 @@ def _assemble(table: RigTable, document: str) -> Rig:
         Limits.of(table.safety.changes, table.safety.reason),
         probes_of(table.probe, body.thickness_m),
         None if table.controller is None else Controller(**table.controller.model_dump()),
+        None if table.thermode is None else Thermode(**table.thermode.model_dump()),
     )

@@ -19,6 +19,7 @@ from thermicon.circuit.inputs import (
     quoted,
     read_toml,
 )
+from thermicon.circuit.rig.keyunits import unit_of
 from thermicon.circuit.rig.modules import module_faults
 from thermicon.circuit.rig.rules import faults_of
 from thermicon.circuit.rig.uncertainty import uncertainty_faults
@@ -125,6 +126,17 @@ class ControllerTable(_Table):
     kp_A_per_K: Gain
     ki_A_per_Ks: Gain = 0.0
     kd_As_per_K: Gain = 0.0
+
+
+class ThermodeTable(_Table):
+    """A thermode in the place of module, heat sink, driver and controller: it shows the set-points it is given."""
+
+    slew_K_per_s: Positive
+    lag_s: Lag = 0.0
+    resolution_K: Annotated[float, Field(ge=0, le=10)] = 0.0
+    lowest_C: Celsius
+    highest_C: Celsius
+    update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
 
 class AmbientTable(_Table):
@@ -243,10 +255,11 @@ class RigTable(_Table):
     name: Annotated[Name, Field(max_length=LONGEST_NAME)]
     title: Text = ""
     notes: Annotated[list[Paragraph], Field(max_length=MOST_NOTES)] = Field(default_factory=list)
-    module: ModuleTable
-    heat_sink: HeatSinkTable
-    driver: DriverTable
+    module: ModuleTable | None = None
+    heat_sink: HeatSinkTable | None = None
+    driver: DriverTable | None = None
     controller: ControllerTable | None = None
+    thermode: ThermodeTable | None = None
     contact: ContactTable
     ambient: AmbientTable
     skin: SkinTable
@@ -256,56 +269,22 @@ class RigTable(_Table):
     safety: SafetyTable = Field(default_factory=SafetyTable)
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 
-
-_UNITS = (
-    "V_per_K",
-    "A_per_V",
-    "A_per_Ks",
-    "As_per_K",
-    "A_per_K",
-    "W_per_Ks",
-    "W_per_K",
-    "K_per_W",
-    "m2K_per_W",
-    "W_per_m2K",
-    "W_per_mK",
-    "kg_per_m3",
-    "J_per_kgK",
-    "J_per_K",
-    "K_per_s",
-)
-_UNITS_SHORT = {
-    "C": "°C",
-    "ohm": "Ω",
-    "per_s": "1/s",
-    "cm2": "cm²",
-    "mm": "mm",
-    "A": "A",
-    "V": "V",
-    "K": "K",
-    "W": "W",
-    "Hz": "Hz",
-    "s": "s",
-    "min_CEM43": "min CEM43",
-}
-
-
-def unit_of(key: str) -> str:
-    """Return the unit that ends a key's name, written as people write it.
-
-    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("contact.area_cm2"), unit_of("skin.site")
-    ('m²·K/W', 'cm²', '')
-    """
-    for unit in sorted(_UNITS, key=len, reverse=True):
-        if key.endswith("_" + unit):
-            over, under = unit.split("_per_")
-            pretty = [part.replace("m2K", "m²·K").replace("mK", "m·K").replace("kgK", "kg·K") for part in (over, under)]
-            top, bottom = (part.replace("m3", "m³").replace("m2", "m²") for part in pretty)
-            return f"{top}/({bottom})" if "·" in bottom else f"{top}/{bottom}"
-    for unit, written in _UNITS_SHORT.items():
-        if key.endswith("_" + unit) and not key.endswith("_per_" + unit):
-            return written
-    return ""
+    @model_validator(mode="after")
+    def _one_display(self) -> RigTable:
+        pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
+        given = [key for key, table in pumped.items() if table is not None]
+        missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
+        if self.thermode is not None and given:
+            raise ValueError(
+                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(given)}; remove "
+                f"{', '.join(f'[{key}]' for key in given)} or [thermode]"
+            )
+        if self.thermode is None and missing:
+            lines = [f"{key} is missing; add it" for key in missing]
+            if len(missing) == 3:
+                lines = ["module is missing; add [module], [heat_sink] and [driver], or a [thermode] in their place"]
+            raise ValueError("\n".join(lines))
+        return self
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
@@ -329,6 +308,15 @@ def rig_keys() -> tuple[str, ...]:
     return tuple(_keys(RigTable, ""))
 
 
+_OPTIONAL_TABLES: dict[str, type[BaseModel]] = {
+    "module": ModuleTable,
+    "heat_sink": HeatSinkTable,
+    "driver": DriverTable,
+    "controller": ControllerTable,
+    "thermode": ThermodeTable,
+}
+
+
 def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
     for name, field in table.model_fields.items():
         if name == "layer":
@@ -339,8 +327,8 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
         elif name == "probe":
             yield "probe"
             yield from _keys(ProbeTable, "probe.0.")
-        elif name == "controller":
-            yield from _keys(ControllerTable, "controller.")
+        elif name in _OPTIONAL_TABLES:
+            yield from _keys(_OPTIONAL_TABLES[name], f"{name}.")
         elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
             yield from _keys(field.annotation, f"{prefix}{name}.")
         elif name != "source":

@@ -53,6 +53,8 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
             index = _item(place, part, key)
             place, part_of_key = place[index], "0"
         else:
+            if position == 0:
+                _check_display(document, part, key)
             if part in _OPTIONAL and position == 0 and any(key == known for known in rig_keys()):
                 place.setdefault(part, {})
             if part == "datasheet" and part not in place:
@@ -72,6 +74,18 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
     if parts[0] == "module" and not key.endswith("plate_J_per_K") and place.get(parts[-1]) != value:
         document.get("source", {}).pop("module", None)
     place[parts[-1]] = value
+
+
+def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
+    """Refuse a key of a module on a thermode, and one of a thermode on a module, in words."""
+    if "thermode" in document and part in ("module", "heat_sink", "driver", "controller"):
+        name = str(document.get("name", ""))
+        raise RigError(
+            f"{key}: rig {name} is a thermode: it has no {part.replace('_', ' ')}; change a key of [thermode], or use "
+            f"a rig with a module, such as thenar"
+        )
+    if "thermode" not in document and part == "thermode":
+        raise RigError(f"{key}: this rig has a module and no thermode; use a rig with [thermode], such as tcs2")
 
 
 def _item(items: list[dict[str, Any]], part: str, key: str) -> int:

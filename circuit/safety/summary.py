@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import isnan
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +20,7 @@ class Summary:
     """One trace; units are in the names, times count from its start, heat flow is positive into the skin.
 
     `reached` and the misses are None for a run without a target temperature; the miss is signed (above: positive).
+    Current, voltage, energy and hot plate are None for a run on a thermode, which has none.
     `energy_J` is what the driver puts into the module, ∫V·I dt. `reason` says why it was missed or is not safe.
     """
 
@@ -26,13 +29,13 @@ class Summary:
     largest_miss_K: float | None
     largest_miss_s: float | None
     rms_miss_K: float | None
-    current_min_A: float
-    current_max_A: float
-    voltage_min_V: float
-    voltage_max_V: float
-    energy_J: float
-    hot_plate_min_C: float
-    hot_plate_max_C: float
+    current_min_A: float | None
+    current_max_A: float | None
+    voltage_min_V: float | None
+    voltage_max_V: float | None
+    energy_J: float | None
+    hot_plate_min_C: float | None
+    hot_plate_max_C: float | None
     display_min_C: float
     display_max_C: float
     skin_min_C: float
@@ -53,9 +56,12 @@ class Summary:
 
     def __repr__(self) -> str:
         said = {None: "", True: "reached, ", False: "NOT reached, "}[self.reached]
+        drive = "a thermode"
+        if self.energy_J is not None:
+            drive = f"{self.current_min_A:.2f} … {self.current_max_A:.2f} A, {self.energy_J:.1f} J"
         return (
-            f"Summary({said}{self.duration_s:g} s, skin {self.skin_min_C:.2f} … {self.skin_max_C:.2f} °C, "
-            f"{self.current_min_A:.2f} … {self.current_max_A:.2f} A, {self.energy_J:.1f} J, safety {self.safety})"
+            f"Summary({said}{self.duration_s:g} s, skin {self.skin_min_C:.2f} … {self.skin_max_C:.2f} °C, {drive}, "
+            f"safety {self.safety})"
         )
 
     def to_dict(self) -> dict[str, float | bool | str | None]:
@@ -73,18 +79,19 @@ def summarise(trace: Trace) -> Summary:
     """
     outcome, verdict = trace.outcome, judge_safety(trace)
     reasons = [reason for reason in (None if outcome is None else outcome.reason, verdict.reason) if reason]
-    extremes: dict[str, float] = {}
+    extremes: dict[str, Any] = {}
     for field in fields(Summary):
         for side, extreme in (("_min_", np.min), ("_max_", np.max)):
             if side in field.name:
-                extremes[field.name] = float(extreme(getattr(trace, field.name.replace(side, "_"))))
+                value = float(extreme(getattr(trace, field.name.replace(side, "_"))))
+                extremes[field.name] = None if isnan(value) else value
     return Summary(
         duration_s=float(trace.time_s[-1]),
         reached=None if outcome is None else outcome.reached,
         largest_miss_K=None if outcome is None else outcome.largest_miss_K,
         largest_miss_s=None if outcome is None else outcome.largest_miss_s,
         rms_miss_K=None if outcome is None else outcome.rms_miss_K,
-        energy_J=energy_J(trace),
+        energy_J=energy_J(trace) if trace.has_current else None,
         safe=verdict.safe,
         safety=verdict.colour,
         reason="; ".join(reasons) or None,

@@ -164,11 +164,11 @@ def watched(felt: Sequence[Array]) -> Array:
     return np.stack([[each[_PLACE.get(name, _PLACE["display_C"])] for each in felt] for name in WATCHED])
 
 
-def tally_once(under: Under, shown: Shown, limits: Limits) -> tuple[list[Tally], list[Array]]:
+def tally_once(under: Under, shown: Shown, limits: Limits, rates: bool = True) -> tuple[list[Tally], list[Array]]:
     """Every rule over one play and its endings, and the states at the end of the play."""
     values, ended = under.play(shown, under.steady(float(shown.display_C[0])))
     played = Tally(limits, [f"{corner}, {shown.way}" for corner in under.corners])
-    played.add(shown.rows_s, values)
+    played.add(shown.rows_s, values, rates=rates)
     tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
     add_endings(under, shown, ended, tallies)
     return [played, *tallies], ended

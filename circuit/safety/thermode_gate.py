@@ -45,6 +45,8 @@ def gate_shown(
     stuck_C: tuple[float, float],
     limits: Limits | None = None,
     pause_s: float | None = None,
+    rates: bool = True,
+    module: bool = False,
 ) -> tuple[Gate, ...]:
     """Check what a device shows, which may be played again and again in any order, against every rule of safety.
 
@@ -60,6 +62,10 @@ def gate_shown(
         In the place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the longest recovery time.
+    rates
+        Whether the rate of skin is judged: not where a display jumps here that does not in truth.
+    module
+        Keep the rules of a hot plate, which then stands as warm as the display: to be joined with others.
 
     Raises
     ------
@@ -68,12 +74,13 @@ def gate_shown(
 
     """
     check_pause(pause_s)
-    under, held = Under.of(rig), limits_without_module(rig.limits if limits is None else limits)
+    under, held = Under.of(rig), rig.limits if limits is None else limits
+    held = held if module else limits_without_module(held)
     once: list[tuple[tuple[Check, ...], float | None, dict[str, float]]] = []
     for ways in drives:
         judged, recoveries, after = [], [], {}
         for shown in ways:
-            tallies, ended = tally_once(under, shown, held)
+            tallies, ended = tally_once(under, shown, held, rates)
             judged += [tally.checks() for tally in tallies]
             recoveries.append(under.recovery_s(shown, ended))
             minute = np.array([ENDING_S])
@@ -85,10 +92,10 @@ def gate_shown(
     if pause is None:
         times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
         pause = max(times)
-    again = _again(under, drives, held, pause)
+    again = _again(under, drives, held, pause, rates)
     shortest = None
     if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
-        shortest = _shortest(lambda one: _safe(_again(under, drives, held, one)))
+        shortest = _shortest(lambda one: _safe(_again(under, drives, held, one, rates)))
     found = []
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
         plays = _plays(ways[0], pause, held.session_s)
@@ -111,7 +118,9 @@ def gate_shown(
     return tuple(found)
 
 
-def _again(under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float) -> list[tuple[Check, ...]]:
+def _again(
+    under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float, rates: bool
+) -> list[tuple[Check, ...]]:
     """Every rule for each drive in its steady cycle, and between the bounds on any sequence of all drives."""
     shows = [shown for ways in drives for shown in ways]
     begun = under.steady(float(shows[0].display_C[0]))
@@ -121,9 +130,9 @@ def _again(under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float)
     for ways in drives:
         judged = []
         for shown in ways:
-            judged.append(_cycle_checks(under, shown, limits, pause_s, under.cycle(shown, pause_s), skin, ""))
+            judged.append(_cycle_checks(under, shown, limits, pause_s, under.cycle(shown, pause_s), skin, "", rates))
             judged += [
-                _cycle_checks(under, shown, limits, pause_s, states, skin, f" ({word} bound)")
+                _cycle_checks(under, shown, limits, pause_s, states, skin, f" ({word} bound)", False)
                 for word, states in bounds.items()
             ]
         found.append(worst_of(checks for group in judged for checks in group))
@@ -131,13 +140,20 @@ def _again(under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float)
 
 
 def _cycle_checks(
-    under: Under, shown: Shown, limits: Limits, pause_s: float, states: Sequence[Array], begun_C: Array, what: str
+    under: Under,
+    shown: Shown,
+    limits: Limits,
+    pause_s: float,
+    states: Sequence[Array],
+    begun_C: Array,
+    what: str,
+    rates: bool,
 ) -> list[tuple[Check, ...]]:
     again = f"{shown.way}, played again and again with {pause_s:.4g} s of pause{what}"
     names = [f"{corner}, {again}" for corner in under.corners]
     values, ended = under.play(shown, states)
     tally = Tally(limits, names, plays=_plays(shown, pause_s, limits.session_s), begun_C=begun_C)
-    tally.add(shown.rows_s, values, rates=not what)
+    tally.add(shown.rows_s, values, rates=rates)
     rows = np.append(0.0, pause_rows(pause_s))
     if len(rows) > 1:
         tally.add(shown.end_s + rows, under.hold(float(shown.display_C[-1]), ended, rows), rates=False)

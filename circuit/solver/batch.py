@@ -12,6 +12,7 @@ from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import Bank, Index, cut, run_follow, run_forward, run_regulate
+from thermicon.circuit.solver.displayed_batch import displays_on
 from thermicon.circuit.solver.inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.simulate import rows_until, simulate
@@ -66,7 +67,8 @@ def simulate_many(
 
     `tracking` is one of TRACKINGS, or None for what suits each cue: `replay` plays the current designed on `nominal`
     open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits, `ideal`
-    solves anew for each rig. Rigs with a PID loop run it. Raises RigError when a rig cannot hold a baseline.
+    solves anew for each rig. Rigs with a PID loop run it; a thermode shows the same display to everybody.
+    Raises RigError when a rig cannot hold a baseline.
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -74,6 +76,9 @@ def simulate_many(
         raise RigError("a batch needs at least one cue and one rig")
     if not 0 < end_s < np.inf:
         raise RigError(f"a batch cannot end at {end_s:g} s; it must be above 0")
+    if nominal.thermode is not None or any(rig.thermode is not None for rig in rigs):
+        rows = rows_until(end_s, rate_Hz)
+        return _frozen(rows, probes, displays_on(icons, rigs, nominal, rows, tracking, probes))
     if len({rig.controller is None for rig in (*rigs, nominal)}) > 1:
         raise RigError("rigs of one batch must all have a controller, or none")
     if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
@@ -93,6 +98,10 @@ def simulate_many(
             values[:, :, places] = stage.replay(cues)
         else:
             values[:, :, places] = stage.track(cues, control, way)
+    return _frozen(rows, probes, values)
+
+
+def _frozen(rows: Array, probes: Sequence[str], values: Array) -> Batch:
     values.setflags(write=False)
     return Batch(rows, tuple(probes), values)
 

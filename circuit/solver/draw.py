@@ -54,8 +54,11 @@ def plot_heat_flow(trace: Trace, ax: Axes | None = None) -> Axes:
 
 
 def plot_current(trace: Trace, ax: Axes | None = None) -> Axes:
-    """Draw the drive current in A with the driver's limits; positive cools; returns the Axes."""
+    """Draw the drive current in A with the driver's limits; positive cools; a thermode has none; returns the Axes."""
     ax = new_axes(ax)
+    if not trace.has_current:
+        ax.text(0.5, 0.5, "a thermode: no current", transform=ax.transAxes, ha="center", va="center")
+        return tidy(ax, trace.time_s, "current (A)")
     low, high = trace.driver_limits_A
     ax.axhline(0, color="#cccccc", lw=0.8)
     for limit, label in ((high, "driver's limits"), (low, None)):

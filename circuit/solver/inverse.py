@@ -66,6 +66,14 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 
     Skin and display control give currents held over each driver period; current control gives the cue's own corners.
     """
+    plan = design_ideal(icon, rig, end_s)
+    if rig.controller is None or icon.frame.control == "current":
+        return plan
+    return close_loop(rig, plan, icon, target_at(icon, baseline_C(icon, rig), periods(rig, end_s)))
+
+
+def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
+    """As `design`, by the inverse of the module alone: a loop of the rig's own takes no part."""
     control = icon.frame.control
     current, state = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     if control == "current":
@@ -83,8 +91,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
         bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
     )
     outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
-    plan = Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
-    return plan if rig.controller is None else close_loop(rig, plan, icon, target)
+    return Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:

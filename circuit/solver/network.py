@@ -30,6 +30,9 @@ PROBES = (
 Weights = tuple[int, tuple[float, float, float]]
 """A reading: the first of three neighbouring states, and the weight of each."""
 
+PLATES, DEEP = 15, 7
+"""How many numbers describe the plates for the kernel, and the place of the deep temperature among them."""
+
 HOT, COLD, SKIN = 0, 1, 2
 """Places of hot plate, cold plate and first skin lump in the state vector."""
 
@@ -77,16 +80,20 @@ class Network:
 
 @lru_cache(maxsize=512)
 def network_of(rig: Rig) -> Network:
-    """Return the lumps of a rig."""
+    """Return the lumps of a rig; raises RigError for a thermode, which has no plates."""
     return network_on(rig, rig.column, rig.deep_C)
+
+
+@lru_cache(maxsize=512)
+def skin_network_of(rig: Rig) -> Network:
+    """Return the lumps of a rig's skin under its display; what its plates are is not known (NaN)."""
+    plates = np.full(PLATES, np.nan)
+    plates[DEEP] = rig.deep_C
+    return _network(rig, rig.column, plates)
 
 
 def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
     """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
-    area = rig.contact.area_m2
-    resistance = column.resistance_m2K_per_W.copy()
-    resistance[0] += rig.contact.resistance_m2K_per_W
-    starts, weights = _probes(rig, resistance)
     module, driver, own = rig.module, rig.driver, rig.heat_sink.controller
     plates = np.array(
         [
@@ -108,6 +115,14 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
             ),
         ]
     )
+    return _network(rig, column, plates)
+
+
+def _network(rig: Rig, column: Column, plates: Array) -> Network:
+    area = rig.contact.area_m2
+    resistance = column.resistance_m2K_per_W.copy()
+    resistance[0] += rig.contact.resistance_m2K_per_W
+    starts, weights = _probes(rig, resistance)
     return Network(
         column.capacity_J_per_m2K * area, area / resistance, column.perfusion_W_per_m2K * area, starts, weights, plates
     )

@@ -6,17 +6,21 @@ node's and u that of the display. Its modes are solved exactly for a display tha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.network import COLD, HOT, PROBES, SKIN, Network, network_of
+from thermicon.circuit.solver.network import COLD, HOT, PROBES, SKIN, Network, skin_network_of
 
 FELT = PROBES[PROBES.index("display_C") :]
 """What a run under a prescribed display records: PROBES without the hot plate, which no thermode shows."""
+
+Index = npt.NDArray[np.int64]
 
 SMALL = 1e-6
 """Below this λ·Δt the series replaces quotients that would lose digits."""
@@ -66,6 +70,29 @@ class SkinModes:
             values += self.reading[:, k, np.newaxis] * mode
             end[k] = mode[-1]
         return values, end
+
+    def run_many(self, display_C: Array, step_s: float, rows: Sequence[int]) -> Array:
+        """Return some rows of FELT (rows, lanes, steps) for displays (lanes, steps), each from rest at its first level.
+
+        >>> modes = modes_of(Rig.load("thenar"))
+        >>> modes.run_many(np.full((2, 3), 32.0), 0.01, [0, 1]).shape
+        (2, 2, 3)
+        """
+        from scipy.signal import lfilter
+
+        above = display_C - self.deep_C
+        keep, now, then = _weights(self.rate_per_s, step_s)
+        chosen = list(rows)
+        modes = np.empty((len(self.rate_per_s), *above.shape))
+        for k in range(len(modes)):
+            first = self.drive_per_s[k] / self.rate_per_s[k] * above[:, 0]
+            forcing = self.drive_per_s[k] * (now[k] * above[:, :-1] + then[k] * above[:, 1:])
+            modes[k, :, 0] = first
+            if forcing.shape[1]:
+                modes[k, :, 1:], _ = lfilter([1.0], [1.0, -keep[k]], forcing, zi=keep[k] * first[:, np.newaxis])
+        values = np.tensordot(self.reading[chosen], modes, axes=1)
+        values += self.direct[chosen, np.newaxis, np.newaxis] * above + self.offset_C[chosen, np.newaxis, np.newaxis]
+        return np.asarray(values)
 
     def relax(self, times_s: Array, display_C: float, modes: Array) -> Array:
         """Return FELT (7, times) at times after now, with the display held; `modes` (n,) are those of now."""
@@ -118,11 +145,11 @@ def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
     >>> round(modes_of(Rig.load("thenar")).display_holding_skin_C(32.0), 2)
     31.96
     """
-    return modes_on(network_of(rig), insulated)
+    return modes_on(skin_network_of(rig), insulated)
 
 
-def modes_on(network: Network, insulated: bool = False) -> SkinModes:
-    """Return the modes of a network's skin; its plates play no part."""
+def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, Array] | None = None) -> SkinModes:
+    """Return the modes of a network's skin; its plates play no part. `readings` are recorded after FELT."""
     capacity, g, perfusion = network.capacity_J_per_K, network.conductance_W_per_K, network.perfusion_W_per_K
     first = 0.0 if insulated else float(g[0])
     matrix = np.diag(np.concatenate([[first], g[1:-1]]) + g[1:] + perfusion)
@@ -131,11 +158,12 @@ def modes_on(network: Network, insulated: bool = False) -> SkinModes:
     root = np.sqrt(capacity)
     rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
     shape = vectors / root[:, np.newaxis]  # lumps = shape @ modes
-    weights = np.zeros((len(FELT), len(capacity) + 3))
-    for row, probe in enumerate(FELT):
-        place = PROBES.index(probe)
-        start = int(network.probe_start[place])
-        weights[row, start : start + 3] = network.probe_weight[place]
+    felt = [PROBES.index(probe) for probe in FELT]
+    rows = list(zip(network.probe_start[felt], network.probe_weight[felt], strict=True))
+    rows += [] if readings is None else list(zip(*readings, strict=True))
+    weights = np.zeros((len(rows), len(capacity) + 3))
+    for row, (start, three) in enumerate(rows):
+        weights[row, start : start + 3] = three
     below, direct = weights[:, SKIN:-1], weights[:, COLD]
     offset = weights.sum(axis=1) * network.deep_C  # zero for heat flows
     assert not weights[:, HOT].any()
@@ -146,18 +174,22 @@ def modes_on(network: Network, insulated: bool = False) -> SkinModes:
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:
     """Return the display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest.
 
-    First-order lag, and no faster than its slew rate.
+    First-order lag, exact for set-points that are linear between rows, and no faster than its slew rate.
 
     >>> shown(np.array([30.0, 31.0, 31.0]), 0.1, slew_K_per_s=5.0).tolist()
     [30.0, 30.5, 31.0]
     """
-    share = 1.0 if lag_s <= 0 else -np.expm1(-step_s / lag_s)
     most = slew_K_per_s * step_s
-    if share == 1.0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
+    if lag_s <= 0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:
         return setpoint_C.copy()
-    level, reached = float(setpoint_C[0]), []
+    keep, now, then = (0.0, 0.0, 1.0)
+    if lag_s > 0:
+        weights = _weights(np.array([1.0 / lag_s]), step_s)
+        keep, now, then = float(weights[0][0]), float(weights[1][0]) / lag_s, float(weights[2][0]) / lag_s
+    level, before, reached = float(setpoint_C[0]), float(setpoint_C[0]), []
     for wanted in setpoint_C.tolist():
-        level += min(max(share * (wanted - level), -most), most)
+        goal = keep * level + now * before + then * wanted
+        level, before = min(max(goal, level - most), level + most), wanted
         reached.append(level)
     return np.array(reached)
 

@@ -11,6 +11,7 @@ from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.solver.batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from thermicon.circuit.solver.displayed import play_display, refuse_current
 from thermicon.circuit.solver.drive import Drive
 from thermicon.circuit.solver.inverse import baseline_C, design, design_many, target_at
 from thermicon.circuit.solver.network import PROBES, network_of
@@ -43,6 +44,8 @@ def rows_until(end_s: float, rate_Hz: float) -> Array:
 def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
     """Play a cue on a rig: find the current that makes it, then run the circuit with that current.
 
+    A thermode needs no current: its display follows the cue within its own limits, and the skin follows the display.
+
     The trace has `rate_Hz` rows a second and ends `tail_s` seconds after the cue's last corner. Its `outcome` says
     whether the target was reached. Raises RigError when no current holds the baseline.
 
@@ -57,6 +60,8 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 def duration_s(icon: Icon, rig: Rig) -> float:
     """Time in s from a cue's start to its last corner; under current control it hangs on the rig's holding current."""
     if icon.frame.control == "current":
+        if rig.thermode is not None:
+            refuse_current(icon, f"rig {rig.name}")
         return float(icon.lower(hold(rig, "display", baseline_C(icon, rig))[0]).duration_s)
     return float(icon.lower(baseline_C(icon, rig)).duration_s)
 
@@ -68,7 +73,8 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
     6
     """
-    alike = not rig.probes and rig.controller is None and all(icon.frame.control != "current" for icon in icons)
+    module = rig.thermode is None and rig.controller is None
+    alike = not rig.probes and module and all(icon.frame.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
         return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
@@ -116,7 +122,10 @@ def _play(
     if tail_s * rate_Hz > MOST_ROWS:
         raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
     end = duration_s(icon, rig) + tail_s
-    plan, rows = design(icon, rig, end), rows_until(end, rate_Hz)
+    rows = rows_until(end, rate_Hz)
+    if rig.thermode is not None:
+        return play_display(icon, rig, rows, rate_Hz, readings)
+    plan = design(icon, rig, end)
     return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.frame.control,
                 plan.outcome, readings)  # fmt: skip
 

@@ -6,10 +6,13 @@ import itertools
 from collections.abc import Callable
 
 from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.parts import Thermode
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.displayed import refuse_current
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.circuit.solver.network import COLD, HOT, network_of
+from thermicon.circuit.solver.prescribed import modes_of
 from thermicon.circuit.solver.steady import hold, holding_current_A, steady_state
 from thermicon.icons import Corners, Icon
 
@@ -26,6 +29,8 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     ()
     """
     control = icon.frame.control
+    if rig.thermode is not None:
+        return _on_thermode(icon, rig, rig.thermode)
     try:
         start_A, _ = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     except RigError as problem:
@@ -50,6 +55,34 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
             )
     if control == "display" and not found:
         found += _too_fast(icon, rig, corners)
+    return tuple(found)
+
+
+def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
+    """As `check_static`: its range and its ramp rate; a skin level is judged by the display that holds it for ever."""
+    control, modes, base = icon.frame.control, modes_of(rig), baseline_C(icon, rig)
+    try:
+        refuse_current(icon, f"rig {rig.name}")
+    except RigError as problem:
+        return (f"icon {icon.name}: {problem}",)
+    corners, found = icon.lower(base), []
+    for level in dict.fromkeys((base, corners.lowest, corners.highest)):
+        needed = modes.display_holding_skin_C(level) if control == "skin" else level
+        if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:
+            found.append(
+                f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.1f} °C, outside the "
+                f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
+            )
+    points = zip(corners.time_s, corners.value, strict=True)
+    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
+        if control == "skin" or place in corners.steps:
+            continue
+        rate = (to - level) / (later - time)
+        if abs(rate) > thermode.slew_K_per_s * (1 + 1e-9):
+            found.append(
+                f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s is "
+                f"more than the {thermode.slew_K_per_s:g} °C/s of thermode {rig.name}; slow it down"
+            )
     return tuple(found)
 
 

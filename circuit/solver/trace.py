@@ -62,7 +62,8 @@ class Outcome:
 class Trace:
     """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
 
-    `current_A` is the current held from that row on. `target_C` is NaN where the run had no target temperature.
+    `current_A` is the current held from that row on; it, `voltage_V` and `hot_plate_C` are NaN on a thermode, which has
+    none. `target_C` is NaN where the run had no target temperature.
     `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` is about the rig,
     `beyond` about what the drive asks of the driver that it cannot give. `limits` are the rig's limits of safety.
     """
@@ -100,16 +101,21 @@ class Trace:
     def __repr__(self) -> str:
         said = "" if self.outcome is None or self.outcome.reached else ", target missed"
         said += ", beyond the driver" if self.beyond else ""
+        drive = f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A" if self.has_current else "a thermode"
         return (
             f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
-            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, "
-            f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A{said})"
+            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, {drive}{said})"
         )
 
     def _repr_html_(self) -> str:
         from thermicon.circuit.solver.draw import svg_of
 
         return svg_of(self)
+
+    @property
+    def has_current(self) -> bool:
+        """Whether a current made it; False on a thermode, whose current, voltage and hot plate are NaN."""
+        return not bool(np.isnan(self.current_A).all())
 
     @property
     def reachable(self) -> bool:

@@ -77,7 +77,10 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
     [
         (("driven_by", "drivn_by"), r"mine\.toml: drivn_by: unknown key; did you mean driven_by\?"),
         (('title = "my own source"', ""), r"mine\.toml: title is missing; add it"),
-        (('"amperes"', '"watts"'), r"driven_by = 'watts': must be 'volts', 'amperes', 'duty' or 'set-points'"),
+        (
+            ('"amperes"', '"watts"'),
+            r"driven_by = 'watts': must be 'volts', 'amperes', 'duty', 'set-points' or 'temperatures'",
+        ),
         (('"data sheet"', '" "'), r"record\.1 \(resolution\): the record has no source: add source"),
         (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a finite number without quotes or unit"),
         (("value = 12", "bits = 12"), r"record\.1\.bits: unknown key; known: "),

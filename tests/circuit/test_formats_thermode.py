@@ -9,8 +9,6 @@ import io
 import json
 import re
 import sys
-import types
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -171,34 +169,8 @@ class TestPsychopy:
         assert float(dips["ramp_start_2_s"]) == pytest.approx(second[1])
         assert float(dips["ramp_start_2_s"]) > lead + 1
 
-    def test_the_player_puts_out_every_command(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        files = self.packed("ni-analogue-output")
-        said: dict[str, object] = {}
-        monkeypatch.setitem(sys.modules, "nidaqmx", _Daq(said))
-        monkeypatch.setitem(sys.modules, "nidaqmx.constants", _Daq(said))
-        (tmp_path / "drive.csv").write_bytes(files["double-dip.csv"])
-        player: dict[str, object] = {}
-        exec(compile(files["play_icons.py"], "play_icons.py", "exec"), player)
-        player["play"](str(tmp_path / "drive.csv"))  # type: ignore[operator]
-        rows = list(csv.DictReader(io.StringIO(files["double-dip.csv"].decode())))
-        assert said["write"] == [float(row["command_V"]) for row in rows]
-        assert said["rate"] == pytest.approx(100.0)
-        assert said["samps_per_chan"] == len(rows)
-
-    def test_the_player_sends_the_start_last(self, tmp_path: Path) -> None:
-        files = self.packed("qst-tcs2")
-        (tmp_path / "drive.txt").write_bytes(files["double-dip.tcs2.txt"])
-        player: dict[str, object] = {}
-        exec(compile(files["play_icons.py"], "play_icons.py", "exec"), player)
-        sent: list[bytes] = []
-        port = types.SimpleNamespace(write=sent.append)
-        player["prepare"](port, str(tmp_path / "drive.txt"))  # type: ignore[operator]
-        assert b"L" not in sent
-        player["play"](port)  # type: ignore[operator]
-        assert sent == files["double-dip.tcs2.txt"].split()
-
     def test_players_need_nothing_to_be_imported(self) -> None:
-        for device in ("ni-analogue-output", "qst-tcs2"):
+        for device in ("ni-analogue-output", "qst-tcs2", "closed-loop-controller"):
             tree = ast.parse(self.packed(device)["play_icons.py"])
             imported = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
             assert all(name.name in sys.stdlib_module_names for node in imported for name in node.names)
@@ -208,32 +180,3 @@ def test_set_points_of_a_thermode_are_segments() -> None:
     found = realise(icon_of("cool"), RIG, THERMODE)
     assert isinstance(found.played, Setpoints)
     assert found.played.level_C.tolist() == pytest.approx([30.0, 24.0, 24.0, 30.0])
-
-
-class _Daq(types.ModuleType):
-    """A stand-in for nidaqmx that remembers what a task is told."""
-
-    def __init__(self, said: dict[str, object]) -> None:
-        super().__init__("nidaqmx")
-        self.said = said
-        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
-        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
-        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self.clock)
-
-    def Task(self) -> _Daq:
-        return self
-
-    def __enter__(self) -> _Daq:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def clock(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
-        self.said.update(rate=rate, samps_per_chan=samps_per_chan)
-
-    def write(self, volts: list[float], auto_start: bool) -> None:
-        self.said["write"] = volts
-
-    def wait_until_done(self, timeout: float) -> None:
-        assert timeout > 5

@@ -15,7 +15,6 @@ from thermicon.circuit import (
     Rig,
     Samples,
     Setpoints,
-    difference,
     realise,
     simulate,
     simulate_current,
@@ -47,7 +46,7 @@ def samples(realised: Realised) -> Samples:
 
 
 def rms_K(realised: Realised) -> float:
-    return max(place.rms_K for place in difference(realised.designed_trace, realised.trace).places)
+    return max(place.rms_K for place in realised.apart.places)
 
 
 @pytest.mark.parametrize("name", ["dac-16", "keysight-33500b", "rigol-dg1000z", "ni-analogue-output"])
@@ -231,8 +230,52 @@ class TestSetpoints:
         found = realise(load_library(name).icons[0], RIG, self.THERMODE)
         assert isinstance(found.played, Setpoints)
         assert 3 < len(found.played.segments) < 100
-        apart = np.abs(found.trace.display_C - found.designed_trace.display_C)
+        assert found.prompt_trace is not None
+        apart = np.abs(found.prompt_trace.display_C - found.designed_trace.display_C)
         assert apart.max() < 0.15  # half a step of drawing, half a step of rounding, and what the corner asks for
+
+    def test_nothing_of_the_rigs_module_or_driver_takes_part(self) -> None:
+        pulses = "repeat 20 { cool by 16 °C over 10 ms\n return over 10 ms\n hold for 980 ms }"
+        icon = parse(f"cue 1\nset s {{ control display\n baseline 32 °C }}\nicon a {{ {pulses} }}\n")["a"]
+        slow = RIG.with_(**{"driver.update_Hz": 1, "driver.current_limit_A": 0.1, "module.seebeck_V_per_K": 0.01})
+        here, there = (realise(icon, rig, self.THERMODE) for rig in (RIG, slow))
+        assert np.array_equal(here.trace.skin_C, there.trace.skin_C)
+        assert here.prompt_trace is not None
+        assert here.prompt_trace.display_C.min() == pytest.approx(16.0)  # each pulse is there, at its tick
+        falls = np.diff(here.prompt_trace.skin_C).min() / 0.01
+        assert falls < -100.0  # K/s: what the skin under such a pulse does
+        assert here.outcome == there.outcome
+
+    def test_the_trace_runs_behind_by_the_lag_which_is_no_loss_and_no_miss(self) -> None:
+        found = realise(load_library("six-icons")["cooling-step"], RIG, self.THERMODE)
+        late = found.trace.display_C[150:200] - found.designed_trace.display_C[150:200]
+        assert late == pytest.approx(3.0 * 0.21, rel=1e-3)
+        assert found.apart.losses() == ()
+        assert found.outcome is not None
+        assert found.outcome.reached
+
+    def test_a_thermode_has_no_current(self) -> None:
+        found = realise(STEP, RIG, self.THERMODE)
+        assert (found.lead_s, found.end_s, found.rate_Hz, found.drives) == (0.0, 8.0, 100.0, None)
+        assert not found.trace.has_current
+        with pytest.raises(DeviceError, match=r"qst-tcs2 is a thermode: it shows temperatures, and no current of it"):
+            found.delivered  # noqa: B018
+        icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
+        words = r"qst-tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
+        with pytest.raises(DeviceError, match=words):
+            realise(icon, RIG, self.THERMODE)
+
+    def test_on_a_thermode_rig_it_plays_what_the_rig_does(self) -> None:
+        rig = Rig.load("tcs2")
+        for icon in (STEP, load_library("cooling-step-skin").icons[0]):
+            found = realise(icon, rig, self.THERMODE)
+            assert found.trace.skin_C == pytest.approx(simulate(icon, rig).skin_C, abs=0.12)
+
+    def test_a_skin_that_the_range_does_not_reach_is_missed_and_says_why(self) -> None:
+        text = "cue 1\nset s { control skin\n baseline 32 °C }\nicon a { cool by 30 °C at 9 °C/s\n hold for 2 s }\n"
+        outcome = realise(parse(text)["a"], RIG, self.THERMODE).outcome
+        assert outcome is not None
+        assert "held back by the range of the thermode" in str(outcome.reason)
 
     def test_cooling_and_warming_of_equal_shape_take_equal_times(self) -> None:
         text = (

@@ -12,7 +12,7 @@ THENAR = Rig.load("thenar")
 
 
 def test_shipped_rigs_load_and_the_default_comes_first() -> None:
-    assert rig_names() == ("thenar", "fingertip", "forearm", "hand-dorsum", "shani2021")
+    assert rig_names() == ("thenar", "fingertip", "forearm", "hand-dorsum", "shani2021", "tcs2")
     assert [Rig.load(name).name for name in rig_names()] == list(rig_names())
 
 
@@ -24,8 +24,8 @@ def test_every_number_of_a_shipped_rig_has_a_source(name: str) -> None:
     def has_source(*keys: str) -> bool:
         return any(key in sources for key in keys)
 
-    for table in ("module", "heat_sink", "driver", "contact", "ambient", "blood"):
-        for key in document[table]:
+    for table in ("module", "heat_sink", "driver", "thermode", "contact", "ambient", "blood"):
+        for key in document.get(table, {}):
             assert has_source(table, f"{table}.{key}"), f"{table}.{key} has no source"
     for key in document["skin"]:
         assert key in ("site", "layer") or has_source(f"skin.{key}"), f"skin.{key} has no source"

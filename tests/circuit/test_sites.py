@@ -160,7 +160,8 @@ def test_a_rig_tells_about_itself_in_plain_text(name: str) -> None:
     assert lines[0] == f"{name}: {rig.title}"
     assert all(len(line) <= 118 for line in lines)
     told = " ".join(rig.about().split())
-    words = [f"site {rig.site}", f"{rig.blood_C:.2f} °C", str(rig.receptor_depths()), rig.module_source]
+    words = [f"site {rig.site}", f"{rig.blood_C:.2f} °C", str(rig.receptor_depths())]
+    words.append(rig.module_source if rig.thermode is None else "0.1 … 60 °C at up to 300 K/s")
     for text in (*words, *(f"warning {text}" for text in rig.warnings), *(f"note {text}" for text in rig.notes)):
         assert text in told
     assert "\n" not in repr(rig)

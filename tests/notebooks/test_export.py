@@ -76,12 +76,14 @@ def test_one_icon_is_still_compared_with_the_others(cli: Cli, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "name", ["spice-pwl", "keysight-arb", "rigol-raf", "wav", "c-array", "tcs2-serial", "psychopy"]
+    "name", ["spice-pwl", "keysight-arb", "rigol-raf", "wav", "c-array", "tcs2-serial", "psychopy", "setpoint-csv"]
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
     said = cli("export", two, "--to", name, "-o", tmp_path / "out")
     assert said.exit_code == 0, said.stderr
-    assert len(names(tmp_path / "out")) == (6 if name == "psychopy" else 4)
+    assert len(names(tmp_path / "out")) == {"psychopy": 6, "c-array": 5}.get(name, 4)
+    open_loop = name not in ("tcs2-serial", "setpoint-csv")
+    assert ("open loop: with a module that was not measured" in said.stderr) is open_loop
 
 
 class TestRefused:

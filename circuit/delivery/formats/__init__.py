@@ -9,6 +9,7 @@ from thermicon.circuit.delivery.formats.form import Format, FormatError
 
 MODULES = {
     "csv": "csv_table",
+    "setpoint-csv": "setpoint_csv",
     "spice-pwl": "spice_pwl",
     "keysight-arb": "keysight_arb",
     "rigol-raf": "rigol_raf",

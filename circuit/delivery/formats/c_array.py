@@ -1,14 +1,23 @@
-"""C array: codes in the flash of a microcontroller, as a header file."""
+"""C array: codes in the flash of a microcontroller, as a header file, beside a player that is the same for all."""
 
 from __future__ import annotations
 
 import re
 
-from thermicon.circuit.delivery.formats.form import PLAYS_SAMPLES, Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.formats.c_player import PLAYER, c_float, player_files
+from thermicon.circuit.delivery.formats.form import (
+    PLAYS_SAMPLES,
+    PLAYS_TEMPERATURES,
+    Column,
+    Format,
+    FormatError,
+    samples_of,
+)
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.icons.cleaning import clean_line
 
 A_LINE = 16
+CENTI_K = 0.01
 SMALLEST, LARGEST = -32768, 32767
 LONGEST_NS, MOST_CODES = 2**32 - 1, 2**32 - 1
 """What the header's unsigned 32-bit numbers hold: a period of 4.29 s."""
@@ -19,24 +28,33 @@ LEAST_EXACT = 1e-4
 def columns(realised: Realised) -> tuple[Column, ...]:
     """The array."""
     scale = samples_of(realised).scale
-    return (Column("wave", "", f"codes; times {scale.step:.9g} plus {scale.offset:.9g} {scale.unit}"),)
+    step = CENTI_K if realised.device.driven_by == "temperatures" else scale.step
+    return (Column("wave", "", f"codes; times {step:.9g} plus {scale.offset:.9g} {scale.unit}"),)
 
 
 def write(realised: Realised) -> bytes:
     """Return the header; raises FormatError for codes that 16 bits cannot hold."""
     samples, device = samples_of(realised), realised.device
     scale = samples.scale
+    if device.driven_by == "temperatures" and abs(scale.step / CENTI_K - round(scale.step / CENTI_K)) > 1e-9:
+        raise FormatError(
+            f"c-array holds set-points in hundredths of a degree; {device.name} has steps of {scale.step:g} K: state a "
+            f"set-point step that is a multiple of {CENTI_K:g} K"
+        )
     if scale.lowest < SMALLEST or scale.highest > LARGEST:
         raise FormatError(f"c-array holds int16_t; {device.name} has codes of {scale.lowest} … {scale.highest}")
     name, codes, period = identifier(realised.icon.name), samples.codes.tolist(), period_ns(samples.rate_Hz)
     if len(codes) > MOST_CODES:
         raise FormatError(f"c-array counts at most {MOST_CODES:,} codes; there are {len(codes):,}")
+    times = round(scale.step / CENTI_K) if device.driven_by == "temperatures" else 1
+    codes, step = [times * code for code in codes], scale.step / times
     rows = [", ".join(map(str, codes[k : k + A_LINE])) for k in range(0, len(codes), A_LINE)]
-    unit = "duty" if scale.unit == "1" else scale.unit
+    unit = {"1": "duty", "°C": "degrees C, the set-point,"}.get(scale.unit, scale.unit)
     lines = [
         f"/* {name} for {in_comment(device.name)}, written by thermicon.",
-        f"   {unit} = {scale.offset!r} + {scale.step!r} * code. Put out one code every period and hold it.",
-        "   The first code is the rest, the last marks the end and is the rest again. */",
+        f"   {unit} = {scale.offset!r} + {step!r} * code. Put out one code every period and hold it.",
+        "   The first code is the rest, the last marks the end and is the rest again.",
+        f"   {PLAYER} plays it. */",
         "#pragma once",
         "#include <stdint.h>",
         "#ifdef __AVR__",
@@ -47,6 +65,8 @@ def write(realised: Realised) -> bytes:
         "",
         f"static const uint32_t {name}_period_ns = {period}UL;",
         f"static const uint32_t {name}_count = {len(codes)}UL;",
+        f"static const float {name}_offset = {c_float(scale.offset)};",
+        f"static const float {name}_step = {c_float(step)};",
         f"static const int16_t {name}_wave[] PROGMEM = {{",
         *(f"  {row}," for row in rows),
         "};",
@@ -99,11 +119,13 @@ FORMAT = Format(
     name="c-array",
     title="header file for a microcontroller",
     suffix=".h",
-    takes=PLAYS_SAMPLES,
+    takes=(*PLAYS_SAMPLES, *PLAYS_TEMPERATURES),
     device="dac-12",
     source="ISO C99, stdint.h; PROGMEM of avr-libc",
-    how="include it, read with pgm_read_word on AVR, put out a code every period",
+    how="include it and thermicon_player.h; give the player your board's functions, and call thermicon_step steadily",
     write=write,
     columns=columns,
     stem=identifier,
+    player=player_files,
+    set_files=(PLAYER,),
 )

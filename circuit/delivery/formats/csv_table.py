@@ -8,7 +8,8 @@ import io
 import numpy as np
 
 from thermicon.circuit.delivery.formats.form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
+from thermicon.circuit.rig.skin import Array
 
 FIRST = "rest"
 
@@ -34,11 +35,7 @@ def write(realised: Realised) -> bytes:
     kept = samples.rows()
     times, command, codes = samples.time_s[kept], samples.command[kept], samples.codes[kept]
     current = None if realised.device.driven_by == "duty" else realised.delivered.at(times)
-    marks = {0: [FIRST]}
-    last = len(times) - 1
-    for event in events_in(realised):
-        row = last if event.name == "end" else min(int(np.searchsorted(times, event.time_s - 1e-8)), last)
-        marks.setdefault(row, []).append(event.name)
+    marks = marks_of(realised, times)
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(column.name for column in columns(realised))
@@ -46,6 +43,15 @@ def write(realised: Realised) -> bytes:
         numbers = [times[row], *(() if current is None else (current[row],)), command[row]]
         rows.writerow([*map(repr, map(float, numbers)), int(codes[row]), "; ".join(marks.get(row, ()))])
     return text.getvalue().encode("utf-8")
+
+
+def marks_of(realised: Realised, time_s: Array) -> dict[int, list[str]]:
+    """Names of what begins in a row, by the row: the rest in the first, each event in the first row of its own."""
+    marks, last = {0: [FIRST]}, len(time_s) - 1
+    for event in events_in(realised):
+        row = last if event.name == "end" else min(int(np.searchsorted(time_s, event.time_s - 1e-8)), last)
+        marks.setdefault(row, []).append(event.name)
+    return marks
 
 
 FORMAT = Format(

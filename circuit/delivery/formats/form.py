@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.events import Event, events_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.prevent import MustPrevent
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.inputs import InputError
@@ -17,6 +18,7 @@ from thermicon.circuit.solver.steady import hold
 PLAYS_CURRENT = ("volts", "amperes")
 PLAYS_SAMPLES = ("volts", "amperes", "duty")
 PLAYS_SETPOINTS = ("set-points",)
+PLAYS_TEMPERATURES = ("temperatures",)
 
 
 LONGEST_NAME = 200
@@ -40,12 +42,22 @@ class Column:
 
 
 @dataclass(frozen=True, slots=True)
+class Played:
+    """One drive of an export, with the names of its file and of its sidecar."""
+
+    realised: Realised
+    file: str
+    sidecar: str
+
+
+@dataclass(frozen=True, slots=True)
 class Format:
     """One kind of file: what it is called, which devices take it, where its layout is told, and how to write it.
 
     `device` is taken where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
     hangs on the device; `how` tells a person how to play it. `write` gives the bytes of one drive, `columns` what is in
-    them, `facts` what else the sidecar says of the file.
+    them, `facts` what else the sidecar says of the file. `player` gives the files of the whole set, named in
+    `set_files`, from all its drives and what the hardware must prevent.
     """
 
     name: str
@@ -60,6 +72,8 @@ class Format:
     stem: Callable[[str], str] = str
     suffix_by: Callable[[Realised], str] | None = None
     facts: Callable[[Realised], dict[str, object]] | None = None
+    player: Callable[[Sequence[Played], MustPrevent], dict[str, bytes]] | None = None
+    set_files: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
@@ -119,6 +133,7 @@ def command_column(realised: Realised) -> Column:
     name, meaning = {
         "volts": ("command_V", "voltage that the device puts out"),
         "amperes": ("command_A", "current that the device puts out"),
+        "temperatures": ("display_C", "set-point that the controller gets for the display"),
         "duty": ("duty", "share of a cycle that the bridge is on; negative: reversed"),
     }[realised.device.driven_by]
     return Column(name, realised.device.unit, f"{meaning}, held until the next row")

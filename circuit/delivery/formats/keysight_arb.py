@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 FULL = 32767
 DECIMALS, MOST_OFF = 6, 1e-4

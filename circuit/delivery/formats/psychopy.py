@@ -1,4 +1,4 @@
-"""PsychoPy: a conditions file with a row for each icon, the drives beside it, and a snippet that plays them."""
+"""PsychoPy: a conditions file with a row for each icon, the drives beside it, and a player that watches over them."""
 
 from __future__ import annotations
 
@@ -6,65 +6,23 @@ import csv
 import io
 from collections.abc import Sequence
 
-from thermicon.circuit.delivery.formats import csv_table, tcs2_serial
-from thermicon.circuit.delivery.formats.form import Column, Format, events_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.formats import csv_table, setpoint_csv, tcs2_serial
+from thermicon.circuit.delivery.formats.c_player import command_for, filled
+from thermicon.circuit.delivery.formats.form import Column, Format, Played, events_in, samples_of
+from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage, volts_of
+from thermicon.circuit.delivery.prevent import MustPrevent
+from thermicon.circuit.delivery.realised import Realised
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
+FROZEN_S = 5.0
+"""A reading that has not moved for so long is frozen. A thermode's, in steps of 0.1 K, may rest for longer."""
+
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")
 """First columns of the conditions file: names without blanks, as PsychoPy needs them."""
 
 MARKED = ("ramp start", "target reached", "return start", "baseline reached")
 """Events that may happen more than once. The first has a column without a number, as in `ramp_start_s`, the second one
 as `ramp_start_2_s`."""
-
-BY_VOLTS = '''"""Plays exported icons on an NI analogue output. Made by thermicon; never played on a device."""
-
-import csv
-
-CHANNEL = "Dev1/ao0"
-
-
-def play(drive_file):
-    """Put out the commands of a drive file in V, each held until the next; returns when the last was put out."""
-    import nidaqmx
-    from nidaqmx.constants import AcquisitionType
-
-    with open(drive_file, newline="") as file:
-        rows = list(csv.DictReader(file))
-    volts = [float(row["command_V"]) for row in rows]
-    rate = (len(rows) - 1) / float(rows[-1]["time_s"])
-    with nidaqmx.Task() as task:
-        task.ao_channels.add_ao_voltage_chan(CHANNEL, min_val=-10.0, max_val=10.0)
-        task.timing.cfg_samp_clk_timing(rate, sample_mode=AcquisitionType.FINITE, samps_per_chan=len(volts))
-        task.write(volts, auto_start=True)
-        task.wait_until_done(timeout=len(volts) / rate + 5.0)
-'''
-
-BY_SETPOINTS = '''"""Plays exported icons on a QST.Lab TCS II. Made by thermicon; never played on a device."""
-
-PORT = "COM3"
-
-
-def prepare(port, drive_file):
-    """Send everything but the start, so that the trial begins with one short command."""
-    with open(drive_file) as file:
-        for command in file.read().split():
-            if command != "L":
-                port.write(command.encode("ascii"))
-
-
-def play(port):
-    """Start what was prepared; port.write(b"A") aborts."""
-    port.write(b"L")
-
-
-def connect():
-    """Open the serial line."""
-    import serial
-
-    return serial.Serial(PORT, baudrate=115200, timeout=0.1)
-'''
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:
@@ -77,9 +35,9 @@ def write(realised: Realised) -> bytes:
     return _drive(realised).write(realised)
 
 
-def set_files(drives: Sequence[tuple[Realised, str, str]]) -> dict[str, bytes]:
-    """Return conditions file and player for drives, each with the names of its drive file and sidecar."""
-    marks = [_marks(realised) for realised, _, _ in drives]
+def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
+    """Return conditions file and player for drives of one device, with what the hardware must prevent."""
+    marks = [_marks(each.realised) for each in drives]
     most = max(len(times) for each in marks for times in each.values())
     later = [_column(name, k) for k in range(most) for name in MARKED]
     used = {column for each in marks for name, times in each.items() for column in _columns(name, len(times))}
@@ -87,14 +45,43 @@ def set_files(drives: Sequence[tuple[Realised, str, str]]) -> dict[str, bytes]:
     text = io.StringIO()
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
-    for (realised, drive, sidecar), each in zip(drives, marks, strict=True):
-        row = {"icon": realised.icon.name, "drive_file": drive, "sidecar_file": sidecar}
-        for name, times in each.items():
+    for one, times_by_name in zip(drives, marks, strict=True):
+        row = {"icon": one.realised.icon.name, "drive_file": one.file, "sidecar_file": one.sidecar}
+        for name, times in times_by_name.items():
             row |= {column: f"{time:.9g}" for column, time in zip(_columns(name, len(times)), times, strict=True)}
         rows.writerow(row)
-    by_setpoints = drives[0][0].device.driven_by == "set-points"
-    player = BY_SETPOINTS if by_setpoints else BY_VOLTS
-    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: player.encode("utf-8")}
+    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives[0].realised, must)}
+
+
+def _player(realised: Realised, must: MustPrevent) -> bytes:
+    """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
+    driven_by, device = realised.device.driven_by, realised.device
+    on, parts = "on an NI analogue output", ["guard", "polarity", "ni"]
+    off, off_V = "_off", "0.0"
+    if driven_by == "set-points":
+        on, parts = "on a QST.Lab TCS II", ["guard", "tcs2"]
+    elif driven_by == "temperatures" and not has_voltage(device):
+        on, parts = "on a temperature controller", ["guard", "send"]
+    elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
+        on = "as set-points of a temperature controller on an NI analogue output"
+        off_V = repr(float(volts_of(device, samples_of(realised).command[:1])[0]))
+    polarity = must.test_polarity and driven_by == "volts"
+    values = {
+        "ON": on,
+        "LOW_C": repr(must.low_C),
+        "HIGH_C": repr(must.high_C),
+        "LOOK_S": repr(0.5 * must.react_within_s),
+        "REST_S": repr(must.rest_s),
+        "PAUSE_S": repr(must.pause_s),
+        "TEST_POLARITY": str(polarity),
+        "TEST_COMMAND": repr(command_for(realised, must.test_current_A) if polarity else 0.0),
+        "TEST_S": repr(must.test_s),
+        "TEST_FALL_K": repr(must.test_fall_K),
+        "FROZEN_S": "math.inf" if driven_by == "set-points" else repr(FROZEN_S),
+        "OFF": off,
+        "OFF_V": off_V,
+    }
+    return b"".join(filled(f"player-{part}.py.txt", values) for part in parts)
 
 
 def _marks(realised: Realised) -> dict[str, list[float]]:
@@ -119,7 +106,8 @@ def _column(name: str, k: int) -> str:
 
 
 def _drive(realised: Realised) -> Format:
-    return tcs2_serial.FORMAT if realised.device.driven_by == "set-points" else csv_table.FORMAT
+    by_kind = {"set-points": tcs2_serial.FORMAT, "temperatures": setpoint_csv.FORMAT}
+    return by_kind.get(realised.device.driven_by, csv_table.FORMAT)
 
 
 def _suffix(realised: Realised) -> str:
@@ -130,11 +118,13 @@ FORMAT = Format(
     name="psychopy",
     title="conditions file of PsychoPy with drives and a player",
     suffix=".csv",
-    takes=("volts", "set-points"),
+    takes=("volts", "set-points", "temperatures"),
     device="ni-analogue-output",
     source="PsychoPy documentation, conditions files: CSV, a header of variable names, a row for each condition",
     how="name conditions.csv in a loop, import play_icons in a code component, and play drive_file",
     write=write,
     columns=columns,
     suffix_by=_suffix,
+    player=set_files,
+    set_files=SET_FILES,
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 FULL = 0x3FFF
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from thermicon.circuit.delivery.formats.form import PLAYS_CURRENT, Column, Format, command_column
 from thermicon.circuit.delivery.netlist import EDGE_S, points
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:

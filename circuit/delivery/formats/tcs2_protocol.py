@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.icons import Corners
 

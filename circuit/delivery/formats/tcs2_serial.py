@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.setpoints import Setpoints
 
 ZONES = "11111"

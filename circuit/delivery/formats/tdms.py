@@ -7,13 +7,15 @@ from importlib.metadata import version
 
 from thermicon.circuit.delivery.formats.form import (
     PLAYS_SAMPLES,
+    PLAYS_TEMPERATURES,
     Column,
     Format,
     FormatError,
     command_column,
     samples_of,
 )
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage, volts_of
+from thermicon.circuit.delivery.realised import Realised
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1
@@ -21,7 +23,14 @@ LARGEST = 2**31 - 1
 
 def columns(realised: Realised) -> tuple[Column, ...]:
     """Channels of the group `thermicon`."""
-    return (command_column(realised), Column("code", "", "the command as a whole number of the device's steps"))
+    voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
+    extra = (voltage,) if _is_voltage(realised) else ()
+    code = Column("code", "", "the command as a whole number of the device's steps")
+    return (command_column(realised), code, *extra)
+
+
+def _is_voltage(realised: Realised) -> bool:
+    return realised.device.driven_by == "temperatures" and has_voltage(realised.device)
 
 
 def write(realised: Realised) -> bytes:
@@ -43,6 +52,9 @@ def write(realised: Realised) -> bytes:
         ChannelObject(GROUP, command.name, samples.command, {"unit_string": command.unit, **clock}),
         ChannelObject(GROUP, "code", samples.codes.astype("<i4"), {"unit_string": "", **clock}),
     ]
+    if _is_voltage(realised):
+        volts = volts_of(realised.device, samples.command)
+        channels.append(ChannelObject(GROUP, "command_V", volts, {"unit_string": "V", **clock}))
     file = io.BytesIO()
     with TdmsWriter(file) as writer:
         writer.write_segment([root, group, *channels])
@@ -53,7 +65,7 @@ FORMAT = Format(
     name="tdms",
     title="National Instruments TDMS",
     suffix=".tdms",
-    takes=PLAYS_SAMPLES,
+    takes=(*PLAYS_SAMPLES, *PLAYS_TEMPERATURES),
     device="ni-analogue-output",
     source="written and read by npTDMS; properties of waveform channels as in its documentation",
     how="play channel command_V at 1/wf_increment, samps_per_chan = wf_samples, finite",

@@ -12,7 +12,7 @@ import wave
 import numpy as np
 
 from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realise import Realised
+from thermicon.circuit.delivery.realised import Realised
 
 FULL = 32768
 

@@ -1,0 +1,106 @@
+"""Temperatures against time, for a controller that closes its own loop around the rig's module.
+
+The set-points are the display temperature of the design, sampled by means so that the mean course is kept, and held
+until the next. What the display then does is the rig's own module following them, at the rig's update rate and within
+its driver's limits, by the rig's own PID loop where it has one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.devicefile import DeviceError
+from thermicon.circuit.delivery.realised import Realised
+from thermicon.circuit.delivery.samples import Samples, led, rate_of
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.batch_inputs import bank_of, run_follow, run_regulate
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.inverse import Design, baseline_C, design, design_ideal, gains_of
+from thermicon.circuit.solver.simulate import duration_s, simulate_current
+from thermicon.circuit.solver.steady import hold
+from thermicon.icons import Icon
+
+
+def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:
+    """Return a cue as a controller around the rig's module delivers it.
+
+    Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
+    """
+    if icon.frame.control == "current":
+        raise DeviceError(
+            f"{device.name} takes temperatures, and {icon.name} prescribes a current; use control display or control "
+            f"skin, or a device driven by volts, amperes or duty"
+        )
+    requested = rig.driver.update_Hz
+    end = duration_s(icon, rig) + tail_s
+    rate = rate_of(device, requested, end)
+    plan = design(icon, rig, end)
+    samples = _sampled(icon, rig, device, end, rate)
+    designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
+    delivered = follow_samples(rig, samples)
+    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
+    trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig, rate_Hz=rate_Hz)
+    return Realised(
+        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome, ()
+    )  # fmt: skip
+
+
+def follow_samples(rig: Rig, samples: Samples) -> Drive:
+    """Return the current by which the rig's display follows held set-points; RigError where the first has no rest.
+
+    It ends with the set-points, in a row of the current that holds the rest.
+    """
+    levels = samples.command
+    rest, state = hold(rig, "display", float(levels[0]))
+    bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
+    times: Array = np.arange(count + 1, dtype=np.float64) * period
+    place = np.floor(times[:-1] * samples.rate_Hz + 1e-6).astype(np.int64)
+    setpoint = levels[np.minimum(place, len(levels) - 1)][np.newaxis]
+    if rig.controller is None:
+        currents, _, _ = run_follow(bank, one, one, period, setpoint, False, bank.states([state]))
+    else:
+        gains = np.array([gains_of(rig)])
+        currents, _, _ = run_regulate(bank, one, one, period, setpoint, gains, np.array([rest]), bank.states([state]))
+    return Drive(times, [*currents[0], rest], held=True)
+
+
+def designed_until(drive: Drive, end_s: float) -> Drive:
+    """The same drive with its last current held until a time in s."""
+    if end_s <= drive.time_s[-1] + 1e-9:
+        return drive
+    return Drive(np.append(drive.time_s, end_s), np.append(drive.current_A, drive.current_A[-1]), drive.held)
+
+
+def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Samples:
+    """The display of the design by means over each period, behind one period of rest and before the rest again."""
+    times, levels = _course(icon, rig, end_s)
+    low, high = device.interval("set-point range")
+    for level in (float(levels.min()), float(levels.max())):
+        if not low - 1e-9 <= level <= high + 1e-9:
+            raise DeviceError(
+                f"{device.name}: a set-point of {level:.4g} °C is beyond {low:g} … {high:g} °C; change the icon, or "
+                f"use another device"
+            )
+    edges: Array = np.arange(math.ceil(end_s * rate_Hz - 1e-9) + 1, dtype=np.float64) / rate_Hz
+    grid = np.union1d(edges, times)
+    values = np.interp(grid, times, levels)
+    area = np.concatenate([[0.0], np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(grid))])
+    means = np.diff(np.interp(edges, grid, area)) / np.diff(edges)
+    scale = device.scale(0.0)
+    codes = np.rint(np.concatenate([levels[:1], means, levels[:1]]) / scale.step).astype(np.int64)
+    return Samples(rate_Hz, np.clip(codes, scale.lowest, scale.highest), scale)
+
+
+def _course(icon: Icon, rig: Rig, end_s: float) -> tuple[Array, Array]:
+    """Times in s and the display in °C of a design without any loop: the cue's corners, or what its skin needs."""
+    if icon.frame.control == "display":
+        corners = icon.lower(baseline_C(icon, rig))
+        return np.array(corners.time_s), np.array(corners.value)
+    plan: Design = design_ideal(icon, rig, end_s)
+    model = simulate_current(plan.drive, rig, rate_Hz=rig.driver.update_Hz, start_C=plan.start_C)
+    return model.time_s, model.display_C

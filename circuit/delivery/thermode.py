@@ -1,0 +1,46 @@
+"""What a thermode shows: its own set-points, at its own tick, within its own ramp rate, behind its own lag.
+
+Nothing of a rig takes part: a thermode measures its surface and corrects itself.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from thermicon.circuit.delivery.device import Device
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.displayed import part_of
+from thermicon.circuit.solver.prescribed import shown
+
+
+def lag_of(device: Device) -> float:
+    """Return the lag in s by which a thermode's surface follows its set-points; 0 where it states none.
+
+    >>> lag_of(Device.load("qst-tcs2"))
+    0.21
+    """
+    record = device.record("lag")
+    return 0.0 if record is None else record.central
+
+
+def display_of(
+    setpoints: Setpoints, device: Device, *, lagged: bool, end_s: float | None = None
+) -> tuple[float, Array]:
+    """Return a step in s and the display (rows,) in °C at every step from 0 to the end of set-points, or to `end_s`.
+
+    The step is the tick or a whole fraction of it, and the set-points are linear from tick to tick; the last is held.
+    The ramp rate of the device holds back what is faster. `lagged` adds its lag (first order, from rest); without it
+    the display is as fast as the device can make it, which is the worse case for the skin.
+
+    >>> step, display = display_of(Setpoints(0.01, 0.1, 320, ((2, 300),)), Device.load("qst-tcs2"), lagged=False)
+    >>> step, display.tolist()
+    (0.01, [32.0, 31.0, 30.0])
+    """
+    step = part_of(setpoints.tick_s)
+    end = float(setpoints.time_s[-1]) if end_s is None else end_s
+    times: Array = np.arange(math.ceil(end / step - 1e-9) + 1, dtype=np.float64) * step
+    lag = lag_of(device) if lagged else 0.0
+    return step, shown(setpoints.at(times), step, lag, device.most("ramp rate"))

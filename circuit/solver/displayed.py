@@ -1,0 +1,192 @@
+"""Runs of a thermode: the set-points that a cue becomes, the display that follows them, and the skin under it.
+
+There is no current to find: the display is what it is told, within its range, ramp rate and lag. A constant lag is a
+delay and not a miss, so the outcome is that of the display without it; the trace has it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermicon.circuit.rig.parts import Thermode
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.solver.inverse import baseline_C, steps_at, target_at
+from thermicon.circuit.solver.network import skin_network_of
+from thermicon.circuit.solver.prescribed import FELT, Index, SkinModes, modes_of, modes_on, shown
+from thermicon.circuit.solver.probes import joined, readings_of, sensed
+from thermicon.circuit.solver.trace import Outcome, Trace, judge
+from thermicon.icons import Icon
+
+FINEST_S = 0.01
+"""Longer updates are divided into equal parts of at most this, so that lag and skin are resolved within them."""
+
+SKIN_ROW, DISPLAY_ROW = FELT.index("skin_C"), FELT.index("display_C")
+
+
+def part_of(update_s: float, finest_s: float = FINEST_S) -> float:
+    """Return an update in s, or the largest whole fraction of it that is not above the finest.
+
+    >>> part_of(0.01), part_of(0.5)
+    (0.01, 0.01)
+    """
+    return update_s / max(1, math.ceil(update_s / finest_s - 1e-9))
+
+
+@dataclass(frozen=True, slots=True)
+class DisplayDesign:
+    """What a thermode is told and shows for a cue, at steps (rows,) of `step_s` from 0 on, in °C.
+
+    `prompt_C` is the display without its lag, by which the outcome is judged; `display_C` has the lag.
+    """
+
+    step_s: float
+    setpoint_C: Array
+    prompt_C: Array
+    display_C: Array
+    outcome: Outcome
+
+
+def refuse_current(icon: Icon, who: str) -> None:
+    """Raise RigError for a cue that prescribes current, which a thermode does not take."""
+    if icon.frame.control == "current":
+        raise RigError(
+            f"{who} is a thermode: it takes temperatures, and {icon.name} prescribes a current; use control display or "
+            f"control skin, or a rig and a device with a module"
+        )
+
+
+def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_S) -> DisplayDesign:
+    """Return what a thermode makes of a cue until `end_s`; raises RigError for current, or a baseline out of range.
+
+    Corners of a prescribed display are rounded to the resolution; the display for a prescribed skin is not, as a
+    thermode draws it in segments that stay within half a step.
+    """
+    refuse_current(icon, f"rig {rig.name}")
+    thermode, modes, base = _thermode(rig), modes_of(rig), baseline_C(icon, rig)
+    update = 1.0 / thermode.update_Hz
+    ticks: Array = np.arange(math.ceil(end_s / update - 1e-9) + 1, dtype=np.float64) * update
+    step = part_of(update, finest_s)
+    times: Array = np.arange((len(ticks) - 1) * round(update / step) + 1, dtype=np.float64) * step
+    limits = thermode.lowest_C, thermode.highest_C
+    if icon.frame.control == "skin":
+        start = modes.display_holding_skin_C(base)
+        _check_baseline(start, rig, f" (for {base:g} °C on the skin)")
+        wanted = modes.display_for_skin(target_at(icon, base, ticks), update, start, thermode.slew_K_per_s, limits)
+    else:
+        _check_baseline(base, rig, "")
+        corners = icon.lower(base)
+        levels = _rounded(np.array(corners.value), thermode.resolution_K)
+        wanted = np.clip(np.interp(ticks, corners.time_s, levels), *limits)
+    setpoints = np.interp(times, ticks, wanted)
+    prompt = shown(setpoints, step, 0.0, thermode.slew_K_per_s)
+    outcome = judge_display(icon, modes, base, step, prompt, limits, thermode.slew_K_per_s)
+    return DisplayDesign(
+        step, setpoints, prompt, shown(setpoints, step, thermode.lag_s, thermode.slew_K_per_s), outcome
+    )
+
+
+def judge_display(
+    icon: Icon, modes: SkinModes, base: float, step_s: float, prompt_C: Array, limits_C: tuple[float, float],
+    slew_K_per_s: float,
+) -> Outcome:  # fmt: skip
+    """Return the outcome of a display (rows,) without lag, judged where the cue prescribes: on the display or the skin.
+
+    Held back by the range of the thermode where the display touches one of its ends, by its ramp rate where it goes as
+    fast as that.
+    """
+    times: Array = np.arange(len(prompt_C), dtype=np.float64) * step_s
+    target, reached = target_at(icon, base, times), prompt_C
+    if icon.frame.control == "skin":
+        reached = modes.run(prompt_C, step_s, modes.steady(float(prompt_C[0])))[0][SKIN_ROW]
+    held = [
+        ("range of the thermode", (prompt_C <= limits_C[0] + 1e-9) | (prompt_C >= limits_C[1] - 1e-9)),
+        ("ramp rate of the thermode", np.abs(np.diff(prompt_C, append=prompt_C[-1])) >= slew_K_per_s * step_s - 1e-9),
+    ]
+    met = tuple((name, float(times[np.argmax(where)])) for name, where in held if where.any())
+    met = tuple(sorted(met, key=lambda limit: limit[1]))
+    return judge(target[1:], reached[1:], step_s, met, steps_at(icon, base))
+
+
+def play_display(
+    icon: Icon, rig: Rig, rows: Array, rate_Hz: float, readings: tuple[Index, Array] | None = None
+) -> tuple[Trace, Array]:
+    """Play a cue on a thermode: its trace at rows, and further readings (k, rows) of the skin."""
+    plan = design_display(icon, rig, float(rows[-1]), 1.0 / max(rate_Hz, 1.0 / FINEST_S))
+    target = target_at(icon, baseline_C(icon, rig), rows)
+    return trace_of_display(
+        rig, plan.step_s, plan.display_C, rows, icon=icon.name, control=icon.frame.control, target_C=target,
+        outcome=plan.outcome, readings=readings,
+    )  # fmt: skip
+
+
+def trace_of_display(
+    rig: Rig, step_s: float, display_C: Array, rows: Array, *, icon: str | None, control: str, target_C: Array,
+    outcome: Outcome | None, readings: tuple[Index, Array] | None = None,
+) -> tuple[Trace, Array]:  # fmt: skip
+    """Return the trace at rows of a display (steps,), held before at its first level, and further readings (k, rows).
+
+    There is no current, so that current, voltage and hot plate are NaN: empty in files, null in JSON.
+    """
+    own = readings_of(rig)
+    modes = modes_of(rig) if own is None and readings is None else _modes_with(rig, joined(own, readings))
+    values, _ = modes.run(display_C, step_s, modes.steady(float(display_C[0])))
+    times: Array = np.arange(len(display_C), dtype=np.float64) * step_s
+    listed = len(FELT) + (0 if own is None else len(own[0]))
+    probes = sensed(rig, times, values[len(FELT) : listed], 1)
+    felt = dict(zip(FELT, (_at(rows, times, row) for row in values), strict=False))
+    nothing = np.full(len(rows), np.nan)
+    trace = Trace(
+        icon=icon,
+        rig_name=rig.name,
+        site=rig.site,
+        area_m2=rig.contact.area_m2,
+        driver_limits_A=(math.nan, math.nan),
+        control=control,
+        outcome=outcome,
+        warnings=rig.warnings,
+        beyond=(),
+        time_s=rows,
+        current_A=nothing,
+        voltage_V=nothing.copy(),
+        target_C=target_C,
+        hot_plate_C=nothing.copy(),
+        probes=tuple((name, _at(rows, times, row)) for name, row in probes),
+        limits=rig.limits,
+        **felt,
+    )
+    others = np.array([_at(rows, times, row) for row in values[listed:]]).reshape(-1, len(rows))
+    return trace, others
+
+
+def _modes_with(rig: Rig, readings: tuple[Index, Array] | None) -> SkinModes:
+    return modes_on(skin_network_of(rig), readings=readings)
+
+
+def _at(rows: Array, times: Array, values: Array) -> Array:
+    """Values at rows, which are as a rule the times themselves."""
+    if len(rows) <= len(times) and np.abs(times[: len(rows)] - rows).max() < 1e-9:
+        return np.ascontiguousarray(values[: len(rows)])
+    return np.asarray(np.interp(rows, times, values), dtype=np.float64)
+
+
+def _rounded(levels: Array, resolution_K: float) -> Array:
+    return np.rint(levels / resolution_K) * resolution_K if resolution_K else levels
+
+
+def _thermode(rig: Rig) -> Thermode:
+    assert rig.thermode is not None
+    return rig.thermode
+
+
+def _check_baseline(display_C: float, rig: Rig, why: str) -> None:
+    thermode = _thermode(rig)
+    if not thermode.lowest_C - 1e-9 <= display_C <= thermode.highest_C + 1e-9:
+        raise RigError(
+            f"rig {rig.name}: a baseline of {display_C:.4g} °C on the display{why} is beyond its {thermode.lowest_C:g} "
+            f"… {thermode.highest_C:g} °C; choose another baseline"
+        )

@@ -1,0 +1,283 @@
+"""Players that come with PsychoPy drives, run with a clock, an NI device and a serial line that are stand-ins."""
+
+from __future__ import annotations
+
+import csv
+import io
+import sys
+import types
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.circuit.verdicts import MADE_UP, GreenVerdict
+from thermicon.circuit import Device, Record, Rig, prepare
+from thermicon.circuit.delivery.export import pack
+from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
+from thermicon.icons import load_library
+
+RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
+ICON = load_library("six-icons")["double-dip"]
+MUST = must_prevent([{"hardware_must_prevent": MADE_UP}])
+
+
+class Clock:
+    """Time that passes only in sleep."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.events: list[Callable[[], None]] = []
+
+    def monotonic(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        assert seconds > 0
+        self.now += seconds
+        for event in self.events:
+            event()
+
+
+class Daq(types.ModuleType):
+    """A stand-in for nidaqmx that remembers what is put out, and takes as long as the samples do."""
+
+    def __init__(self, clock: Clock) -> None:
+        super().__init__("nidaqmx")
+        self.clock, self.ends, self.stopped = clock, 0.0, 0
+        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
+        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
+        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self.sampled)
+        self.rate, self.count = 0.0, 0
+        self.out: list[Any] = []
+
+    def Task(self) -> Daq:
+        return self
+
+    def __enter__(self) -> Daq:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+    def sampled(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
+        self.rate, self.count = rate, samps_per_chan
+
+    def write(self, volts: Any, auto_start: bool) -> None:
+        self.out.append(volts)
+        if isinstance(volts, list):
+            self.ends = self.clock.now + len(volts) / self.rate
+
+    def is_task_done(self) -> bool:
+        return self.clock.now >= self.ends
+
+    def stop(self) -> None:
+        self.stopped += 1
+
+
+class Bench:
+    """A player of drives on a device, with its clock and its folder."""
+
+    def __init__(self, device: Device, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        form = load_format("psychopy")
+        ready = prepare(ICON, RIG, device, form, gate=GreenVerdict)
+        self.files = pack([ready], form)
+        self.drive = form.file_name(ready.realised)
+        (folder / self.drive).write_bytes(self.files[self.drive])
+        self.path = str(folder / self.drive)
+        self.clock = Clock()
+        self.daq = Daq(self.clock)
+        monkeypatch.setitem(sys.modules, "nidaqmx", self.daq)
+        monkeypatch.setitem(sys.modules, "nidaqmx.constants", self.daq)
+        self.player: dict[str, Any] = {}
+        exec(compile(self.files["play_icons.py"], "play_icons.py", "exec"), self.player)
+        self.player["time"] = self.clock
+        self.reading = 32.0
+        self.noise = 0.001
+
+    def measured(self) -> float:
+        """A live reading: its last digit moves."""
+        self.noise = -self.noise
+        return self.reading + self.noise
+
+    def rows(self) -> list[dict[str, str]]:
+        return list(csv.DictReader(io.StringIO(self.files[self.drive].decode())))
+
+    def cools(self, sign: float = 1.0) -> None:
+        """The display goes with the last voltage: above rest it cools."""
+
+        def moves() -> None:
+            if self.daq.out and isinstance(self.daq.out[-1], float) and self.daq.out[-1] > 1.0:
+                self.reading -= sign * 0.1
+
+        self.clock.events.append(moves)
+
+
+@pytest.fixture
+def ni(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
+    return Bench(Device.load("ni-analogue-output"), tmp_path, monkeypatch)
+
+
+class TestVolts:
+    """The player on an NI analogue output."""
+
+    def test_it_holds_the_rest_and_then_puts_out_every_command(self, ni: Bench) -> None:
+        ni.player["play"](ni.path)
+        commands = [float(row["command_V"]) for row in ni.rows()]
+        assert ni.daq.out == [commands[0], commands]
+        assert (ni.daq.rate, ni.daq.count) == (pytest.approx(100.0), len(commands))
+        assert ni.clock.now == pytest.approx(100.0 + 30.0 + 8.02, abs=0.1)
+
+    def test_it_refuses_a_play_before_the_pause_is_over(self, ni: Bench) -> None:
+        ni.player["play"](ni.path)
+        ni.clock.now += 5.0
+        with pytest.raises(RuntimeError, match=r"the pause of 20 s between plays is not over: wait 15\.0 s more"):
+            ni.player["play"](ni.path)
+        ni.clock.now += 15.5
+        ni.player["play"](ni.path)
+        assert len(ni.daq.out) == 3, "the rest is held before the first play alone"
+
+    def test_a_display_outside_the_cut_off_ends_with_zero(self, ni: Bench) -> None:
+        ni.cools()
+
+        def runs_away() -> None:
+            if ni.daq.out and isinstance(ni.daq.out[-1], list):
+                ni.reading += 0.3
+
+        ni.clock.events.append(runs_away)
+        with pytest.raises(RuntimeError, match=r"the display is at 4\d\.\d\d degrees C, outside 20 to 40"):
+            ni.player["play"](ni.path, ni.measured)
+        assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
+        with pytest.raises(RuntimeError, match=r"stopped before: find out why, then call reset\(\)"):
+            ni.player["play"](ni.path)
+
+    def test_abort_ends_with_zero(self, ni: Bench) -> None:
+        ni.clock.events.append(lambda: ni.player["abort"]() if ni.clock.now > 132.0 else None)
+        with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
+            ni.player["play"](ni.path)
+        assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
+
+    def test_swapped_wires_are_found_before_the_first_play(self, ni: Bench) -> None:
+        ni.cools(sign=-1.0)
+        with pytest.raises(RuntimeError, match=r"fell by -\d\.\d\d K, not by 0\.15 K, under 2 V that must cool"):
+            ni.player["play"](ni.path, ni.measured)
+        assert ni.daq.out == [2.0, 0.0]  # 0.2 A through 0.1 A/V
+
+    def test_right_wires_pass(self, ni: Bench) -> None:
+        ni.cools()
+        ni.player["play"](ni.path, ni.measured)
+        assert ni.daq.out[0] == 2.0
+        assert isinstance(ni.daq.out[-1], list)
+
+    @pytest.mark.parametrize(
+        ("reading", "words"),
+        [
+            (lambda: float("nan"), r"the sensor is lost: it reads nan"),
+            (lambda: 500.0, r"the sensor is lost: it reads 500\.0 degrees C"),
+            (lambda: 1 / 0, r"the sensor is lost \(.*division by zero\)"),
+            (lambda: 31.0, r"the sensor is frozen: it has read 31\.000 degrees C for 5 s"),
+        ],
+    )
+    def test_a_sensor_that_fails_ends_with_zero(self, ni: Bench, reading: Callable[[], float], words: str) -> None:
+        ni.player["TEST_POLARITY"] = False
+        with pytest.raises(RuntimeError, match=words):
+            ni.player["play"](ni.path, reading)
+        assert ni.daq.out[-1] == 0.0
+
+
+class TestThermode:
+    """The player of a thermode's commands."""
+
+    @pytest.fixture
+    def tcs(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
+        return Bench(Device.load("qst-tcs2"), tmp_path, monkeypatch)
+
+    def test_it_sends_the_start_last_and_after_the_rest(self, tcs: Bench) -> None:
+        sent: list[bytes] = []
+        port = types.SimpleNamespace(write=sent.append)
+        tcs.player["prepare"](port, tcs.path)
+        assert b"L" not in sent
+        tcs.player["play"](port)
+        assert sent == tcs.files[tcs.drive].split()
+        assert tcs.clock.now == pytest.approx(130.0)
+        with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
+            tcs.player["play"](port)
+
+    def test_a_display_outside_the_cut_off_is_aborted(self, tcs: Bench) -> None:
+        sent: list[bytes] = []
+        port = types.SimpleNamespace(write=sent.append)
+        tcs.player["prepare"](port, tcs.path)
+        tcs.clock.events.append(lambda: setattr(tcs, "reading", 45.0 if b"L" in sent else 32.0))
+        with pytest.raises(RuntimeError, match=r"the display is at 45\.\d\d degrees C, outside 20 to 40"):
+            tcs.player["play"](port, tcs.measured)
+        assert sent[-2:] == [b"L", b"A"]
+
+    def test_nothing_plays_that_was_not_prepared(self, tcs: Bench) -> None:
+        with pytest.raises(RuntimeError, match="nothing was prepared"):
+            tcs.player["play"](None)
+
+
+class TestSetpoints:
+    """The player of set-points for a controller."""
+
+    LOOP = Device.load("closed-loop-controller")
+
+    def test_rows_are_sent_at_their_times(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        bench = Bench(self.LOOP, tmp_path, monkeypatch)
+        sent: list[tuple[float, float]] = []
+        bench.player["play"](bench.path, lambda level: sent.append((bench.clock.now, level)), lambda: None)
+        rows = bench.rows()
+        assert [level for _, level in sent[1:]] == [float(row["display_C"]) for row in rows]
+        late = [at - 130.0 - float(row["time_s"]) for (at, _), row in zip(sent[1:], rows, strict=True)]
+        assert max(map(abs, late)) < 1e-6
+
+    def test_the_output_is_off_after_a_cut_off(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        bench = Bench(self.LOOP, tmp_path, monkeypatch)
+        off: list[float] = []
+        bench.reading = 45.0
+        with pytest.raises(RuntimeError, match="outside 20 to 40"):
+            bench.player["play"](bench.path, lambda _: None, lambda: off.append(bench.clock.now), bench.measured)
+        assert off
+
+    def test_as_a_voltage_off_is_the_rest(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        records = (
+            *self.LOOP.records,
+            Record("set-point gain", "V/K", "test", value=0.1),
+            Record("set-point offset", "V", "test", value=-2.0),
+        )
+        bench = Bench(replace(self.LOOP, records=records), tmp_path, monkeypatch)
+        commands = [float(row["command_V"]) for row in bench.rows()]
+        assert commands[0] == pytest.approx(0.1 * 32.0 - 2.0)
+        bench.clock.events.append(lambda: bench.player["abort"]() if bench.clock.now > 132.0 else None)
+        with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
+            bench.player["play"](bench.path)
+        assert bench.daq.out[-1] == pytest.approx(commands[0])
+
+
+class TestMustPrevent:
+    """Numbers of the gate as players get them."""
+
+    def test_the_strictest_of_a_set_counts(self) -> None:
+        gentle = {
+            **MADE_UP, "watchdog_s": 1.0, "pause_at_least_s": 90.0, "polarity_check": {"needed": False},
+            "cut_off_display_C": {"low": 24.0, "high": 44.0, "react_within_s": 0.5},
+        }  # fmt: skip
+        found = must_prevent([{"hardware_must_prevent": MADE_UP}, {"hardware_must_prevent": gentle}])
+        assert found == MustPrevent(0.4, 24.0, 40.0, 0.1, True, 0.2, 0.5, 0.15, 30.0, 90.0)
+
+    def test_what_is_not_stated_is_assumed(self) -> None:
+        assert must_prevent([{}]) == MustPrevent()
+
+    def test_a_polarity_that_need_not_be_tested_is_not(self) -> None:
+        found = must_prevent([{"hardware_must_prevent": {"polarity_check": {"needed": False, "test_s": None}}}])
+        assert not found.test_polarity
+
+    def test_a_set_has_one_player(self) -> None:
+        form = load_format("c-array")
+        ready = prepare(ICON, RIG, Device.load("dac-12"), form, gate=GreenVerdict)
+        assert form.player is not None
+        assert set(form.player([Played(ready.realised, "a.h", "a.json")], MUST)) == set(form.set_files)

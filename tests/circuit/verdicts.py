@@ -1,0 +1,25 @@
+"""A made-up verdict, for tests of what is written after a gate has passed a drive."""
+
+from __future__ import annotations
+
+from typing import Any
+
+MADE_UP: dict[str, Any] = {
+    "watchdog_s": 0.4,
+    "cut_off_display_C": {"low": 20.0, "high": 40.0, "react_within_s": 0.1},
+    "polarity_check": {"needed": True, "test_current_A": 0.2, "test_s": 0.5, "display_change_at_least_K": 0.15},
+    "rest_before_first_play_s": 30.0,
+    "pause_at_least_s": 20.0,
+}
+
+
+class GreenVerdict:
+    """A gate that is green and says what the hardware must prevent."""
+
+    colour, reason, cautions, scenarios = "green", None, (), 1
+
+    def __init__(self, realised: object) -> None:
+        self.realised = realised
+
+    def to_dict(self) -> dict[str, object]:
+        return {"colour": "green", "hardware_must_prevent": MADE_UP}
