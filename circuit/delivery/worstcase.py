@@ -2,14 +2,16 @@
 
 Volts and amperes are played open loop, so the gain of the current source counts. A bridge switches its full current,
 so its rest and its last value are means. A thermode shows its own set-points at its own tick: they are judged as they
-stand, with its lag and without, and neither module nor driver nor heat sink of a rig take part. A controller around the
-rig's module is judged both ways: the display exactly at its set-points, and the module that follows them in each corner.
+stand, with its lag and without, and neither module nor driver nor heat sink of a rig take part. A controller around
+the rig's module is judged both ways: the display exactly at its set-points, and the module that follows in each corner.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from thermicon.circuit.delivery.realised import Realised
 from thermicon.circuit.delivery.samples import Samples
@@ -28,6 +30,9 @@ from thermicon.circuit.safety.thermode import Shown
 from thermicon.circuit.safety.thermode_gate import gate_shown
 
 AT_ONCE, LAGGED, HELD = "followed at once", "followed with its lag", "every set-point reached"
+
+SETTLED_LAGS = 12.0
+"""After so many lags a display has arrived within 1e-5 of its last step."""
 
 
 def worst_case(realised: Realised, pause_s: float | None = None) -> Gate:
@@ -69,7 +74,10 @@ def ways_of(realised: Realised) -> tuple[Shown, ...]:
     assert isinstance(played, Setpoints)
     found = [Shown(AT_ONCE, *display_of(played, device, lagged=False))]
     if lag_of(device) > 0:
-        found.append(Shown(LAGGED, *display_of(played, device, lagged=True)))
+        settling = SETTLED_LAGS * lag_of(device)
+        step, display = display_of(played, device, lagged=True, end_s=float(played.time_s[-1]) + settling)
+        display = np.append(display[:-1], played.level_C[-1])
+        found.append(Shown(LAGGED, step, display, step * (len(display) - 1) - float(played.time_s[-1])))
     return tuple(found)
 
 

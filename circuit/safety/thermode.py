@@ -36,11 +36,15 @@ _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shown:
-    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows in some `way` of following."""
+    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows in some `way` of following.
+
+    The last `settling_s` of it are after the end of the drive, until the display has arrived: part of the pause.
+    """
 
     way: str
     step_s: float
     display_C: Array
+    settling_s: float = 0.0
 
     @property
     def rows_s(self) -> Array:
@@ -51,6 +55,10 @@ class Shown:
     def end_s(self) -> float:
         """Time in s of the last row."""
         return self.step_s * (len(self.display_C) - 1)
+
+    def left_s(self, pause_s: float) -> float:
+        """What is left in s of a pause after the last row."""
+        return max(0.0, pause_s - self.settling_s)
 
 
 def limits_without_module(limits: Limits) -> Limits:
@@ -116,13 +124,14 @@ class Under:
         """States after a play and a pause with the last set-point held."""
         last = float(shown.display_C[-1])
         _, ended = self.play(shown, states)
-        return [modes.after(pause_s, last, end) for modes, end in zip(self.modes, ended, strict=True)]
+        left = shown.left_s(pause_s)
+        return [modes.after(left, last, end) for modes, end in zip(self.modes, ended, strict=True)]
 
     def cycle(self, shown: Shown, pause_s: float) -> list[Array]:
         """States before each play of a steady cycle: each mode forgets the same share in every cycle."""
         none = [np.zeros_like(modes.rate_per_s) for modes in self.modes]
         forced = self.after(shown, pause_s, none)
-        length = shown.end_s + pause_s
+        length = shown.end_s + shown.left_s(pause_s)
         return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
 
     def bound(self, shows: Sequence[Shown], pause_s: float, begun: Sequence[Array], warm: bool) -> list[Array]:

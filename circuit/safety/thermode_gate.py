@@ -154,7 +154,7 @@ def _cycle_checks(
     values, ended = under.play(shown, states)
     tally = Tally(limits, names, plays=_plays(shown, pause_s, limits.session_s), begun_C=begun_C)
     tally.add(shown.rows_s, values, rates=rates)
-    rows = np.append(0.0, pause_rows(pause_s))
+    rows = np.append(0.0, pause_rows(shown.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(shown.end_s + rows, under.hold(float(shown.display_C[-1]), ended, rows), rates=False)
     endings = [Tally(limits, [f"{name}, then {ending}" for name in names], begun_C=begun_C) for ending in ENDINGS]
@@ -163,7 +163,7 @@ def _cycle_checks(
 
 
 def _plays(shown: Shown, pause_s: float, session_s: float) -> int:
-    return max(1, math.floor((session_s + pause_s) / (shown.end_s + pause_s) + 1e-9))
+    return max(1, math.floor((session_s + pause_s) / (shown.end_s + shown.left_s(pause_s)) + 1e-9))
 
 
 def _safe(again: Sequence[Sequence[Check]]) -> bool:
