@@ -111,7 +111,8 @@ def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
                 f"{path}: {file.metadata.num_rows:,} rows, {sum(groups) / 1e6:,.0f} MB unpacked; the limit is "
                 f"{MOST_ROWS:,} rows and {MOST_UNPACKED_MB:g} MB: keep every tenth row"
             )
-        return file.read().to_pandas()
+        frame: pd.DataFrame = file.read().to_pandas()
+        return frame
     except (ValueError, OSError, NotImplementedError, KeyError) as problem:
         raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
 
