@@ -1,5 +1,9 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
+from thermicon.notebooks.startup import guard
+
+guard()  # before anything that takes time to import
+
 from typing import TYPE_CHECKING, Any
 
 from thermicon.notebooks.overview import overview, set_figure

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     Array = NDArray[numpy.float64]
 
 MOST_MB = 200.0
+MOST_UNPACKED_MB, MOST_ROWS = 1000.0, 10_000_000
+"""What a Parquet file, which is packed, may hold."""
 EXTRA = re.compile(r"probe_.+_C")
 
 
@@ -79,15 +81,10 @@ def _read(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     from thermicon.circuit import InputError
-    from thermicon.circuit.inputs import read_text
+    from thermicon.circuit.inputs import read_bytes, read_text
 
     if path.suffix.lower() == ".parquet":
-        try:
-            return pd.read_parquet(path)
-        except FileNotFoundError:
-            raise LogError(f"{path}: no such trace or log") from None
-        except (ValueError, OSError) as problem:
-            raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
+        return _read_parquet(read_bytes(path, "trace or log", MOST_MB), path)
     text = read_text(path, "trace or log", MOST_MB, InputError)
     if ";" in text.partition("\n")[0] and "," not in text.partition("\n")[0]:
         raise LogError(f"{path}:1: columns are separated by semicolons; save it with commas and decimal points")
@@ -99,6 +96,25 @@ def _read(path: Path) -> pd.DataFrame:
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as problem:
         raise LogError(f"{path}: not a table of comma-separated values ({problem})") from None
     return frame.dropna(how="all")
+
+
+def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
+    """The table of a Parquet file, whose size when unpacked is looked at first."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        file = pq.ParquetFile(pa.BufferReader(data))
+        groups = [file.metadata.row_group(k).total_byte_size for k in range(file.metadata.num_row_groups)]
+        if sum(groups) > MOST_UNPACKED_MB * 1e6 or file.metadata.num_rows > MOST_ROWS:
+            raise LogError(
+                f"{path}: {file.metadata.num_rows:,} rows, {sum(groups) / 1e6:,.0f} MB unpacked; the limit is "
+                f"{MOST_ROWS:,} rows and {MOST_UNPACKED_MB:g} MB: keep every tenth row"
+            )
+        frame: pd.DataFrame = file.read().to_pandas()
+        return frame
+    except (ValueError, OSError, NotImplementedError, KeyError) as problem:
+        raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
 
 
 def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 import typer
 from typer.core import TyperGroup
 
+from thermicon.icons.cleaning import clean, clean_line
+
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
@@ -30,6 +32,8 @@ class Commands(TyperGroup):
 
     def make_context(self, *arguments: Any, **extra: Any) -> Any:
         """Read the command line; Ctrl-C exits with 130."""
+        # Python's workers, and every server that is started from here, import nothing from where they are started.
+        os.environ.setdefault("PYTHONSAFEPATH", "1")
         try:
             return super().make_context(*arguments, **extra)
         except KeyboardInterrupt:
@@ -47,9 +51,15 @@ class Commands(TyperGroup):
             raise typer.Exit(0) from None
         except MemoryError:
             fail("not enough memory for this; ask for fewer people, fewer rows a second or a shorter tail")
+        except RuntimeError as error:
+            if "Symlink loop" not in str(error):  # pathlib's words for links that lead to themselves
+                raise
+            fail(f"a path cannot be followed, its links lead in a circle: {str(error).partition('from ')[2]}")
         except OSError as error:
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
+        except RecursionError:
+            fail("this is nested too deeply to be read")
         except Exception as error:
             if isinstance(error, typer.BadParameter) or not is_ours(error):
                 raise
@@ -67,14 +77,14 @@ def interrupted() -> typer.Exit:
 
 def fail(message: str) -> NoReturn:
     """Say what is wrong on stderr and leave with the code for bad input."""
-    typer.echo(message, err=True)
+    typer.echo(clean(message), err=True)
     raise typer.Exit(BAD_INPUT)
 
 
 def note(message: str) -> None:
     """Tell the person something beside the result; stderr, so that results can be piped. Nobody need be there."""
     try:
-        typer.echo(message, err=True)
+        typer.echo(clean(message), err=True)
     except BrokenPipeError:
         into_nowhere(sys.stderr)
 
@@ -96,7 +106,7 @@ class Missing(typer.BadParameter):
 
 def usage(message: str, option: str) -> typer.BadParameter:
     """Build the error for a command line that makes no sense; raising it exits with 2."""
-    return typer.BadParameter(message, param_hint=f"'{option}'")
+    return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
 
 
 def check_changes(changes: Sequence[str]) -> None:

@@ -15,6 +15,7 @@ from thermicon.notebooks.exporttables import delivered_html, gate_html, written_
 from thermicon.notebooks.outputs import OutputError
 from thermicon.notebooks.reading import read_text
 from thermicon.notebooks.setcompute import MOST_RANKED
+from thermicon.notebooks.startfolder import below_start
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -111,10 +112,10 @@ class ExportView:
         """Write the files; what is refused is said, and nothing is written then."""
         if self.ready is None or self._wanted() != self._done:
             raise OutputError("the drives are not ready yet")
-        folder = Path(self.folder.value.strip() or ".").expanduser()
         try:
+            folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
             written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
-        except (OutputError, ValueError) as wrong:
+        except (OutputError, ValueError, RuntimeError) as wrong:
             self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
             self._say("")
             return

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,13 +18,17 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from thermicon.icons.handed import NotRegular, TooLarge, read_limited
 from thermicon.notebooks.door import fail, interrupted, note, usage
 from thermicon.notebooks.outputs import check_folder, stopped_cleanly, write_together
+from thermicon.notebooks.startfolder import VARIABLE
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
 """Endings of files: who gives one wants something else than a folder of that name."""
 FIRST, PAGE = "01_first_icon.ipynb", "workbench.ipynb"
+MOST_BYTES = 200_000_000
+"""Bytes of a notebook that is looked at; with all its pictures one has some millions."""
 STAMP = "thermicon"
 """The key of a copy's metadata that holds the fingerprint it was written with."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
@@ -86,7 +92,7 @@ def lab_command(
         fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
     tell(copy_notebooks(folder, force), folder)
     if not files_only:
-        serve(command_of(page, no_browser, port), folder)
+        serve(command_of(folder, page, no_browser, port), folder, program)
 
 
 def copy_notebooks(folder: Path, force: bool = False) -> Copied:
@@ -131,29 +137,43 @@ def tell(copied: Copied, folder: Path) -> None:
         note(f"{folder / name}: kept, since you changed it; --force replaces it")
 
 
-def command_of(page: bool, no_browser: bool, port: int | None) -> list[str]:
-    """The command that opens JupyterLab on the first notebook, or Voila on the workbench, in the folder of both.
+def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> list[str]:
+    """The command that opens JupyterLab on the first notebook, or the page's server on the workbench, in a folder.
 
-    >>> command_of(True, False, 9000)[1:]
-    ['-m', 'voila', 'workbench.ipynb', '--port=9000']
+    With -P, Python imports nothing from the folder that it is started in.
+
+    >>> command_of(Path("/mine"), True, False, 9000)[1:]
+    ['-P', '-m', 'thermicon.notebooks.pageserver', '/mine/workbench.ipynb', '--port=9000']
     """
-    words = [sys.executable, "-m", *(("voila", PAGE) if page else ("jupyterlab", FIRST))]
+    module, notebook = ("thermicon.notebooks.pageserver", PAGE) if page else ("jupyterlab", FIRST)
+    words = [sys.executable, "-P", "-m", module, str(folder.resolve() / notebook)]
     words += ["--no-browser"] if no_browser else []
     return words + ([f"--port={port}"] if port is not None else [])
 
 
-def serve(command: list[str], folder: Path) -> None:
-    """Run a server in a folder until it ends or Ctrl-C ends it; it is given the time to stop its kernels."""
+def serve(command: list[str], folder: Path, program: str) -> None:
+    """Run a server on a folder until it ends or Ctrl-C ends it; it is given the time to stop its kernels.
+
+    It runs in an empty folder, since servers of Jupyter take settings, which are programs, from where they are started;
+    kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
+    """
     note("Ctrl-C ends it")
+    own = {**os.environ, "PYTHONSAFEPATH": "1"}
+    if program == "voila":
+        own[VARIABLE] = str(folder.resolve())
     # Without a terminal to ask at, a server ends at once on Ctrl-C, which reaches it as well as this process.
-    with stopped_cleanly(), subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL) as server:
+    with (
+        stopped_cleanly(),
+        tempfile.TemporaryDirectory(prefix="thermicon-", ignore_cleanup_errors=True) as empty,
+        subprocess.Popen(command, cwd=empty, env=own, stdin=subprocess.DEVNULL) as server,
+    ):
         try:
             code = server.wait()
         except KeyboardInterrupt:
             _end(server)
             raise interrupted() from None
     if code != 0:
-        fail(f"{command[2]} ended with an error (exit code {code}); what it says is above")
+        fail(f"{program} ended with an error (exit code {code}); what it says is above")
 
 
 def _end(server: subprocess.Popen[bytes]) -> None:
@@ -172,9 +192,9 @@ def _state(path: Path, shipped: Mapping[str, Any]) -> State:
     if not path.exists():
         return "new"
     try:
-        there = json.loads(path.read_text(encoding="utf-8"))
+        there = json.loads(read_limited(path, MOST_BYTES))
         found, stamp = _fingerprint(there), there.get("metadata", {}).get(STAMP)
-    except (ValueError, AttributeError, KeyError, TypeError):
+    except (ValueError, AttributeError, KeyError, TypeError, RecursionError, NotRegular, TooLarge):
         return "changed"  # no notebook at all: the person's
     if found == _fingerprint(shipped):
         return "current"
