@@ -28,8 +28,12 @@ from thermicon.circuit.safety.single import Single
 from thermicon.circuit.safety.single_faults import Faulty
 from thermicon.circuit.safety.thermode import Shown
 from thermicon.circuit.safety.thermode_gate import gate_shown
+from thermicon.circuit.solver.drive import Drive
 
 AT_ONCE, LAGGED, HELD = "followed at once", "followed with its lag", "every set-point reached"
+
+RIPPLES_BELOW_HZ = 100.0
+"""A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
 
 SETTLED_LAGS = 12.0
 """After so many lags a display has arrived within 1e-5 of its last step."""
@@ -59,13 +63,24 @@ def worst_cases(realised: Sequence[Realised], pause_s: float | None = None) -> t
         return gate_shown([ways_of(one) for one in realised], rig, stuck_C=stuck, pause_s=pause_s)
     if device.driven_by == "temperatures":
         return _controlled(realised, pause_s)
-    if device.driven_by != "duty":
-        drives = [(one.delivered, float(one.delivered.current_A[0])) for one in realised]
-        return gate_set(drives, rig, pause_s=pause_s)
+    if device.driven_by == "duty":
+        return _bridged(realised, pause_s)
+    assert device.driven_by in ("volts", "amperes"), f"no gate for a device driven by {device.driven_by}"
+    drives = [(one.delivered, float(one.delivered.current_A[0])) for one in realised]
+    return gate_set(drives, rig, pause_s=pause_s)
+
+
+def _bridged(realised: Sequence[Realised], pause_s: float | None) -> tuple[Gate, ...]:
+    """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
+    device, rig = realised[0].device, realised[0].rig
     low, high = device.interval("output range")
-    peak = min(-low, high)
-    bridged = [(one.delivered, float(samples_of(one).command[0]) * peak) for one in realised]
-    return gate_set(bridged, rig, bridge_A=peak, pause_s=pause_s)
+    peak, averaged = min(-low, high), device.most("carrier frequency") >= RIPPLES_BELOW_HZ
+    drives = []
+    for one in realised:
+        samples = samples_of(one)
+        means = Drive(samples.time_s, samples.command * peak, held=True)
+        drives.append((means if averaged else one.delivered, float(samples.command[0]) * peak))
+    return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
 
 
 def ways_of(realised: Realised) -> tuple[Shown, ...]:

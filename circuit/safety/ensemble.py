@@ -38,6 +38,7 @@ class Ensemble:
     """Corners of a rig, ready to run; the first is the rig as given.
 
     `bridge_A`: a bridge switches between this current and none, so that constant currents are means; None: it does not.
+    `averaged`: so are the currents of drives, since the bridge switches too fast for a plate to follow.
     `ideal`: the heat sink has no controller of its own, so that constant currents are solved by modes.
     """
 
@@ -48,26 +49,27 @@ class Ensemble:
     gain: Array
     bridge_A: float | None
     ideal: bool
+    averaged: bool = False
     _modes: dict[float, ConstantCurrent] = field(default_factory=dict)
 
     @staticmethod
-    def of(rig: Rig, bridge_A: float | None = None) -> Ensemble:
+    def of(rig: Rig, bridge_A: float | None = None, averaged: bool = False) -> Ensemble:
         """All corners of a rig; raises DriveError for a bridge that cannot be."""
         if bridge_A is not None and not (0 < bridge_A < np.inf):
             raise DriveError(f"a bridge of {bridge_A:g} A is not possible; its current must be above 0 A")
-        return Ensemble.on(rig, corners_of(rig), bridge_A)
+        return Ensemble.on(rig, corners_of(rig), bridge_A, averaged)
 
     @staticmethod
-    def on(rig: Rig, corners: tuple[Corner, ...], bridge_A: float | None) -> Ensemble:
+    def on(rig: Rig, corners: tuple[Corner, ...], bridge_A: float | None, averaged: bool = False) -> Ensemble:
         """Some corners of a rig."""
         networks = tuple(network_of(corner.rig) for corner in corners)
         gain = np.array([1.0 + corner.gain_relative for corner in corners])
         ideal = rig.heat_sink.controller is None
-        return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, ideal)
+        return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, ideal, averaged)
 
     def only(self, which: list[int]) -> Ensemble:
         """The same with some of its corners."""
-        few = Ensemble.on(self.rig, tuple(self.corners[k] for k in which), self.bridge_A)
+        few = Ensemble.on(self.rig, tuple(self.corners[k] for k in which), self.bridge_A, self.averaged)
         few._modes.update({current: modes.only(which) for current, modes in self._modes.items()})
         return few
 
@@ -98,7 +100,8 @@ class Ensemble:
     def play(self, drive: Drive, state: State, rigs: Index | None = None) -> Iterator[tuple[Stretch, State]]:
         """Play a drive from states, in stretches, each with the states at its end; `rigs` (lanes,): a lane's corner."""
         which = self.lanes if rigs is None else rigs
-        row_s = ROW_S if self.bridge_A is not None else row_of(drive)
+        switched = self.bridge_A is not None and not self.averaged
+        row_s = ROW_S if switched else row_of(drive)
         end, most = float(drive.time_s[-1]), max(2, AT_ONCE // len(which))
         count = max(1, int(np.ceil(end / row_s - 1e-9)))
         for first in range(0, count, most):
@@ -106,8 +109,7 @@ class Ensemble:
             rows: Array = np.arange(first, last + 1, dtype=np.float64) * row_s
             rows[-1] = min(rows[-1], end)
             part = between(drive, float(rows[0]), float(rows[-1]))
-            currents = self.gain[:, np.newaxis] * part.current_A
-            intervals = cut(rows - rows[0], part.time_s, currents, drive.held)
+            intervals = self._cut(rows - rows[0], part)
             values, state = run_on(self.bank, which, which, intervals, state, WATCHED)
             yield (rows, values), state
 
@@ -115,8 +117,16 @@ class Ensemble:
         """States at the end of a drive."""
         which = self.lanes if rigs is None else rigs
         end = float(drive.time_s[-1])
-        intervals = cut(np.array([0.0, end]), drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
+        intervals = self._cut(np.array([0.0, end]), drive)
         return run_on(self.bank, which, which, intervals, state, WATCHED[:1])[1]
+
+    def _cut(self, rows_s: Array, drive: Drive) -> Intervals:
+        """A drive cut into intervals, scaled in each corner; where it has means, with the heat of what switches."""
+        found = cut(rows_s, drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
+        if self.bridge_A is None or not self.averaged:
+            return found
+        start, end = switching(found.start_A, self.bridge_A * self.gain)
+        return Intervals(found.edges_s, found.row_of, start, end)
 
     def hold(self, current_A: float, state: State, times_s: Array, rigs: Index | None = None) -> tuple[Array, State]:
         """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
@@ -174,13 +184,17 @@ def between(drive: Drive, begin_s: float, end_s: float) -> Drive:
 
 
 def held_currents(last_A: Array, rows: int, bridge_A: Array | None) -> Array:
-    """Currents at both ends of each of `rows` intervals, (2, rows, corners).
+    """Currents (lanes,) at both ends of each of `rows` intervals, (2, rows, lanes); with `bridge_A` they are means."""
+    currents = np.broadcast_to(last_A, (rows, len(last_A)))
+    return np.stack([currents, currents] if bridge_A is None else switching(currents, bridge_A))
 
-    A bridge of mean m and peak p heats with m·p instead of m²: a triangle about m has that mean square too.
+
+def switching(mean_A: Array, bridge_A: Array) -> tuple[Array, Array]:
+    """Currents at both ends of intervals (intervals, lanes) that heat as a bridge of these means does.
+
+    A bridge of mean m and peak p heats with m·p instead of m²: a triangle about m has that mean square too. It leans
+    the other way from interval to interval, so that there is no jump where the mean stays.
     """
-    currents = np.broadcast_to(last_A, (2, rows, len(last_A))).copy()
-    if bridge_A is not None:
-        swing = np.sqrt(3.0 * np.maximum(np.abs(last_A) * bridge_A - last_A**2, 0.0))
-        sign = np.where(np.arange(rows) % 2 == 0, 1.0, -1.0)[:, np.newaxis]
-        currents += np.stack([sign * swing, -sign * swing])
-    return currents
+    swing = np.sqrt(3.0 * np.maximum(np.abs(mean_A) * bridge_A - mean_A**2, 0.0))
+    sign = np.where(np.arange(len(mean_A)) % 2 == 0, 1.0, -1.0)[:, np.newaxis]
+    return mean_A + sign * swing, mean_A - sign * swing

@@ -186,28 +186,25 @@ def gate_set(
     bridge_A: float | None = None,
     limits: Limits | None = None,
     pause_s: float | None = None,
+    averaged: bool = False,
 ) -> tuple[Gate, ...]:
     """Check drives, each with its rest in A, that may be played again and again in any order; as `gate` does.
 
     Each is judged by itself, and between the bounds on what any sequence of all of them can come to. Without a pause,
-    that is the longest recovery time among them.
+    that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
+    switches too fast for a plate to follow.
     """
     from threadpoolctl import threadpool_limits
 
     check_pause(pause_s)
     with threadpool_limits(limits=1, user_api="blas"):  # matrices of 50 rows: threads would only wait for each other
-        return _gated(drives, rig, bridge_A, limits, pause_s)
+        ensemble = Ensemble.of(rig, bridge_A, averaged)
+        return _gated(drives, ensemble, rig.limits if limits is None else limits, pause_s)
 
 
 def _gated(
-    drives: Sequence[tuple[Drive, float]],
-    rig: Rig,
-    bridge_A: float | None,
-    limits: Limits | None,
-    pause_s: float | None,
+    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, held: Limits, pause_s: float | None
 ) -> tuple[Gate, ...]:
-    ensemble = Ensemble.of(rig, bridge_A)
-    held = rig.limits if limits is None else limits
     singles = [Single.of(ensemble, drive, rest, held) for drive, rest in drives]
     alone = [single for single in singles if not single.safe]  # never written, so never part of a sequence
     together = [single for single in singles if single.safe]

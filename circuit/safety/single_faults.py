@@ -15,7 +15,7 @@ from thermicon.circuit.rig.rules import Limits, Rule
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.checks import colour_of, findings_of
 from thermicon.circuit.safety.demands import CutOff, PolarityCheck, SingleFault
-from thermicon.circuit.safety.ensemble import Ensemble, between
+from thermicon.circuit.safety.ensemble import Ensemble, between, held_currents
 from thermicon.circuit.safety.tally import WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import Index, Intervals, State, run_on
 from thermicon.circuit.solver.drive import Drive
@@ -174,8 +174,9 @@ class Faulty:
 def _constant(ensemble: Ensemble, amps: Array, state: State, times_s: Array, rigs: Index) -> tuple[Array, State]:
     """Hold a current (lanes,) in every lane, gain included; WATCHED at times from now, and the last states."""
     rows = len(times_s) - 1
-    currents = np.repeat(amps[np.newaxis], rows, axis=0)
-    intervals = Intervals(times_s, np.arange(rows + 1), currents, currents)
+    bridge = None if ensemble.bridge_A is None else ensemble.bridge_A * ensemble.gain[rigs]
+    start, end = held_currents(amps, rows, bridge)
+    intervals = Intervals(times_s, np.arange(rows + 1), start, end)
     lanes = np.arange(len(rigs), dtype=np.int64)
     return run_on(ensemble.bank, rigs, lanes, intervals, state, WATCHED)
 
