@@ -24,7 +24,7 @@ from thermicon.circuit.safety.repeated import (
     plays_in,
     shortest_pause_s,
 )
-from thermicon.circuit.safety.repetition import Cycle
+from thermicon.circuit.safety.repetition import Cycle, mapped
 from thermicon.circuit.safety.scenarios import rest_of
 from thermicon.circuit.safety.single import Single
 from thermicon.circuit.solver.drive import Drive
@@ -220,7 +220,7 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     pause = pause_s
     if pause is None:
         pause = LONGEST_PAUSE_S if None in known else max(time for time in known if time is not None)
-    cycles = [Cycle(ensemble, single.drive, single.rest_A, pause) for single in singles]
+    cycles = [mapped(Cycle(ensemble, single.drive, single.rest_A, pause), single.start) for single in singles]
     repeating = Repeating(ensemble, cycles, [single.start for single in singles], limits)
     tallies = repeating.tallies(pause)
     shortest = shortest_pause_s(repeating) if singles[0].safe else None  # no pause mends a play that is red by itself

@@ -109,14 +109,14 @@ class Repeating:
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
-        cycles = [replace(cycle, ensemble=self.ensemble, pause_s=pause_s) for cycle in self.drives]
+        cycles = [replace(cycle, pause_s=pause_s) for cycle in self.drives]
         steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
         warm = bound(cycles, self.starts, steady, warm=True)
         cold = bound(cycles, self.starts, steady, warm=False)
         found = []
         for cycle, start, state in zip(cycles, self.starts, steady, strict=True):
             begun = skin_C(self.ensemble, start)
-            own = [self._tally(cycle, state, begun, "", True)[0]]
+            own = [self._tally(cycle, state, begun, "", True)[0]] if endings else []  # rates hardly follow the pause
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
                 own += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
@@ -217,8 +217,12 @@ def _later(repeating: Repeating, pause_s: float) -> float | None:
 
 
 def _with(repeating: Repeating, corners: list[int]) -> Repeating:
-    few = [start.take(np.array(corners)) for start in repeating.starts]
-    return replace(repeating, ensemble=repeating.ensemble.only(corners), starts=few)
+    few, starts = repeating.ensemble.only(corners), [start.take(np.array(corners)) for start in repeating.starts]
+    cycles = [
+        replace(cycle, ensemble=few, played=None if cycle.played is None else cycle.played.only(corners))
+        for cycle in repeating.drives
+    ]
+    return replace(repeating, ensemble=few, drives=cycles, starts=starts)
 
 
 def _bisect(few: Repeating) -> float | None:

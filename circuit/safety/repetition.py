@@ -10,13 +10,14 @@ bound*. The *cold bound* is its mirror image.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.ensemble import Ensemble, row_of
+from thermicon.circuit.safety.playmap import MOST_STEPS, PlayMap
 from thermicon.circuit.safety.tally import COLDEST_C, HOTTEST_C
 from thermicon.circuit.solver.batch_inputs import Index, State
 from thermicon.circuit.solver.drive import Drive
@@ -31,27 +32,45 @@ BOUND_K = 1e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cycle:
-    """A drive on an ensemble with the current that is held in the pause after it, for `pause_s`."""
+    """A drive on an ensemble with the current that is held in the pause after it, for `pause_s`.
+
+    `played` is its play as a map; None where it is run instead: a long drive, or a heat sink with a controller.
+    """
 
     ensemble: Ensemble
     drive: Drive
     rest_A: float
     pause_s: float
+    played: PlayMap | None = None
 
     def after(self, state: State, lanes: Index | None = None) -> State:
         """States before the next play, for those before this one; `lanes`: which corners these are."""
-        played = self.ensemble.end_of(self.drive, state, lanes)
+        if self.played is not None and lanes is None:
+            played = State(self.played.after(state.nodes_C), state.sink)
+        else:
+            played = self.ensemble.end_of(self.drive, state, lanes)
         if self.pause_s <= 0:
             return played
         return self.ensemble.rest(self.rest_A, played, self.pause_s, lanes)
+
+
+def mapped(cycle: Cycle, start: State) -> Cycle:
+    """The same cycle with its play as a map, where that is quicker."""
+    steps = float(cycle.drive.time_s[-1]) / row_of(cycle.drive)
+    if not cycle.ensemble.ideal or steps > MOST_STEPS or cycle.played is not None:
+        return cycle
+    return replace(cycle, played=PlayMap.of(cycle.ensemble, cycle.drive, start))
 
 
 def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
     """Return the states before each play of a cycle that repeats itself, and whether each lane has one (lanes,).
 
     Anderson's acceleration of x ← F(x), a lane at a time: the next guess is the mean of the last plays' results whose
-    changes cancel best. A lane without a steady cycle heats from play to play without end.
+    changes cancel best. A lane without a steady cycle heats from play to play without end. Where the play is a map,
+    its fixed point is solved for.
     """
+    if cycle.played is not None:
+        return _fixed(cycle, cycle.played, start)
     here, there = _joined(start), _joined(cycle.after(start))
     guesses, results = [here], [there]
     settled = _change(there - here) <= CLOSE_K
@@ -69,6 +88,15 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
     found = results[-1].copy()
     found[~settled] = np.where(np.isfinite(found[~settled]), found[~settled], HOTTEST_C)
     return _parted(found, start), settled
+
+
+def _fixed(cycle: Cycle, played: PlayMap, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
+    whole = played
+    if cycle.pause_s > 0:
+        whole = played.then(PlayMap(*cycle.ensemble.modes(cycle.rest_A).passage(cycle.pause_s)))
+    nodes, settles = whole.fixed_point()
+    nodes = np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C)
+    return State(np.concatenate([nodes, start.nodes_C[:, -1:]], axis=1), start.sink), settles
 
 
 def bound(cycles: Sequence[Cycle], starts: Sequence[State], steady: Sequence[State], warm: bool) -> State:

@@ -157,7 +157,7 @@ def run_on(
             sinks, out, final,
         )  # fmt: skip
 
-    _on_all_cores(work, len(rig_of))
+    _on_all_cores(work, len(rig_of), len(intervals.edges_s))
     return out, State(final, sinks)
 
 
@@ -211,7 +211,11 @@ FEWEST = 4
 """Below this many lanes one at a time is quicker than a padded block."""
 
 
-def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
+SHORT = 100_000
+"""Lanes times intervals below which a thread takes longer to start than the work takes."""
+
+
+def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SHORT) -> None:
     """Share lanes out: a few one by one, many in blocks that do not depend on the number of cores."""
     if lanes < FEWEST:
         work(np.arange(lanes, dtype=np.int64))
@@ -220,7 +224,7 @@ def _on_all_cores(work: Callable[[Index], None], lanes: int) -> None:
 
     count = -(-lanes // LANES)
     blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)
-    used = min(cores(), count)
+    used = min(cores(), count) if lanes * intervals >= SHORT else 1
     if used == 1:
         work(blocks)
         return

@@ -107,3 +107,9 @@ class ConstantCurrent:
         modes = modes * np.exp(np.clip(-self.rate_per_s[rigs] * time_s, None, FARTHEST))
         moved = rest + np.einsum("lkm,lm->lk", self.from_modes[rigs], modes)
         return np.concatenate([moved, nodes_C[:, -1:]], axis=1)
+
+    def passage(self, time_s: float) -> tuple[Array, Array]:
+        """What a time in s does to the nodes above the deep one: matrix (r, m, m) and constant (r, m)."""
+        kept = np.exp(np.clip(-self.rate_per_s * time_s, None, FARTHEST))
+        matrix = (self.from_modes * kept[:, np.newaxis, :]) @ self.to_modes
+        return matrix, self.rest_C - np.einsum("rkm,rm->rk", matrix, self.rest_C)
