@@ -119,6 +119,7 @@ def _controlled(realised: Sequence[Realised], pause_s: float | None) -> tuple[Ga
                 verdict,
                 scenarios=verdict.scenarios + len(corners_of(rig)),
                 checks=worst_of([checks, verdict.checks]),
+                once=worst_of([checks, verdict.once]),
                 demands=_demands(verdict, faulty),
             )
         )

@@ -70,9 +70,10 @@ class Demands:
     def text(self) -> str:
         """What the hardware must do, in one line."""
         cut = self.cut_off_display_C
+        quick = f"within {cut.react_within_s:g} s" if cut.react_within_s >= 0.02 else "at once"
         parts = [
             f"watchdog {self.watchdog_s:g} s",
-            f"cut-off at {cut.low:g} and {cut.high:g} °C on the measured display within {cut.react_within_s:g} s",
+            f"cut-off at {cut.low:g} and {cut.high:g} °C on the measured display {quick}",
         ]
         if self.polarity_check is not None and self.polarity_check.needed:
             parts.append("polarity check before the first play")

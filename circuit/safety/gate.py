@@ -39,7 +39,8 @@ WHAT_IT_IS_NOT = (
 class Gate:
     """The verdict on one drive.
 
-    `checks` has every rule once, in the scenario that goes farthest; times count from the first row of that play.
+    `checks` has every rule, in the scenario that goes farthest, `once` those of one play and what follows it; times
+    count from the first row of that play.
     `after_C` is the skin of the rig as given, 60 s after the last sample, for each ending; `drift_C` where zero
     current takes it in the end, None for a device without a current. `repeated` is the verdict on playing it again and
     again, which `checks` include; `demands` is what the hardware must prevent.
@@ -51,6 +52,7 @@ class Gate:
     limits: Limits
     scenarios: int
     checks: tuple[Check, ...]
+    once: tuple[Check, ...]
     after_C: dict[str, float]
     drift_C: float | None
     repeated: Repeated
@@ -76,11 +78,12 @@ class Gate:
 
     @property
     def reason(self) -> str | None:
-        """The first hard limit passed, in one sentence; None where there is none."""
-        found = next((finding for finding in self.findings if finding.severity == "hard"), None)
-        if found is None:
-            return None
-        return f"{found}; {self.repeated.cure}" if found in self.repeated.checks else str(found)
+        """The first hard limit passed, in one sentence with its cure; None where there is none.
+
+        One play comes first: that repetition goes farther says nothing more where one is not safe.
+        """
+        once = next((str(finding) for finding in findings_of(self.once) if finding.severity == "hard"), None)
+        return once or self.repeated.reason
 
     @property
     def cautions(self) -> tuple[str, ...]:
@@ -244,6 +247,7 @@ def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
         single.limits,
         len(single.ensemble.corners) * len(ENDINGS),
         worst_of([single.checks, repeated.checks]),
+        single.checks,
         {ending: float(single.after_C[ending][0]) for ending in ENDINGS},
         single.drift_C,
         repeated,

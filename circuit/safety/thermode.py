@@ -22,8 +22,7 @@ from thermicon.circuit.safety.endings import ENDING_S, LATER_S
 from thermicon.circuit.safety.repeated import RECOVERED_K
 from thermicon.circuit.safety.repeated import ROWS_S as RECOVERY_ROWS_S
 from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.prescribed import FELT, SkinModes, modes_on
+from thermicon.circuit.solver.prescribed import FELT, SkinModes, modes_of
 
 LAST, LOST = "last set-point held", "control lost"
 ENDINGS = (LAST, LOST)
@@ -90,9 +89,9 @@ class Under:
     def of(rig: Rig) -> Under:
         """All corners of a rig's contact and room."""
         corners = contact_corners(rig)
-        networks = [network_of(corner.rig) for corner in corners]
+        rigs = [corner.rig for corner in corners]
         return Under(
-            corners, tuple(modes_on(one) for one in networks), tuple(modes_on(one, insulated=True) for one in networks)
+            corners, tuple(modes_of(one) for one in rigs), tuple(modes_of(one, insulated=True) for one in rigs)
         )
 
     def steady(self, display_C: float) -> list[Array]:

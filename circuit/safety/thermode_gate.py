@@ -109,6 +109,7 @@ def gate_shown(
                 held,
                 len(under.corners) * len(ways) * len(ENDINGS),
                 worst_of([checks, repeated_checks]),
+                checks,
                 after,
                 None,
                 repeated,
