@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -193,7 +194,7 @@ def shortest_pause_s(repeating: Repeating) -> float | None:
     deciding = {lane % count for tally in tallies for lane in tally.worst_lanes()}
     while True:
         few = _with(repeating, sorted(deciding))
-        found = _bisect(few)
+        found = shortest_of(partial(few.safe, endings=False))
         if found is None:
             return None
         after = [tally for own in repeating.tallies(found) for tally in own]
@@ -225,14 +226,18 @@ def _with(repeating: Repeating, corners: list[int]) -> Repeating:
     return replace(repeating, ensemble=few, drives=cycles, starts=starts)
 
 
-def _bisect(few: Repeating) -> float | None:
-    """The shortest pause that is safe in few corners, endings aside, within 2 % on the safe side."""
+def shortest_of(safe: Callable[[float], bool]) -> float | None:
+    """The shortest pause in s above 0 that is safe, in steps of 0.1 s and within 2 % on the safe side; None to 10 min.
+
+    >>> shortest_of(lambda pause_s: pause_s >= 7.0), shortest_of(lambda pause_s: False)
+    (7.0, None)
+    """
     low, high, longest = 0, 100, round(LONGEST_PAUSE_S / PAUSE_STEP_S)
-    while not few.safe(high * PAUSE_STEP_S, endings=False):
+    while not safe(high * PAUSE_STEP_S):
         if high >= longest:
             return None
         low, high = high, min(4 * high, longest)
     while high - low > max(1, low // 50):
         middle = (low + high) // 2
-        low, high = (low, middle) if few.safe(middle * PAUSE_STEP_S, endings=False) else (middle, high)
+        low, high = (low, middle) if safe(middle * PAUSE_STEP_S) else (middle, high)
     return round(high * PAUSE_STEP_S, 1)

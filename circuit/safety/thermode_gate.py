@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,10 +17,10 @@ from thermicon.circuit.safety.endings import ENDING_S
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.repeated import (
     LONGEST_PAUSE_S,
-    PAUSE_STEP_S,
     Repeated,
     check_pause,
     pause_rows,
+    shortest_of,
 )
 from thermicon.circuit.safety.single_faults import BEYOND_K, MARGIN
 from thermicon.circuit.safety.tally import Tally
@@ -95,7 +95,7 @@ def gate_shown(
     again = _again(under, drives, held, pause, rates)
     shortest = None
     if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
-        shortest = _shortest(lambda one: _safe(_again(under, drives, held, one, rates)))
+        shortest = _shortest_s(under, drives, held, rates)
     found = []
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
         plays = _plays(ways[0], pause, held.session_s)
@@ -171,19 +171,11 @@ def _safe(again: Sequence[Sequence[Check]]) -> bool:
     return all(colour_of(findings_of(checks)) != "red" for checks in again)
 
 
-def _shortest(safe: Callable[[float], bool]) -> float | None:
-    """The shortest pause in s, in steps of 0.1 s and within 2 % on the safe side; None up to 10 min."""
-    if safe(0.0):
-        return 0.0
-    low, high, longest = 0, 100, round(LONGEST_PAUSE_S / PAUSE_STEP_S)
-    while not safe(high * PAUSE_STEP_S):
-        if high >= longest:
-            return None
-        low, high = high, min(4 * high, longest)
-    while high - low > max(1, low // 50):
-        middle = (low + high) // 2
-        low, high = (low, middle) if safe(middle * PAUSE_STEP_S) else (middle, high)
-    return round(high * PAUSE_STEP_S, 1)
+def _shortest_s(under: Under, drives: Sequence[Ways], limits: Limits, rates: bool) -> float | None:
+    def safe(pause_s: float) -> bool:
+        return _safe(_again(under, drives, limits, pause_s, rates))
+
+    return 0.0 if safe(0.0) else shortest_of(safe)
 
 
 def _demands(
