@@ -1,11 +1,14 @@
 """A play as a linear map: with a given current the circuit is linear, so a few runs tell what any start leads to.
 
 One lane a node starts 1 K warmer there, and one starts as it is: the differences at the end are the columns of Φ in
-x → Φ·x + g. Then repetition costs products of small matrices instead of runs.
+x → Φ·x + g, with Φ ≥ 0. Then repetition costs products of small matrices instead of runs. The steady cycle is a linear
+solve. The least u with u = max(start, Φ₁·u + g₁, Φ₂·u + g₂ …), node by node, comes from Howard's iteration: which of
+them is the largest in each node, solve with those, again until none changes.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -22,8 +25,14 @@ if TYPE_CHECKING:
 MOST_STEPS = 20_000
 """A drive of more steps is run again and again instead: a map takes some 50 runs, a search for a cycle about ten."""
 
+MOST_CHOICES = 60
+"""Choices of the largest after which none is expected; a handful is usual."""
+
 POWERS = 40
-"""Products by which the largest eigenvalue of a map with no negative entry is found to within a per mille."""
+"""Products that tell an eigenvalue below 1 from one above; where they do not, all are computed."""
+
+NEAR_K = 1e-6
+"""What one more play may still add to a bound: rounding."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,11 +74,55 @@ class PlayMap:
 
     def fixed_point(self) -> tuple[Array, npt.NDArray[np.bool_]]:
         """Nodes (rigs, m) that come back to themselves, and whether all others tend to them (rigs,)."""
-        count = self.matrix.shape[1]
-        grown = np.ones(self.constant.shape)
-        for _ in range(POWERS):
-            before = np.maximum(np.abs(grown).max(axis=1, keepdims=True), 1e-300)
-            grown = np.einsum("cij,cj->ci", self.matrix, grown / before)
-        settles: npt.NDArray[np.bool_] = np.abs(grown).max(axis=1) < 1.0 - 1e-9
-        point = np.linalg.solve(np.eye(count) - self.matrix, self.constant[:, :, np.newaxis])[:, :, 0]
-        return np.asarray(point), settles
+        point = _solved(self.matrix, self.constant)
+        return point, np.array([_settles(one) for one in self.matrix]) & np.isfinite(point).all(axis=1)
+
+
+def _settles(matrix: Array) -> bool:
+    """Whether all eigenvalues of a matrix without negative entries lie inside the unit circle.
+
+    For any v > 0 the largest lies between the least and the greatest of (P·v)/v, which powers of P bring together.
+    """
+    if not np.isfinite(matrix).all():
+        return False
+    v = np.ones(len(matrix))
+    for _ in range(POWERS):
+        grown = np.maximum(matrix @ v, 1e-12)
+        ratio = grown / v
+        if ratio.max() < 1.0 or ratio.min() >= 1.0:
+            return bool(ratio.max() < 1.0)
+        v = grown / grown.max()
+    return bool(np.abs(np.linalg.eigvals(matrix)).max() < 1.0)
+
+
+def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float) -> Array:
+    """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; NaN where there are none.
+
+    What is returned is checked: every start lies inside, and no play leads out.
+    """
+    most = np.max([side * start for start in starts_C], axis=0)
+    matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])
+    constants = np.stack([most, *(side * each.constant for each in maps)])
+    now, chosen = most, np.full(most.shape, -1)
+    for _ in range(MOST_CHOICES):
+        options = np.einsum("kcij,cj->kci", matrices, now) + constants
+        best = np.argmax(np.nan_to_num(options, nan=-np.inf), axis=0)
+        if (best == chosen).all():
+            break
+        chosen = best
+        rows = np.take_along_axis(matrices, chosen[np.newaxis, :, :, np.newaxis], axis=0)[0]
+        now = _solved(rows, np.take_along_axis(constants, chosen[np.newaxis], axis=0)[0])
+    after = (np.einsum("kcij,cj->kci", matrices, now) + constants).max(axis=0)
+    holds = (after <= now + NEAR_K).all(axis=1)
+    return side * np.where(holds[:, np.newaxis], now, np.nan)
+
+
+def _solved(matrix: Array, constant: Array) -> Array:
+    """Solutions (rigs, m) of x = matrix·x + constant; NaN where there is none."""
+    found = np.full_like(constant, np.nan)
+    for rig, (one, offset) in enumerate(zip(matrix, constant, strict=True)):
+        try:
+            found[rig] = np.linalg.solve(np.eye(len(offset)) - one, offset)
+        except np.linalg.LinAlgError:
+            continue
+    return found

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
-from thermicon.circuit.safety.playmap import MOST_STEPS, PlayMap
+from thermicon.circuit.safety.playmap import MOST_STEPS, NEAR_K, PlayMap, least_bound
 from thermicon.circuit.safety.tally import COLDEST_C, HOTTEST_C
 from thermicon.circuit.solver.batch_inputs import Index, State
 from thermicon.circuit.solver.drive import Drive
@@ -27,7 +27,7 @@ CLOSE_K = 2e-5
 MOST_PLAYS, REMEMBERED = 40, 6
 """Plays after which no steady cycle is expected any more, and how many of them the acceleration looks back."""
 BOUND_K = 1e-3
-"""Bounds may grow by this in one more play; what is left of it in all later plays is added at once."""
+"""What is added at once to a bound that grows by less in one more play, so that it grows no more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +53,12 @@ class Cycle:
             return played
         return self.ensemble.rest(self.rest_A, played, self.pause_s, lanes)
 
+    def whole(self, played: PlayMap) -> PlayMap:
+        """A play as a map, and the pause after it."""
+        if self.pause_s <= 0:
+            return played
+        return played.then(PlayMap(*self.ensemble.modes(self.rest_A).passage(self.pause_s)))
+
 
 def mapped(cycle: Cycle, start: State) -> Cycle:
     """The same cycle with its play as a map, where that is quicker."""
@@ -70,7 +76,9 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
     its fixed point is solved for.
     """
     if cycle.played is not None:
-        return _fixed(cycle, cycle.played, start)
+        nodes, settles = cycle.whole(cycle.played).fixed_point()
+        nodes = np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C)
+        return State(np.concatenate([nodes, start.nodes_C[:, -1:]], axis=1), start.sink), settles
     here, there = _joined(start), _joined(cycle.after(start))
     guesses, results = [here], [there]
     settled = _change(there - here) <= CLOSE_K
@@ -90,34 +98,35 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
     return _parted(found, start), settled
 
 
-def _fixed(cycle: Cycle, played: PlayMap, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
-    whole = played
-    if cycle.pause_s > 0:
-        whole = played.then(PlayMap(*cycle.ensemble.modes(cycle.rest_A).passage(cycle.pause_s)))
-    nodes, settles = whole.fixed_point()
-    nodes = np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C)
-    return State(np.concatenate([nodes, start.nodes_C[:, -1:]], axis=1), start.sink), settles
-
-
 def bound(cycles: Sequence[Cycle], starts: Sequence[State], steady: Sequence[State], warm: bool) -> State:
     """Return states that are warmer (or colder) than those before any play of a sequence of the cycles, in any order.
 
     `starts` are those before a first play of each cycle, `steady` those before each play of its own repetition.
     """
     side, start = 1.0 if warm else -1.0, starts[0]
+    farthest = HOTTEST_C if warm else COLDEST_C
+    maps = [cycle.whole(cycle.played) for cycle in cycles if cycle.played is not None]
+    if len(maps) == len(cycles):
+        free = least_bound(maps, [state.nodes_C[:, :-1] for state in (*starts, *steady)], side)
+        nodes = np.concatenate([np.nan_to_num(free, nan=farthest), start.nodes_C[:, -1:]], axis=1)
+        return State(nodes, start.sink)
     now = np.max([side * state.nodes_C for state in (*starts, *steady)], axis=0)
     before = np.zeros(len(now))
     for _ in range(MOST_PLAYS):
         at = State(side * now, start.sink)
         then = np.max([side * cycle.after(at).nodes_C for cycle in cycles], axis=0)
-        grown = np.maximum(np.nan_to_num(then - now, nan=HOTTEST_C), 0.0)
+        grown = np.nan_to_num(then - now, nan=HOTTEST_C)
+        grown = np.where(grown > NEAR_K, grown, 0.0)
         change = grown.max(axis=1)
+        if not change.any():
+            return State(side * now, start.sink)
         if (change <= BOUND_K).all():
-            return State(side * (now + grown + BOUND_K), start.sink)
+            now[:, :-1] += np.where(change > 0, BOUND_K, 0.0)[:, np.newaxis]
+            continue
         share = np.clip(change / np.where(before > 0, before, np.inf), 0.0, 0.95)
         now = np.minimum(now + grown / (1.0 - share)[:, np.newaxis], HOTTEST_C)
         before = change
-    return State(np.full_like(now, side * HOTTEST_C if warm else COLDEST_C), start.sink)
+    return State(np.full_like(now, farthest), start.sink)
 
 
 def _mixed(guesses: list[Array], results: list[Array]) -> Array:
