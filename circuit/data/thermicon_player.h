@@ -7,7 +7,11 @@
 
        thermicon_player player;
        thermicon_begin(&player, &board, THERMICON_ICON(cooling_step));   tests the polarity, then holds the rest
-       thermicon_play(&player, THERMICON_ICON(cooling_step));            THERMICON_OK, or why not yet             */
+       thermicon_play(&player, THERMICON_ICON(cooling_step));            THERMICON_OK, or why not yet
+
+   What the gate of safety says of these drives:
+@VERDICTS@
+*/
 #ifndef THERMICON_PLAYER_H
 #define THERMICON_PLAYER_H
 

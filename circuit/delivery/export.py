@@ -204,9 +204,7 @@ def pack(
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
         names = [one.realised.icon.name for one in ready]
-        played = [
-            Played(one.realised, drives[name][0], beside(name, form)) for one, name in zip(ready, names, strict=True)
-        ]
+        played = [_played(one, drives[name][0], form) for one, name in zip(ready, names, strict=True)]
         shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
     files: dict[str, bytes] = {}
     for one in ready:
@@ -221,6 +219,16 @@ def pack(
         files[beside(name, form)] = sidecar_text(sealed(about))
         files[drive] = content
     return {**files, **shared}
+
+
+def _played(one: Prepared, file: str, form: Format) -> Played:
+    """A drive with what the gate says of it, for the player of a set."""
+    known = one.verdict.to_dict()
+    recovery, shortest = (
+        float(value) if isinstance(value := known.get(key), (int, float)) else None
+        for key in ("recovery_s", "shortest_pause_s")
+    )
+    return Played(one.realised, file, beside(one.realised.icon.name, form), one.verdict.colour, recovery, shortest)
 
 
 def beside(name: str, form: Format) -> str:

@@ -22,7 +22,7 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
         "WATCHDOG_S": c_float(must.watchdog_s),
         "LOW_C": c_float(must.low_C),
         "HIGH_C": c_float(must.high_C),
-        "REACT_S": c_float(must.react_within_s),
+        "REACT_S": c_float(max(0.01, must.react_within_s)),
         "REST_S": c_float(must.rest_s),
         "PAUSE_S": c_float(must.pause_s),
         "TEST_POLARITY": str(int(must.test_polarity)),
@@ -31,6 +31,7 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
         "TEST_S": c_float(must.test_s),
         "TEST_FALL_K": c_float(must.test_fall_K),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
+        "VERDICTS": "\n".join(f"   {one.file}: {one.verdict}." for one in drives),
     }
     return {PLAYER: filled(PLAYER, numbers)}
 

@@ -43,11 +43,24 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One drive of an export, with the names of its file and of its sidecar."""
+    """One drive of an export, with the names of its file and of its sidecar, and what the gate says of repetition.
+
+    `recovery_s` and `shortest_pause_s` in s are None where the gate found none.
+    """
 
     realised: Realised
     file: str
     sidecar: str
+    safety: str = ""
+    recovery_s: float | None = None
+    shortest_pause_s: float | None = None
+
+    @property
+    def verdict(self) -> str:
+        """The verdict in a line of plain ASCII."""
+        back = "not within 10 min" if self.recovery_s is None else f"after {self.recovery_s:g} s"
+        pause = "none" if self.shortest_pause_s is None else f"{self.shortest_pause_s:g} s"
+        return f"safety {self.safety or 'not judged'}, back at rest {back}, shortest safe pause {pause}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,9 @@ FROZEN_S = 5.0
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")
 """First columns of the conditions file: names without blanks, as PsychoPy needs them."""
 
+JUDGED = ("safety", "recovery_s", "shortest_pause_s")
+"""Last columns of the conditions file: what the gate says of each icon."""
+
 MARKED = ("ramp start", "target reached", "return start", "baseline reached")
 """Events that may happen more than once. The first has a column without a number, as in `ramp_start_s`, the second one
 as `ramp_start_2_s`."""
@@ -41,12 +44,18 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     most = max(len(times) for each in marks for times in each.values())
     later = [_column(name, k) for k in range(most) for name in MARKED]
     used = {column for each in marks for name, times in each.items() for column in _columns(name, len(times))}
-    header = [*HEADER, *(name for name in later if name in used and name not in HEADER)]
+    header = [*HEADER, *(name for name in later if name in used and name not in HEADER), *JUDGED]
     text = io.StringIO()
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
     for one, times_by_name in zip(drives, marks, strict=True):
         row = {"icon": one.realised.icon.name, "drive_file": one.file, "sidecar_file": one.sidecar}
+        row |= {"safety": one.safety}
+        row |= {
+            name: f"{value:.9g}"
+            for name, value in zip(JUDGED[1:], (one.recovery_s, one.shortest_pause_s), strict=True)
+            if value is not None
+        }
         for name, times in times_by_name.items():
             row |= {column: f"{time:.9g}" for column, time in zip(_columns(name, len(times)), times, strict=True)}
         rows.writerow(row)
@@ -70,7 +79,7 @@ def _player(realised: Realised, must: MustPrevent) -> bytes:
         "ON": on,
         "LOW_C": repr(must.low_C),
         "HIGH_C": repr(must.high_C),
-        "LOOK_S": repr(0.5 * must.react_within_s),
+        "LOOK_S": repr(max(0.01, 0.5 * must.react_within_s)),
         "REST_S": repr(must.rest_s),
         "PAUSE_S": repr(must.pause_s),
         "TEST_POLARITY": str(polarity),
