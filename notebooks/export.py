@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermicon.circuit.delivery.export import Prepared
 
 CAUTION = (
-    "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
     "without software"
 )
 

@@ -28,7 +28,7 @@ MOST_SHOWN = 60
 
 
 CAUTION = (
-    "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
     "without software"
 )
 

@@ -21,7 +21,7 @@ from thermicon.circuit.safety.summary import summarise
 from thermicon.circuit.solver.difference import Difference, loss_table
 
 NO_CLEARANCE = (
-    "Limits were held against a simulation. This is no medical or ethical clearance. Hardware that touches people "
+    "Limits were held against a simulation. This is not a medical or ethical clearance. Hardware that touches people "
     "needs a temperature cut-off of its own that works without any software."
 )
 

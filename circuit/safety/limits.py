@@ -1,6 +1,6 @@
 """Limits of safety: simulated temperatures held against sourced limits, from the skin and not from the command.
 
-This is no medical or ethical clearance, and a hardware cut-off is required.
+This is not a medical or ethical clearance, and a hardware cut-off is required.
 """
 
 from __future__ import annotations

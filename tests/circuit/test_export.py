@@ -354,7 +354,7 @@ class TestSidecar:
         assert told == json.loads(json.dumps(one.verdict.to_dict()))
         assert told["limits"]["reason"] == why
         assert told["limits"]["loosened"] == ["skin_highest_C 42.5 °C instead of 42 °C"]
-        assert "no medical or ethical clearance" in told["what_it_is_not"]
+        assert "not a medical or ethical clearance" in told["what_it_is_not"]
 
     def test_a_smaller_uncertainty_is_in_it_with_its_reason(self) -> None:
         why = "gain measured against a shunt, 2026-05-12"

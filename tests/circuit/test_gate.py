@@ -164,7 +164,7 @@ def test_text_and_dictionary_tell_all() -> None:
     assert lines[1].split() == ["rule", "worst", "limit", "at", "in", "source"]
     assert sum(line.startswith("ok ") for line in lines) == len(found.checks) == len(Limits.shipped().rules)
     assert lines[-1] == WHAT_IT_IS_NOT
-    assert "no medical or ethical clearance" in lines[-1]
+    assert "not a medical or ethical clearance" in lines[-1]
     assert "needs a temperature cut-off of its own" in lines[-1]
     packed = json.loads(json.dumps(found.to_dict(), allow_nan=False))
     assert packed["colour"] == "green"

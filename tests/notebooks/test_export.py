@@ -50,7 +50,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     )
     assert "to play: put out each row's command at its time" in said.stderr
     assert lines[-1].startswith(
-        "safety is a calculation, no medical or ethical clearance; hardware on skin needs a temp"
+        "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temp"
     )
     told = json.loads((out / "cool-step.json").read_text())
     assert set(told["perception"]["d_prime"]) == {"warm-step"}
@@ -101,7 +101,7 @@ class TestRefused:
                 told = told.replace(word, "beyond the hard limit")
             assert re.search(r"reaches \S+ °C at \S+ s, with .*, then .*, beyond the hard limit of .* \(.*\)", told)
             assert "safety red in 27 scenarios" in said.stderr
-            assert "no medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
+            assert "not a medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
             assert said.stderr.endswith("nothing was written\n")
             assert "--force exports it" not in said.stderr
             assert not (tmp_path / "out").exists()

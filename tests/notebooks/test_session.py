@@ -53,7 +53,7 @@ def test_an_order_is_played_and_reported(cli: Cli, two: Path, order: Path) -> No
         ("2", "warm-step", "18", "green"),
         ("3", "cool-step", "34", "green"),
     ]
-    assert "no medical or ethical clearance" in said.stderr
+    assert "not a medical or ethical clearance" in said.stderr
 
 
 def test_the_json_has_the_keys_of_the_contract(cli: Cli, two: Path, tmp_path: Path) -> None:
