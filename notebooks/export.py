@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from thermicon.circuit.delivery.export import Prepared
 
 CAUTION = (
-    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
-    "without software"
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
 )
 
 

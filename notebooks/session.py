@@ -28,8 +28,8 @@ MOST_SHOWN = 60
 
 
 CAUTION = (
-    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that works "
-    "without software"
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
 )
 
 

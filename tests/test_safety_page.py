@@ -29,7 +29,8 @@ def side(record: Record, end: str) -> list[str]:
         sign, value = "±", abs(value)
     loosest = f"{signed(float(str(bound)))}{unit}" if bound is not None else "only tightened" if key else "fixed"
     what = record.quantity + (f", {record.conditions}" if record.unit == "K" else "")
-    return [f"| {what} | {extra['severity']} | {sign}{'' if sign == '±' else ' '}{signed(value)}{unit} | {f'`{key}`' if key else '—'} | {loosest} |"]
+    limit = f"{sign}{'' if sign == '±' else ' '}{signed(value)}{unit}"
+    return [f"| {what} | {extra['severity']} | {limit} | {f'`{key}`' if key else '—'} | {loosest} |"]
 
 
 def limit_rows() -> list[str]:
