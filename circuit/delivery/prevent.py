@@ -50,9 +50,20 @@ def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:
         test_current_A=_least(needed, "test_current_A", plain.test_current_A),
         test_s=_least(needed, "test_s", plain.test_s),
         test_fall_K=_least(needed, "display_change_at_least_K", plain.test_fall_K),
-        rest_s=_most(stated, "rest_before_first_play_s", plain.rest_s),
+        rest_s=_rest_s(stated, plain.rest_s),
         pause_s=_most(stated, "pause_at_least_s", plain.pause_s),
     )
+
+
+LONGEST_REST_S = 1800.0
+"""Held before the first play where the gate finds that 10 min of rest do not suffice."""
+
+
+def _rest_s(tables: Sequence[Mapping[str, Any]], otherwise: float) -> float:
+    """The longest rest; a stated null says that the gate found none up to 10 min."""
+    key = "rest_before_first_play_s"
+    stated = [table[key] for table in tables if key in table]
+    return max((LONGEST_REST_S if value is None else float(value) for value in stated), default=otherwise)
 
 
 def _values(tables: Sequence[Mapping[str, Any]], key: str) -> list[float]:

@@ -26,8 +26,7 @@ MOST_CORNERS = 6
 class Single:
     """A drive played once from its rest: every rule in every scenario, and the states it starts from and ends with.
 
-    `after_C` (corners,) is the skin 60 s later for each of ENDINGS, `dose_before` (corners,) what the drive adds to the
-    dose in min CEM43.
+    The first of `tallies` is that of the play alone; `after_C` (corners,) is the skin 60 s later for each of ENDINGS.
     """
 
     ensemble: Ensemble
@@ -77,7 +76,7 @@ class Single:
         cut_off, stuck = faulty.cut_off(reach_C)
         zero = None
         if self.ensemble.ideal:
-            dose = np.zeros(len(self.ensemble.corners))
+            dose = self.tallies[0].summed("thermal dose")
             zero = dose_time_s(self.ensemble, self.limits, self.end, dose, self.limits.session_s)
             zero = None if zero >= self.limits.session_s else round(zero, 0)
         return Demands(

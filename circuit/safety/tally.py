@@ -96,6 +96,10 @@ class Tally:
         """Every rule once, in the lane that goes farthest."""
         return tuple(self._check(place, rule) for place, rule in enumerate(self.limits.rules))
 
+    def summed(self, quantity: str) -> Array:
+        """What has added up of a quantity in each lane (lanes,)."""
+        return self._sums.get(quantity, np.zeros(len(self.scenarios)))
+
     def worst_lanes(self, severity: str = "hard") -> tuple[int, ...]:
         """Lanes that go farthest by some rule of a severity, each once."""
         rules = [(place, rule) for place, rule in enumerate(self.limits.rules) if rule.severity == severity]

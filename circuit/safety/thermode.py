@@ -19,6 +19,7 @@ from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.corners import Corner
 from thermicon.circuit.safety.endings import ENDING_S, LATER_S
+from thermicon.circuit.safety.playmap import PlayMap, least_bound
 from thermicon.circuit.safety.repeated import RECOVERED_K
 from thermicon.circuit.safety.repeated import ROWS_S as RECOVERY_ROWS_S
 from thermicon.circuit.safety.tally import WATCHED, Tally
@@ -28,7 +29,6 @@ LAST, LOST = "last set-point held", "control lost"
 ENDINGS = (LAST, LOST)
 ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
 LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
-BOUND_K, MOST_PLAYS = 1e-3, 40
 
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
@@ -133,27 +133,23 @@ class Under:
         length = shown.end_s + shown.left_s(pause_s)
         return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
 
-    def bound(self, shows: Sequence[Shown], pause_s: float, begun: Sequence[Array], warm: bool) -> list[Array]:
+    def bound(self, shows: Sequence[Shown], pause_s: float, warm: bool) -> list[Array]:
         """States warmer (or colder), lump by lump, than those before any play of a sequence in any order."""
-        side = 1.0 if warm else -1.0
-        now = [
-            np.max([side * modes.lumps @ state for state in (start, *same)], axis=0)
-            for modes, start, same in zip(
-                self.modes, begun, zip(*(self.cycle(shown, pause_s) for shown in shows), strict=True), strict=True
-            )
-        ]
-        for _ in range(MOST_PLAYS):
-            states = [modes.unlumps @ (side * lumps) for modes, lumps in zip(self.modes, now, strict=True)]
-            after = [self.after(shown, pause_s, states) for shown in shows]
-            then = [
-                np.max([side * modes.lumps @ state for state in same], axis=0)
-                for modes, same in zip(self.modes, zip(*after, strict=True), strict=True)
-            ]
-            grown = max(float((b - a).max()) for a, b in zip(now, then, strict=True))
-            now = [np.maximum(a, b) + (BOUND_K if grown > BOUND_K else 0.0) for a, b in zip(now, then, strict=True)]
-            if grown <= BOUND_K:
-                break
-        return [modes.unlumps @ (side * lumps) for modes, lumps in zip(self.modes, now, strict=True)]
+        rests = [self.steady(float(shown.display_C[0])) for shown in shows]
+        starts = [self._lumps(states) for states in (*rests, *(self.cycle(shown, pause_s) for shown in shows))]
+        bounded = least_bound([self._map(shown, pause_s) for shown in shows], starts, 1.0 if warm else -1.0)
+        return [modes.unlumps @ lumps for modes, lumps in zip(self.modes, bounded, strict=True)]
+
+    def _lumps(self, states: Sequence[Array]) -> Array:
+        """Lumps (corners, n) above the deep node's temperature, for modes."""
+        return np.array([modes.lumps @ state for modes, state in zip(self.modes, states, strict=True)])
+
+    def _map(self, shown: Shown, pause_s: float) -> PlayMap:
+        """A play and its pause as a map of lumps, whose entries are not negative as those of modes may be."""
+        length = shown.end_s + shown.left_s(pause_s)
+        forced = self.after(shown, pause_s, [np.zeros_like(modes.rate_per_s) for modes in self.modes])
+        kept = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
+        return PlayMap(np.array(kept), self._lumps(forced))
 
     def recovery_s(self, shown: Shown, ended: Sequence[Array]) -> float | None:
         """Time in s after a play until the skin is within 0.1 K of where it began, in every corner."""

@@ -125,7 +125,7 @@ def _again(
     """Every rule for each drive in its steady cycle, and between the bounds on any sequence of all drives."""
     shows = [shown for ways in drives for shown in ways]
     begun = under.steady(float(shows[0].display_C[0]))
-    bounds = {word: under.bound(shows, pause_s, begun, warm) for word, warm in (("warm", True), ("cold", False))}
+    bounds = {word: under.bound(shows, pause_s, warm) for word, warm in (("warm", True), ("cold", False))}
     skin = under.hold(float(shows[0].display_C[0]), begun, np.array([0.0]))[0, :, 0]
     found = []
     for ways in drives:
