@@ -7,6 +7,9 @@ from dataclasses import asdict, dataclass
 
 from thermicon.circuit.inputs import signed
 
+LEVEL = 1e-6
+"""What is as near as this to the extreme, in its unit, has reached it: a level that is held has no latest row."""
+
 
 @dataclass(frozen=True, slots=True)
 class Check:
@@ -77,4 +80,9 @@ def beyond(check: Check) -> float:
 
 def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
     """Of several groups of checks by the same rules, the one of each rule that goes farthest; the first of equals."""
-    return tuple(max(same, key=beyond) for same in zip(*groups, strict=True))
+    return tuple(_farthest(same) for same in zip(*groups, strict=True))
+
+
+def _farthest(same: Sequence[Check]) -> Check:
+    most = max(beyond(check) for check in same)
+    return next(check for check in same if beyond(check) >= most - LEVEL)

@@ -10,14 +10,11 @@ import numpy as np
 
 from thermicon.circuit.rig.rules import Limits, Rule
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check
+from thermicon.circuit.safety.checks import LEVEL, Check
 from thermicon.circuit.safety.exposure import cem43_min, henriques
 
 WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""
-
-LEVEL = 1e-6
-"""What is as near as this to the extreme, in its unit, has reached it: a level that is held has no latest row."""
 
 COLDEST_C, HOTTEST_C = -273.0, 1000.0
 """What runs away counts as this hot, so that it fails every limit and is not lost as NaN."""

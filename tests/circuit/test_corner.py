@@ -1,6 +1,5 @@
 """Corners of a rig: what no file says, within what physics allows, and one truth with `Rig.with_` inside the bounds."""
 
-import json
 import math
 
 import pytest
@@ -8,7 +7,8 @@ import pytest
 from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.safety.thermode import contact_corners
+from thermicon.circuit.solver.network import network_of, skin_network_of
 
 THENAR = Rig.load("thenar")
 
@@ -16,13 +16,27 @@ THENAR = Rig.load("thenar")
 @pytest.mark.parametrize("name", rig_names())
 def test_inside_the_bounds_of_a_file_a_corner_is_what_with_gives(name: str) -> None:
     rig = Rig.load(name)
-    for corner in corners_of(rig)[1:]:
-        there = perturbed(rig, contact_resistance_relative=corner.contact_relative, ambient_K=corner.ambient_K)
-        assert there == corner.rig or json.loads(there.document) == json.loads(corner.rig.document)
-        assert (there.contact, there.ambient, there.deep_C) == (
-            corner.rig.contact, corner.rig.ambient, corner.rig.deep_C,
-        )  # fmt: skip
-        assert network_of(there).deep_C == network_of(corner.rig).deep_C
+    corners = corners_of(rig) if rig.thermode is None else contact_corners(rig)
+    assert len(corners) == (65 if rig.thermode is None else 5)
+    for corner in (corners[1], corners[-1]):
+        changes = {
+            "contact.resistance_m2K_per_W": rig.contact.resistance_m2K_per_W * (1 + corner.contact_relative),
+            "ambient.temperature_C": rig.ambient.temperature_C + corner.ambient_K,
+        }
+        if rig.thermode is None:
+            module = rig.module
+            changes |= {
+                "heat_sink.temperature_C": rig.heat_sink.temperature_C + corner.heat_sink_K,
+                "module.seebeck_V_per_K": module.seebeck_V_per_K * (1 + corner.seebeck_relative),
+                "module.thermal_resistance_K_per_W": module.thermal_resistance_K_per_W
+                / (1 + corner.conductance_relative),
+                "module.hot_plate_J_per_K": module.hot_plate_J_per_K * (1 + corner.plates_relative),
+                "module.cold_plate_J_per_K": module.cold_plate_J_per_K * (1 + corner.plates_relative),
+            }
+        network = skin_network_of if rig.thermode is not None else network_of
+        ours, theirs = network(corner.rig), network(rig.with_(**changes))
+        for field in ("capacity_J_per_K", "conductance_W_per_K", "perfusion_W_per_K", "plates", "deep_C"):
+            assert getattr(ours, field) == pytest.approx(getattr(theirs, field), rel=1e-12, nan_ok=True)
 
 
 def test_nothing_perturbed_is_the_rig_itself() -> None:

@@ -21,5 +21,8 @@ class GreenVerdict:
     def __init__(self, realised: object) -> None:
         self.realised = realised
 
+    notes: tuple[str, ...] = ()
+    demanded = MADE_UP
+
     def to_dict(self) -> dict[str, object]:
-        return {"colour": "green", "hardware_must_prevent": MADE_UP}
+        return {"colour": "green"}
