@@ -152,7 +152,7 @@ class Under:
         return PlayMap(np.array(kept), self._lumps(forced))
 
     def recovery_s(self, shown: Shown, ended: Sequence[Array]) -> float | None:
-        """Time in s after a play until the skin is within 0.1 K of where it began, in every corner."""
+        """Time in s after the end of a drive until the skin is within 0.1 K of where it began, in every corner."""
         last, first = float(shown.display_C[-1]), float(shown.display_C[0])
         skin = self.hold(last, ended, RECOVERY_ROWS_S)[0]
         began = self.hold(first, self.steady(first), np.array([0.0]))[0]
@@ -160,7 +160,7 @@ class Under:
         if away[-1]:
             return None
         late = np.flatnonzero(away)
-        return 0.0 if not len(late) else round(float(RECOVERY_ROWS_S[late[-1] + 1]), 1)
+        return round(shown.settling_s + (float(RECOVERY_ROWS_S[late[-1] + 1]) if len(late) else 0.0), 1)
 
 
 def watched(felt: Sequence[Array]) -> Array:

@@ -67,7 +67,7 @@ def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Driv
         (LIGHT_TOUCH, "display", 44.0, 600, "time of the display above 43 °C reaches 660 s at 660.00 s, with the rig "
          "as given, then last value held, above the hard limit of 600 s from 600.01 s on (IEC 60601-1 Table 24"),
         (LIGHT_TOUCH, "display", 49.0, 5, "time of the display above 48 °C reaches 65 s at 65.00 s, with the rig as "
-         "given, then last value held, above the hard limit of 60 s from 60.01 s on (IEC 60601-1 Table 24"),
+         "given, then last value held, above the hard limit of 60 s from 61.00 s on (IEC 60601-1 Table 24"),
         (COLD_SIDE, "skin", 6.5, 1, "numbness reaches 6.5 °C at 0.00 s, with the rig as given, "
          "below the hard limit of 7 °C from 0.00 s on (ISO 13732-3, Geng 2006: skin numb below 7 °C in contact)"),
         (COLD_SIDE, "skin", 14.0, 1, "cold pain reaches 14 °C at 0.00 s, with the rig as given, "

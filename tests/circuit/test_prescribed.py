@@ -1,0 +1,61 @@
+"""Skin under a prescribed display, by modes: against the whole circuit, and against itself over time."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.solver.prescribed import FELT, modes_of
+from thermicon.icons import load_library
+
+THENAR = Rig.load("thenar")
+MODES = modes_of(THENAR)
+SIX = load_library("six-icons")
+
+
+@pytest.mark.parametrize("name", ["cooling-step", "double-dip"])
+def test_fed_with_the_display_of_the_whole_circuit_it_gives_its_skin(name: str) -> None:
+    trace = simulate(SIX[name], THENAR, rate_Hz=1000.0)
+    step = float(trace.time_s[1] - trace.time_s[0])
+    felt, _ = MODES.run(trace.display_C, step, MODES.steady(float(trace.display_C[0])))
+    for column in ("display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
+        assert np.abs(felt[FELT.index(column)] - getattr(trace, column)).max() < 5e-6, column
+    assert np.ptp(trace.skin_C) > 3.0
+
+
+def test_a_steady_display_is_steady() -> None:
+    felt, end = MODES.run(np.full(2000, 27.0), 0.01, MODES.steady(27.0))
+    assert np.abs(felt - felt[:, :1]).max() < 1e-11
+    assert end == pytest.approx(MODES.steady(27.0), abs=1e-12)
+
+
+def test_relaxing_is_running_on_under_a_display_that_is_held() -> None:
+    _, begun = MODES.run(np.linspace(32.0, 24.0, 400), 0.01, MODES.steady(32.0))
+    ran, end = MODES.run(np.full(1001, 24.0), 0.01, begun)
+    relaxed = MODES.relax(np.arange(1001) * 0.01, 24.0, begun)
+    assert np.abs(ran - relaxed).max() < 1e-10
+    assert MODES.after(10.0, 24.0, begun) == pytest.approx(end, abs=1e-11)
+    late = MODES.relax(np.array([1e5]), 24.0, begun)
+    assert late[:, 0] == pytest.approx(MODES.relax(np.array([0.0]), 24.0, MODES.steady(24.0))[:, 0], abs=1e-9)
+
+
+def test_lumps_and_modes_are_each_others_inverse_and_warmth_makes_nothing_colder() -> None:
+    count = len(MODES.rate_per_s)
+    assert np.abs(MODES.lumps @ MODES.unlumps - np.eye(count)).max() < 1e-10
+    passage = MODES.lumps @ np.diag(np.exp(-MODES.rate_per_s * 2.0)) @ MODES.unlumps
+    assert passage.min() > -1e-12
+    assert (MODES.rate_per_s > 0).all()
+
+
+def test_the_display_that_holds_the_skin_holds_it() -> None:
+    display = MODES.display_holding_skin_C(29.0)
+    felt, _ = MODES.run(np.full(2, display), 0.1, MODES.steady(display))
+    assert felt[FELT.index("skin_C"), -1] == pytest.approx(29.0, abs=1e-9)
+
+
+def test_under_a_display_that_lets_no_heat_through_skin_goes_to_its_blood() -> None:
+    free = modes_of(THENAR, insulated=True)
+    start = free.unlumps @ (MODES.lumps @ MODES.steady(25.0))
+    late = free.relax(np.array([0.0, 1e6]), free.deep_C, start)
+    cold = FELT.index("cold_receptor_C")
+    assert late[cold, 0] < 27.0
+    assert late[cold, 1] == pytest.approx(free.deep_C, abs=1e-6)

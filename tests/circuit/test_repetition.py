@@ -1,0 +1,197 @@
+"""Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Device, Drive, Limits, Rig, gate, realise, worst_case
+from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.gate import Gate, gate_set
+from thermicon.circuit.safety.repeated import PauseError, Repeating, recovery_s, shortest_pause_s, skin_C
+from thermicon.circuit.safety.repetition import Cycle, bound, mapped, steady_cycle
+from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.solver.batch_inputs import State
+from thermicon.icons import parse
+
+THENAR = Rig.load("thenar")
+SURE: dict[str, object] = {
+    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"},
+    "uncertainty.reason": "a test that needs the rig as given",
+}
+CONTROLLED = THENAR.with_(
+    **{"heat_sink.capacity_J_per_K": 60.0, "heat_sink.kp_W_per_K": 8.0, "heat_sink.ki_W_per_Ks": 1.0,
+       "heat_sink.power_limit_W": 9.0}
+)  # fmt: skip
+REST = 0.08
+COOL = Drive([0, 0.5, 2.5, 3.5], [REST, 0.7, REST, REST], held=True)
+WARM = Drive([0, 1.0, 3.0, 4.0], [REST, -0.4, -0.4, REST])
+BOTH = Drive([0, 0.5, 1.5, 2.5], [REST, 0.5, -0.3, REST], held=True)
+HOT = (
+    'cue 1\nset h "hot" { site thenar\n control display\n baseline 32 °C }\n'
+    "icon glow { warm by 7 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }\n"
+)
+
+
+def few(rig: Rig = THENAR) -> Ensemble:
+    """The rig as given and corners far apart."""
+    return Ensemble.of(rig).only([0, 1, 22, 43, 64])
+
+
+def cycles_of(ensemble: Ensemble, pause_s: float, as_maps: bool) -> tuple[list[Cycle], State]:
+    start = ensemble.at_rest(REST)
+    cycles = [Cycle(ensemble, drive, REST, pause_s) for drive in (COOL, WARM, BOTH)]
+    return [mapped(cycle, start) for cycle in cycles] if as_maps else cycles, start
+
+
+@pytest.mark.parametrize("as_maps", [True, False])
+def test_a_steady_cycle_is_what_sixty_plays_come_to(as_maps: bool) -> None:
+    ensemble = few()
+    cycles, start = cycles_of(ensemble, 60.0, as_maps)
+    for cycle in cycles:
+        assert (cycle.played is not None) == as_maps
+        steady, settles = steady_cycle(cycle, start)
+        plain, state = replace(cycle, played=None), start
+        for _ in range(60):
+            state = plain.after(state)
+        assert settles.all()
+        assert np.abs(steady.nodes_C - state.nodes_C).max() < 5e-3
+        assert np.abs(state.nodes_C - start.nodes_C).max() > 0.02, "it is not the rest"
+
+
+def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() -> None:
+    ensemble = few(CONTROLLED).only([4])
+    start = ensemble.at_rest(REST)
+    cycle = mapped(Cycle(ensemble, COOL, REST, 60.0), start)
+    assert cycle.played is None
+    steady, settles = steady_cycle(cycle, start)
+    state = start
+    for _ in range(60):
+        state = cycle.after(state)
+    assert settles.all()
+    assert np.abs(steady.nodes_C - state.nodes_C).max() < 5e-3
+    assert np.abs(steady.sink[:, 0] - state.sink[:, 0]).max() < 5e-3
+
+
+def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
+    """A second forgets little: a thousand plays are needed, and a few would not tell."""
+    ensemble = few()
+    cycle = mapped(Cycle(ensemble, BOTH, REST, 0.0), ensemble.at_rest(REST))
+    steady, settles = steady_cycle(cycle, ensemble.at_rest(REST))
+    assert settles.all()
+    again = replace(cycle, played=None).after(steady)
+    assert np.abs(again.nodes_C - steady.nodes_C).max() < 1e-6
+
+
+def test_what_heats_without_end_has_no_cycle() -> None:
+    ensemble = few().only([0])
+    cycle = mapped(Cycle(ensemble, Drive([0, 1], [-6.0, -6.0]), REST, 0.0), ensemble.at_rest(REST))
+    assert not steady_cycle(cycle, ensemble.at_rest(REST))[1].any()
+
+
+@pytest.mark.parametrize(("pause_s", "as_maps", "near_K"), [(0.0, True, 15.0), (3.0, True, 6.0), (20.0, False, 2.0)])
+def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, as_maps: bool, near_K: float) -> None:
+    ensemble = few()
+    cycles, start = cycles_of(ensemble, pause_s, as_maps)
+    steady = [steady_cycle(cycle, start)[0] for cycle in cycles]
+    warm = bound(cycles, [start] * 3, steady, warm=True).nodes_C
+    cold = bound(cycles, [start] * 3, steady, warm=False).nodes_C
+    plain = [replace(cycle, played=None) for cycle in cycles]
+    rng, nearest = np.random.default_rng(2), np.inf
+    for _ in range(3):
+        state = start
+        for k in rng.integers(0, 3, 30):
+            state = plain[k].after(state)
+            assert (state.nodes_C <= warm + 1e-6).all()
+            assert (state.nodes_C >= cold - 1e-6).all()
+            nearest = min(nearest, float((warm - state.nodes_C)[:, 1].min()))
+    assert nearest < near_K, "bounds are of use: the display comes near them"
+    for cycle in plain:  # what no order can pass, since no play leads out
+        assert (cycle.after(State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
+        assert (cycle.after(State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
+
+
+def test_recovery_is_when_display_and_skin_are_back() -> None:
+    ensemble = few()
+    start = ensemble.at_rest(REST)
+    end = ensemble.end_of(COOL, start)
+    found = recovery_s(ensemble, REST, start, end)
+    assert found is not None
+    times = np.arange(0.0, 2 * found, 0.02)
+    values = ensemble.hold(REST, end, times)[0]
+    began = ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, :1]
+    which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
+    away = (np.abs(values - began)[which] > 0.1).any(axis=(0, 1))
+    last = times[np.flatnonzero(away)[-1]]
+    assert last <= found <= last + 1.02, "rows stand 0.1 s apart, later 1 s"
+
+
+def played_thirty_times(drive: Drive, ensemble: Ensemble, pause_s: float) -> float:
+    """Warmest skin in °C of thirty plays, with the pauses and a minute of the last value held."""
+    state, warmest = ensemble.at_rest(REST), -np.inf
+    for _ in range(30):
+        for (_, values), then in ensemble.play(drive, state):
+            warmest, state = max(warmest, float(values[WATCHED.index("skin_C")].max())), then
+        state = ensemble.rest(REST, state, pause_s)
+    return warmest
+
+
+def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
+    rig = THENAR.with_(**SURE)
+    drive = Drive([0, 2.0, 10.0, 12.0], [REST, -0.12, -0.12, REST])
+    ensemble = Ensemble.of(rig)
+    once = played_thirty_times(drive, ensemble, 600.0)
+    limits = Limits.of({"skin_highest_C": round(once + 1.0, 2), "skin_highest_soft_C": 39.0})
+    start = ensemble.at_rest(REST)
+    repeating = Repeating(ensemble, [mapped(Cycle(ensemble, drive, REST, 0.0), start)], [start], limits)
+    shortest = shortest_pause_s(repeating)
+    assert shortest is not None
+    assert shortest > 5.0
+    assert repeating.safe(shortest)
+    assert not repeating.safe(0.9 * shortest)
+    assert played_thirty_times(drive, ensemble, shortest) <= once + 1.0
+    assert played_thirty_times(drive, ensemble, 0.5 * shortest) > once + 1.0, "the limit is real, not only a bound's"
+
+
+def test_a_pause_that_cannot_be_is_told() -> None:
+    for pause in (-1.0, 600.5, float("nan")):
+        with pytest.raises(PauseError, match=r"s between plays is not possible; give 0 to 600 s"):
+            gate(COOL, THENAR, pause_s=pause)
+
+
+def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_is_not() -> None:
+    fewer = {f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates")}
+    rig = THENAR.with_(**fewer, **{"uncertainty.reason": "a test in fewer corners"})
+    realised = realise(parse(HOT)["glow"], rig, Device.load("dac-16"))
+    usual, soon = worst_case(realised), worst_case(realised, 5.0)
+    assert usual.colour in ("green", "amber")
+    assert usual.repeated.recovery_s == usual.repeated.pause_s > 60.0
+    assert soon.colour == "red"
+    assert soon.repeated.shortest_pause_s == usual.repeated.shortest_pause_s
+    assert soon.reason is not None
+    assert soon.reason.startswith("skin surface reaches 4")
+    assert "played again and again with 5 s of pause" in soon.reason
+    assert f"the shortest safe pause is {soon.repeated.shortest_pause_s:g} s (--pause " in soon.reason
+    assert 5.0 < float(soon.repeated.shortest_pause_s or 0) < usual.repeated.pause_s
+
+
+def test_one_drive_of_a_set_counts_for_the_others_and_a_red_one_does_not() -> None:
+    rig = THENAR.with_(**SURE)
+    alone = gate(BOTH, rig, rest_A=REST, pause_s=10.0)
+    strong = Drive([0, 1.0, 3.0, 4.0], [REST, 6.0, 6.0, REST])
+    beside, _ = gate_set([(BOTH, REST), (WARM, REST)], rig, pause_s=10.0)
+    without, red = gate_set([(BOTH, REST), (strong, REST)], rig, pause_s=10.0)
+
+    def warmest(one: Gate) -> float:
+        return max(c.value for c in one.repeated.checks if (c.quantity, c.upper) == ("display", True))
+
+    assert beside.repeated.checks != alone.repeated.checks
+    assert (without.checks, red.colour) == (alone.checks, "red")
+    assert warmest(beside) > warmest(alone)
+
+
+def test_skin_is_read_off_states() -> None:
+    ensemble = few()
+    start = ensemble.at_rest(REST)
+    assert skin_C(ensemble, start) == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][0, :, 0])
