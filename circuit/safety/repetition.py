@@ -79,7 +79,8 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
         nodes, settles = cycle.whole(cycle.played).fixed_point()
         nodes = np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C)
         return State(np.concatenate([nodes, start.nodes_C[:, -1:]], axis=1), start.sink), settles
-    here, there = _joined(start), _joined(cycle.after(start))
+    first = cycle.after(start)  # the controller of a heat sink has begun here
+    here, there = _joined(first), _joined(cycle.after(first))
     guesses, results = [here], [there]
     settled = _change(there - here) <= CLOSE_K
     for _ in range(MOST_PLAYS):
@@ -89,7 +90,6 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
         for lane in np.flatnonzero(~settled):
             guess[lane] = _mixed([g[lane] for g in guesses], [r[lane] for r in results])
         guess = np.clip(np.nan_to_num(guess, nan=HOTTEST_C), COLDEST_C, HOTTEST_C)
-        guess[:, _nodes(start) :] = results[-1][:, _nodes(start) :]
         result = _joined(cycle.after(_parted(guess, start)))
         guesses, results = [*guesses[-REMEMBERED:], guess], [*results[-REMEMBERED:], result]
         settled = _change(result - guess) <= CLOSE_K
@@ -146,8 +146,7 @@ def _joined(state: State) -> Array:
 
 def _parted(joined: Array, like: State) -> State:
     nodes = _nodes(like)
-    sink = like.sink if np.isnan(like.sink).all() else joined[:, nodes:]
-    return State(np.ascontiguousarray(joined[:, :nodes]), np.ascontiguousarray(sink))
+    return State(np.ascontiguousarray(joined[:, :nodes]), np.ascontiguousarray(joined[:, nodes:]))
 
 
 def _nodes(state: State) -> int:

@@ -61,7 +61,7 @@ def test_a_steady_cycle_is_what_sixty_plays_come_to(as_maps: bool) -> None:
 
 
 def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() -> None:
-    ensemble = few(CONTROLLED).only([4])
+    ensemble = few(CONTROLLED).only([0, 4])
     start = ensemble.at_rest(REST)
     cycle = mapped(Cycle(ensemble, COOL, REST, 60.0), start)
     assert cycle.played is None
@@ -139,19 +139,20 @@ def played_thirty_times(drive: Drive, ensemble: Ensemble, pause_s: float) -> flo
 
 def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     rig = THENAR.with_(**SURE)
-    drive = Drive([0, 2.0, 10.0, 12.0], [REST, -0.12, -0.12, REST])
+    drive = Drive([0, 2.0, 10.0, 12.0], [REST, -0.2, -0.2, REST])
     ensemble = Ensemble.of(rig)
     once = played_thirty_times(drive, ensemble, 600.0)
-    limits = Limits.of({"skin_highest_C": round(once + 1.0, 2), "skin_highest_soft_C": 39.0})
+    limits = Limits.of({"skin_highest_C": 40.0, "skin_highest_soft_C": 39.5})
+    assert once < 39.5, "zero current leads to 39.1 °C"
     start = ensemble.at_rest(REST)
     repeating = Repeating(ensemble, [mapped(Cycle(ensemble, drive, REST, 0.0), start)], [start], limits)
     shortest = shortest_pause_s(repeating)
     assert shortest is not None
-    assert shortest > 5.0
+    assert shortest > 3.0
     assert repeating.safe(shortest)
     assert not repeating.safe(0.9 * shortest)
-    assert played_thirty_times(drive, ensemble, shortest) <= once + 1.0
-    assert played_thirty_times(drive, ensemble, 0.5 * shortest) > once + 1.0, "the limit is real, not only a bound's"
+    assert played_thirty_times(drive, ensemble, shortest) <= 40.0
+    assert played_thirty_times(drive, ensemble, 0.5 * shortest) > 40.0, "the limit is real, not only a bound's"
 
 
 def test_a_pause_that_cannot_be_is_told() -> None:

@@ -1,0 +1,166 @@
+"""Single faults: what the hardware must do is simulated, and keeps every hard limit of temperature."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Limits, Rig, gate
+from thermicon.circuit.safety.endings import dose_time_s
+from thermicon.circuit.safety.ensemble import Ensemble, between
+from thermicon.circuit.safety.exposure import cem43_min
+from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.single_faults import Faulty
+from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.solver.batch_inputs import State
+
+THENAR = Rig.load("thenar")
+LIMITS = Limits.shipped()
+CORNERS = [0, 1, 22, 43, 64]
+REST = 0.08
+COOL = Drive([0, 0.5, 3.0, 4.0], [REST, 0.8, REST, REST], held=True)
+TIMES = np.arange(0.0, 60.0, 0.02)
+
+
+def faulty(drive: Drive = COOL) -> Faulty:
+    few = Ensemble.of(THENAR).only(CORNERS)
+    return Faulty(few, drive, REST, few.at_rest(REST), LIMITS)
+
+
+@cache
+def verdict() -> Gate:
+    return gate(COOL, THENAR, pause_s=60.0)
+
+
+def temperatures_pass(ensemble: Ensemble, current_A: float, state: State, times_s: np.ndarray) -> tuple[bool, State]:
+    """Whether a current that is held keeps all hard limits of temperature, and the state after it."""
+    values, then = ensemble.hold(current_A, state, times_s)
+    tally = Tally(LIMITS, [str(corner) for corner in ensemble.corners])
+    tally.add(times_s, values, rates=False, sums=False)
+    return tally.passes(), then
+
+
+def test_a_current_that_hangs_until_the_watchdog_cuts_it_passes_no_limit_and_much_longer_it_does() -> None:
+    one = faulty()
+    watchdog, fault = one.watchdog_s()
+    assert 0.1 < watchdog < 60.0
+    assert (fault.colour, fault.prevented_by.split()[:2]) == ("red", ["a", "watchdog"])
+    broken = False
+    for instant in (0.2, 0.6, 1.5, 2.9, 3.5):
+        state = one.ensemble.end_of(between(COOL, 0.0, instant), one.start)
+        current = float(COOL.at(np.array([instant]))[0])
+        within, then = temperatures_pass(one.ensemble, current, state, np.linspace(0.0, watchdog, 300))
+        after, _ = temperatures_pass(one.ensemble, 0.0, then, TIMES)
+        assert within
+        assert after
+        longer, _ = temperatures_pass(one.ensemble, current, state, np.linspace(0.0, 1.4 * watchdog, 300))
+        broken |= not longer
+    assert broken, "the watchdog is no longer than it need be"
+
+
+def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_own() -> None:
+    one = faulty()
+    cut, fault = one.cut_off((26.0, 38.0))
+    assert (cut.low, cut.high) == (25.0, 39.0)
+    assert cut.react_within_s > 0.0
+    assert fault.fault == "driver stuck at its limit"
+    display = WATCHED.index("display_C")
+    for current in (THENAR.driver.current_min_A, THENAR.driver.current_max_A):
+        values, _ = one.ensemble.hold(current, one.start, TIMES)
+        out = (values[display] <= cut.low) | (values[display] >= cut.high)
+        assert out.any(axis=1).all()
+        for lane in range(len(CORNERS)):
+            until = TIMES[int(out[lane].argmax())] + cut.react_within_s
+            alone, start = one.ensemble.only([lane]), one.start.take(np.array([lane]))
+            within, then = temperatures_pass(alone, current, start, np.linspace(0.0, until - 0.02, 200))
+            assert within
+            assert temperatures_pass(alone, 0.0, then, TIMES)[0]
+    assert cut.react_within_s in (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
+
+
+def test_limits_of_the_display_bound_the_cut_off() -> None:
+    cut, _ = faulty().cut_off((5.5, 44.8))
+    assert (cut.low, cut.high) == (5.0, 45.0)
+
+
+def test_swapped_poles_are_found_by_a_small_current() -> None:
+    check, fault = faulty().polarity()
+    assert check.needed
+    assert check.swapped_skin_C[1] > 42.0, "what cools heats"
+    assert fault.colour == "red"
+    few = faulty().ensemble
+    times = np.array([0.0, check.test_s])
+    display = WATCHED.index("display_C")
+    right = few.hold(check.test_current_A, few.at_rest(0.0), times)[0][display]
+    wrong = few.hold(-check.test_current_A, few.at_rest(0.0), times)[0][display]
+    assert (right[:, 0] - right[:, 1] >= check.display_change_at_least_K).all()
+    assert (wrong[:, 1] > wrong[:, 0]).all()
+
+
+def test_a_gentle_cue_needs_no_check_of_the_poles() -> None:
+    check, fault = faulty(Drive([0, 1], [0.0, 0.0])).polarity()
+    assert not check.needed
+    assert fault.colour in ("green", "amber")
+
+
+def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
+    """A plate without power is warm: what warms from there passes a limit that it would not pass from rest."""
+    warm = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
+    one = faulty(warm)
+    needed, fault = one.rest_before()
+    assert needed is not None
+    assert 0.0 < needed < 600.0
+    assert fault.prevented_by.startswith(f"holding the rest for {needed:g} s before the first play")
+    cold = one.ensemble.at_rest(0.0)
+
+    def passes(rest_s: float) -> bool:
+        state = one.ensemble.rest(REST, cold, rest_s)
+        tally = Tally(LIMITS, [str(corner) for corner in one.ensemble.corners])
+        for (rows, values), _ in one.ensemble.play(warm, state):
+            tally.add(rows, values)
+        return tally.passes()
+
+    assert passes(needed)
+    assert not passes(needed - 1.5)
+
+
+def test_the_dose_of_zero_current_ends_contact_in_time() -> None:
+    """A warm heat sink takes skin to where the dose adds up: the time is that at which it reaches its limit."""
+    warm = THENAR.with_(**{"heat_sink.temperature_C": 42.5})
+    few = Ensemble.of(warm).only(CORNERS)
+    start = few.at_rest(0.2)
+    most = dose_time_s(few, LIMITS, start, np.zeros(5), 1800.0)
+    assert 60.0 < most < 1800.0
+    times = np.linspace(0.0, 1800.0, 18001)
+    skin = few.hold(0.0, start, times)[0][WATCHED.index("skin_C")]
+    dose = cem43_min(times, skin).max(axis=0)
+    assert dose[np.searchsorted(times, most)] <= 1.0
+    assert dose[np.searchsorted(times, 1.1 * most)] > 1.0
+    assert dose_time_s(few, LIMITS, start, np.full(5, 0.9), 1800.0) < most
+
+
+@pytest.mark.parametrize(("sink_C", "resistance"), [(48.0, 2.0), (45.0, 0.2)])
+def test_a_heat_sink_that_burns_at_zero_current_is_red(sink_C: float, resistance: float) -> None:
+    rig = THENAR.with_(**{"heat_sink.temperature_C": sink_C, "heat_sink.resistance_K_per_W": resistance})
+    found = gate(Drive([0, 1], [0.35, 0.35]), rig, pause_s=0.0)
+    assert found.colour == "red"
+    assert found.drift_C is not None
+    assert found.drift_C > 39.5
+    broken = [one for one in found.checks if one.severity == "hard" and not one.passed]
+    assert any("zero current" in one.scenario for one in broken)
+
+
+def test_everything_that_is_demanded_is_in_the_verdict() -> None:
+    found = verdict()
+    demanded = found.demanded
+    assert set(demanded) == {
+        "watchdog_s", "cut_off_display_C", "polarity_check", "rest_before_first_play_s", "pause_at_least_s",
+        "zero_current_at_most_s", "faults",
+    }  # fmt: skip
+    assert demanded["pause_at_least_s"] == found.repeated.shortest_pause_s
+    assert [fault.fault for fault in found.demands.faults] == [
+        "host hangs in mid-play", "first play on a display that was without power", "poles swapped",
+        "driver stuck at its limit",
+    ]  # fmt: skip
+    assert all(f"single fault, {fault.fault}: {fault.text}" in found.text for fault in found.demands.faults)
+    assert found.notes[1].startswith(f"the hardware must provide: watchdog {found.demands.watchdog_s:g} s, cut-off at ")

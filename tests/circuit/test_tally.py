@@ -1,0 +1,96 @@
+"""A tally of rules over stretches of rows: pieces are the whole, doses add up over plays, and what is refused a count."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Limits
+from thermicon.circuit.safety.checks import Check, worst_of
+from thermicon.circuit.safety.tally import WATCHED, Tally
+
+LIMITS = Limits.shipped()
+TIME = np.linspace(0.0, 20.0, 2001)
+
+
+def runs() -> np.ndarray:
+    """Four columns of two lanes: one warms and cools, the other stays."""
+    warm = 32.0 + 11.0 * np.sin(TIME / 20.0 * np.pi) ** 2
+    return np.stack([np.stack([warm + k, np.full_like(TIME, 32.0)]) for k in range(len(WATCHED))])
+
+
+def check_of(tally: Tally, quantity: str, *, upper: bool = True, severity: str = "hard") -> Check:
+    return next(
+        check
+        for check in tally.checks()
+        if (check.quantity, check.upper, check.severity) == (quantity, upper, severity) and not check.note
+    )
+
+
+@pytest.mark.parametrize("cuts", [(1000,), (1, 700, 1999)])
+def test_stretches_come_to_the_same_as_the_whole(cuts: tuple[int, ...]) -> None:
+    values, whole, pieces = runs(), Tally(LIMITS, ["a", "b"]), Tally(LIMITS, ["a", "b"])
+    whole.add(TIME, values)
+    edges = [0, *cuts, len(TIME) - 1]
+    for first, last in zip(edges, edges[1:], strict=False):
+        pieces.add(TIME[first : last + 1], values[:, :, first : last + 1])
+    for one, other in zip(whole.checks(), pieces.checks(), strict=True):
+        assert (one.quantity, one.scenario, one.since_s) == (other.quantity, other.scenario, other.since_s)
+        assert (one.value, one.time_s) == (pytest.approx(other.value, rel=1e-12), other.time_s)
+    assert not whole.passes()
+    assert whole.worst_lanes()[0] == 0
+
+
+def test_what_adds_up_counts_once_for_every_play() -> None:
+    once, often = Tally(LIMITS, ["a", "b"]), Tally(LIMITS, ["a", "b"], plays=7)
+    for tally in (once, often):
+        tally.add(TIME, runs())
+    for quantity in ("thermal dose", "Henriques integral", "time of the display above 43 °C"):
+        single, seven = check_of(once, quantity), check_of(often, quantity)
+        assert single.value > 0.0
+        assert seven.value == pytest.approx(7 * single.value)
+    assert check_of(often, "skin surface").value == check_of(once, "skin surface").value
+
+
+def test_rates_and_sums_can_be_left_out() -> None:
+    tally = Tally(LIMITS, ["a", "b"])
+    tally.add(TIME, runs(), rates=False, sums=False)
+    assert check_of(tally, "rate of skin temperature").value == 0.0
+    assert check_of(tally, "thermal dose").value == 0.0
+    assert check_of(tally, "skin surface").value == pytest.approx(43.0)
+
+
+def test_a_drift_is_held_against_hard_limits_only() -> None:
+    values = np.full((4, 1, 2), 41.0)
+    tally = Tally(LIMITS, ["a"], begun_C=np.array([32.0]))
+    tally.add(np.array([0.0, 1.0]), values, rates=False, sums=False, drift=True)
+    assert tally.passes("hard")
+    assert tally.passes("soft"), "41 °C is above 40 °C, and 9 K from where it began"
+    tally.add(np.array([2.0, 3.0]), values, rates=False, sums=False)
+    assert not tally.passes("soft")
+    tally.add(np.array([4.0, 5.0]), values + 1.5, rates=False, sums=False, drift=True)
+    assert check_of(tally, "skin surface").since_s == 4.0
+
+
+def test_a_fork_goes_on_by_itself_under_another_name() -> None:
+    tally = Tally(LIMITS, ["a"])
+    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 32.0))
+    fork = tally.fork("then zero current")
+    fork.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 44.0))
+    assert tally.passes()
+    assert not fork.passes()
+    assert check_of(fork, "skin surface").scenario == "a, then zero current"
+
+
+def test_changes_count_from_where_it_began() -> None:
+    tally = Tally(LIMITS, ["a"], begun_C=np.array([25.0]))
+    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 34.0), rates=False)
+    relative = [check for check in tally.checks() if check.note and check.upper]
+    assert [check.limit for check in relative] == [33.0]
+    assert not relative[0].passed
+
+
+def test_of_equals_the_first_is_named_and_rounding_is_no_difference() -> None:
+    def one(value: float, scenario: str) -> Check:
+        return Check("skin surface", "hard", value, 42.0, "°C", 0.0, None, "source", scenario=scenario)
+
+    assert worst_of([[one(41.0, "once")], [one(41.0 + 1e-9, "again")]])[0].scenario == "once"
+    assert worst_of([[one(41.0, "once")], [one(41.01, "again")]])[0].scenario == "again"

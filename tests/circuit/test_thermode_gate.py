@@ -1,0 +1,149 @@
+"""The gate for displays that are prescribed: cycles, bounds, recovery and faults of a thermode against brute force."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Device, Limits, Rig, realise, worst_case
+from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
+from thermicon.circuit.rig.skin import Array
+from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.safety.thermode import Shown, Under
+from thermicon.circuit.safety.thermode_gate import gate_shown
+from thermicon.icons import parse
+
+THENAR, TCS = Rig.load("thenar"), Device.load("qst-tcs2")
+UNDER = Under.of(THENAR)
+STEP_S = 0.01
+STUCK = (0.1, 60.0)
+
+
+def shown(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> Shown:
+    rows = np.arange(round(times[-1] / STEP_S) + 1) * STEP_S
+    return Shown(way, STEP_S, np.interp(rows, times, levels), settling_s)
+
+
+COOL = shown([32, 26, 26, 32], [0, 1, 3, 4])
+WARM = shown([32, 38, 38, 32], [0, 2, 3, 5])
+QUICK = shown([32, 29, 32], [0, 0.5, 1])
+
+
+def lumps_of(states: list[Array]) -> Array:
+    return np.array([modes.lumps @ state for modes, state in zip(UNDER.modes, states, strict=True)])
+
+
+@pytest.mark.parametrize("pause_s", [60.0, 120.0])
+def test_a_steady_cycle_is_what_sixty_plays_come_to(pause_s: float) -> None:
+    states = UNDER.steady(32.0)
+    for _ in range(60):
+        states = UNDER.after(COOL, pause_s, states)
+    found = lumps_of(UNDER.cycle(COOL, pause_s))
+    assert np.abs(found - lumps_of(states)).max() < 1e-3
+    assert np.abs(found - lumps_of(UNDER.steady(32.0))).max() > 0.005, "it is not the rest"
+
+
+@pytest.mark.parametrize("pause_s", [0.0, 2.5])
+def test_a_steady_cycle_comes_back_to_itself_however_short_the_pause(pause_s: float) -> None:
+    found = UNDER.cycle(QUICK, pause_s)
+    assert lumps_of(UNDER.after(QUICK, pause_s, found)) == pytest.approx(lumps_of(found), abs=1e-9)
+
+
+@pytest.mark.parametrize("pause_s", [2.0, 20.0])
+def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float) -> None:
+    shows, begun = [COOL, WARM, QUICK], UNDER.steady(32.0)
+    warm = lumps_of(UNDER.bound(shows, pause_s, begun, warm=True))
+    cold = lumps_of(UNDER.bound(shows, pause_s, begun, warm=False))
+    rng = np.random.default_rng(3)
+    for order in (*rng.integers(0, 3, (3, 30)), [1] * 30, [0] * 30):
+        states = begun
+        for k in order:
+            states = UNDER.after(shows[k], pause_s, states)
+            now = lumps_of(states)
+            assert (now <= warm + 1e-6).all()
+            assert (now >= cold - 1e-6).all()
+
+
+def test_what_is_left_of_a_pause_begins_after_the_display_has_settled() -> None:
+    late = shown([32, 26, 26, 32], [0, 1, 3, 4], "late", settling_s=1.5)
+    assert (late.left_s(5.0), late.left_s(1.0)) == (3.5, 0.0)
+    held = UNDER.after(late, 5.0, UNDER.steady(32.0))
+    assert lumps_of(held) == pytest.approx(lumps_of(UNDER.after(COOL, 3.5, UNDER.steady(32.0))))
+
+
+@pytest.mark.parametrize("settling_s", [0.0, 1.5])
+def test_recovery_is_when_the_skin_is_back_in_every_corner(settling_s: float) -> None:
+    one = shown([32, 26, 26, 32], [0, 1, 3, 4], settling_s=settling_s)
+    _, ended = UNDER.play(one, UNDER.steady(32.0))
+    found = UNDER.recovery_s(one, ended)
+    assert found is not None
+    times = np.arange(0.0, 120.0, 0.01)
+    skin = UNDER.hold(32.0, ended, times)[WATCHED.index("skin_C")]
+    began = UNDER.hold(32.0, UNDER.steady(32.0), np.array([0.0]))[WATCHED.index("skin_C")]
+    last = times[np.flatnonzero((np.abs(skin - began) > 0.1).any(axis=0))[-1]]
+    assert last <= found - settling_s <= last + 0.12
+
+
+def test_a_display_that_does_not_return_never_recovers() -> None:
+    one = shown([32, 28], [0, 1])
+    assert UNDER.recovery_s(one, UNDER.play(one, UNDER.steady(32.0))[1]) is None
+
+
+def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
+    hot = shown([32, 40.5, 40.5, 32], [0, 1, 5, 6])
+    (alone,) = gate_shown([[hot]], THENAR, stuck_C=STUCK, pause_s=600.0)
+    once = max(one.value for one in alone.checks if one.quantity == "skin surface" and one.upper)
+    limits = Limits.of({"skin_highest_C": round(once + 0.3, 2), "skin_highest_soft_C": 38.0})
+
+    def judged(pause_s: float) -> Gate:
+        return gate_shown([[hot]], THENAR, stuck_C=STUCK, limits=limits, pause_s=pause_s)[0]
+
+    first = judged(600.0)
+    shortest = first.repeated.shortest_pause_s
+    assert first.safe
+    assert shortest is not None
+    assert shortest > 1.0
+    assert judged(shortest).safe
+    shorter = judged(round(0.9 * shortest, 2))
+    assert shorter.colour == "red"
+    assert f"the shortest safe pause is {shortest:g} s" in str(shorter.reason)
+
+
+def test_what_it_demands_holds_when_simulated() -> None:
+    hot = shown([32, 44.9, 32], [0, 5, 10])
+    (found,) = gate_shown([[hot]], THENAR, stuck_C=STUCK, pause_s=60.0)
+    hang, stuck = found.demands.faults
+    assert (hang.colour, stuck.colour) == ("red", "red")
+    assert 0.0 < found.demands.watchdog_s < 60.0
+    begun = UNDER.steady(32.0)
+    skin = WATCHED.index("skin_C")
+    react = found.demands.cut_off_display_C.react_within_s
+    assert UNDER.hold(44.9, begun, np.linspace(0.0, found.demands.watchdog_s, 200))[skin].max() <= 42.0
+    for level in STUCK:
+        values = UNDER.hold(level, begun, np.linspace(0.0, react, 200))
+        assert 15.0 <= values[skin].min()
+        assert values[skin].max() <= 42.0
+    assert (found.demands.polarity_check, found.demands.zero_current_at_most_s, found.drift_C) == (None, None, None)
+
+
+@pytest.mark.parametrize(("sink_C", "resistance"), [(48.0, 2.0), (60.0, 0.2)])
+def test_a_thermode_is_never_refused_for_the_heat_sink_of_a_rig(sink_C: float, resistance: float) -> None:
+    text = "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 4 °C at 2 °C/s\n return at 2 °C/s }\n"
+    hot = THENAR.with_(**{"heat_sink.temperature_C": sink_C, "heat_sink.resistance_K_per_W": resistance})
+    icon = parse(text)["a"]
+    found, plain = (worst_case(realise(icon, rig, TCS), 60.0) for rig in (hot, THENAR))
+    assert (found.colour, found.checks) == ("green", plain.checks)
+    assert not any("hot plate" in one.quantity for one in found.checks)
+
+
+def test_a_lagging_thermode_is_followed_in_both_ways_until_it_has_arrived() -> None:
+    text = "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 6 °C at 20 °C/s\n return at 20 °C/s }\n"
+    realised = realise(parse(text)["a"], THENAR, TCS)
+    once, late = ways_of(realised)
+    assert (once.way, late.way) == ("followed at once", "followed with its lag")
+    assert late.display_C[-1] == once.display_C[-1]
+    assert late.display_C.min() > once.display_C.min() + 0.3
+    assert late.end_s == pytest.approx(once.end_s + late.settling_s)
+    (found,) = worst_cases([realised], 30.0)
+    assert found.scenarios == 2 * 2 * 5
+    rate = next(one for one in found.checks if one.quantity == "rate of skin temperature" and not one.upper)
+    assert "followed at once" in rate.scenario
