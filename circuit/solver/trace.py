@@ -188,6 +188,8 @@ def judge(
         elif len(window) and (math.isfinite(until) or ends[-1] - begin >= LAST_S):
             late.append(begin)
             asked[window[-1]] = True
+        elif not len(window) and until < ends[-1]:  # it is over before the driver's next update
+            late.append(begin)
     if not asked.any():
         return Outcome(not late, 0.0, 0.0, 0.0, limits, took, tuple(late))
     worst = int(np.argmax(np.where(asked, np.abs(miss), -1.0)))

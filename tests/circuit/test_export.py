@@ -11,7 +11,19 @@ from typing import Any
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Realised, Rig, Verdict, gate, judge_safety, prepare, realise, worst_case
+from thermicon.circuit import (
+    Device,
+    Drive,
+    Prepared,
+    Realised,
+    Rig,
+    Verdict,
+    gate,
+    judge_safety,
+    prepare,
+    realise,
+    worst_case,
+)
 from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of

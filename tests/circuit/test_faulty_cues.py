@@ -76,10 +76,11 @@ def test_a_step_back_at_the_very_end_is_judged_with_the_current_it_leaves_on() -
 
 @pytest.mark.parametrize("kind", ["cool by 26 °C", "warm by 12 °C"])
 def test_pulses_between_slow_updates_are_missed_and_said_to_be(kind: str) -> None:
-    """At one update a second every pulse falls between two: what is delivered is judged, and the cue is not reached."""
+    """At one update a second every pulse falls between two: nothing is delivered, and the cue is not reached."""
     text = f"icon a {{ rest for 250 ms; repeat 20 {{ pulse {kind} for 500 ms; rest for 500 ms }} }}"
     one = ready(text, FEWER.with_(**{"driver.update_Hz": 1.0}))
-    assert {refusal.kind for refusal in one.refusals} & {"unreachable", "unsafe"}
+    assert [refusal.kind for refusal in one.refusals] == ["unreachable"]
+    assert "its step at 0.25 s does not arrive in time" in str(one.refusals[0])
 
 
 def test_what_is_unsafe_on_a_weak_driver_is_not_forced() -> None:
@@ -96,8 +97,9 @@ def test_a_train_of_pulses_after_a_hold_is_seen_in_full(amp: Device) -> None:
     found = worst_case(realise(train(10.0), strong(), amp), 120.0)
     rate = [one for one in found.checks if one.quantity == "rate of skin temperature"]
     assert found.colour == "red"
-    assert all(not one.passed for one in rate), [str(one) for one in rate]
-    assert all(one.time_s > 10.0 for one in rate)
+    broken = [one for one in rate if not one.passed]
+    assert broken, [str(one) for one in rate]
+    assert all(10.0 < one.time_s < 11.2 for one in broken)
 
 
 @pytest.mark.slow

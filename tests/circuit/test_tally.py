@@ -1,4 +1,6 @@
-"""A tally of rules over stretches of rows: pieces are the whole, doses add up over plays, and what is refused a count."""
+"""A tally of rules over stretches of rows: pieces are the whole, and doses add up over plays."""
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -30,7 +32,7 @@ def test_stretches_come_to_the_same_as_the_whole(cuts: tuple[int, ...]) -> None:
     values, whole, pieces = runs(), Tally(LIMITS, ["a", "b"]), Tally(LIMITS, ["a", "b"])
     whole.add(TIME, values)
     edges = [0, *cuts, len(TIME) - 1]
-    for first, last in zip(edges, edges[1:], strict=False):
+    for first, last in pairwise(edges):
         pieces.add(TIME[first : last + 1], values[:, :, first : last + 1])
     for one, other in zip(whole.checks(), pieces.checks(), strict=True):
         assert (one.quantity, one.scenario, one.since_s) == (other.quantity, other.scenario, other.since_s)
