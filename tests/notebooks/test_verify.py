@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.circuit import Device, Rig, pack, prepare
+from tests.notebooks.surerig import SURE, sure_rig
+from thermicon.circuit import Device, pack, prepare
 from thermicon.circuit.delivery import verify as verifying
 from thermicon.circuit.delivery.claims import claims_of
 from thermicon.circuit.delivery.digests import digest
@@ -28,7 +29,7 @@ SIX = load_library("six-icons")
 
 def exported(form_name: str, *names: str, device: str | None = None) -> dict[str, bytes]:
     """The files of an export, without a disk."""
-    form, rig = load_format(form_name), Rig.load("thenar")
+    form, rig = load_format(form_name), sure_rig()
     return pack([prepare(SIX[name], rig, Device.load(device or form.device), form) for name in names], form)
 
 
@@ -262,8 +263,8 @@ class TestCommand:
 
     def test_an_export_verifies_itself(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "drives"
-        assert cli("export", two, "--to", "csv", "-o", out).exit_code == 0
-        done = cli("export", two, "--icon", "cool-step", "--to", "tdms", "-o", out, "--force")
+        assert cli("export", two, "--to", "csv", "-o", out, *SURE).exit_code == 0
+        done = cli("export", two, "--icon", "cool-step", "--to", "tdms", "-o", out, "--force", *SURE)
         assert done.exit_code == 0, done.stderr
         assert f"removed from {out}, since their sidecars now describe other drives: cool-step.csv" in done.stderr
         assert sorted(path.name for path in out.iterdir()) == [
