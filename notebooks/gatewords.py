@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from thermicon.circuit.safety.repeated import Repeated
 
 MOST_NAMES = 6
+QUICKEST_S = 0.02
+"""A cut-off that must react sooner than the gate looks for is wanted at once."""
+
 _CORNER = re.compile(r"(?P<name>.+) (?P<sign>[+−])[\d.]+ (%|K)")
 _AGAIN = re.compile(r"played again and again with \S+ s of pause")
 
@@ -81,7 +84,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     if hangs:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
-    parts.append(f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display within {within:g} s")
+    quick = f"within {within:g} s" if within >= QUICKEST_S else "at once"
+    parts.append(f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display {quick}")
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]

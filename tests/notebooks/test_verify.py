@@ -89,6 +89,10 @@ class TestWell:
         assert verify(pair).findings == ()
         both = {**exported("c-array", "double-dip", device="pwm-h-bridge-10"), **exported("csv", "cold-to-warm")}
         assert verify(both).findings == ()
+        held = verify(exported("psychopy", "double-dip", device="closed-loop-controller"))
+        assert held.findings == ()
+        assert held.pairs[0].figures is not None
+        assert held.pairs[0].figures.greatest == pytest.approx(32.0)
 
     def test_another_program_is_told_and_is_not_wrong(self, pair: dict[str, bytes]) -> None:
         name = "warming-step.json"
