@@ -101,7 +101,6 @@ class TestRefused:
             for word in ("above the hard limit", "below the hard limit"):
                 told = told.replace(word, "beyond the hard limit")
             assert re.search(r"reaches \S+ °C at \S+ s, with contact .*, beyond the hard limit of .* \(.*\)", told)
-            assert told.endswith("; no pause up to 10 min makes that safe: use a smaller or shorter change")
             assert "safety red in 195 scenarios" in said.stderr
             assert "no medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
             assert said.stderr.endswith("nothing was written\n")
