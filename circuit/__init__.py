@@ -25,7 +25,9 @@ from thermicon.circuit.safety.checks import Check
 from thermicon.circuit.safety.limits import SafetyVerdict, judge_safety
 from thermicon.circuit.safety.corners import Corner, corners_of
 from thermicon.circuit.safety.scenarios import Futures, play_out
-from thermicon.circuit.safety.gate import Gate, gate
+from thermicon.circuit.safety.demands import CutOff, Demands, PolarityCheck, SingleFault
+from thermicon.circuit.safety.repeated import PauseError, Repeated
+from thermicon.circuit.safety.gate import Gate, gate, gate_set
 from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
 from thermicon.circuit.safety.session import Play, Session
 from thermicon.circuit.safety.sessionplay import play_session
@@ -38,8 +40,8 @@ from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.delivery.realise import Realised, realise
 from thermicon.circuit.solver.difference import Difference, difference
 from thermicon.circuit.delivery.events import Event, events_of
-from thermicon.circuit.delivery.worstcase import worst_case
-from thermicon.circuit.delivery.export import Prepared, Verdict, pack, prepare
+from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
+from thermicon.circuit.delivery.export import Prepared, Verdict, pack, prepare, prepare_set
 from thermicon.circuit.delivery.refusal import Refusal
 
 __all__ = [
@@ -100,8 +102,15 @@ __all__ = [
     "Futures",
     "corners_of",
     "play_out",
+    "CutOff",
+    "Demands",
+    "PolarityCheck",
+    "SingleFault",
+    "PauseError",
+    "Repeated",
     "Gate",
     "gate",
+    "gate_set",
     "SessionError",
     "SessionPlan",
     "Play",
@@ -122,9 +131,11 @@ __all__ = [
     "Event",
     "events_of",
     "worst_case",
+    "worst_cases",
     "Prepared",
     "Refusal",
     "Verdict",
     "pack",
     "prepare",
+    "prepare_set",
 ]

@@ -12,6 +12,7 @@ from thermicon.notebooks.cues import pick, read_set, warn_of_site
 from thermicon.notebooks.door import REFUSED, note
 from thermicon.notebooks.exportfolder import check_export_folder
 from thermicon.notebooks.exporting import Ready, others, prepare_icons, write
+from thermicon.notebooks.gatewords import gate_words
 from thermicon.notebooks.progress import progress_bar
 from thermicon.notebooks.wording import number
 
@@ -67,13 +68,15 @@ def export_file(
 
 
 def tell(ready: Sequence[Prepared]) -> None:
-    """Say of every icon how it is played and how far that is from the design, and what is to be known of it.
+    """Say of every icon how it is played and how far that is from the design; of all, what the gate asks of people.
 
     Where the drives are played open loop, one more line says what a module that was not measured leaves open.
     """
     for one in ready:
         for line in told_of(one):
             note(line)
+    for about, text in gate_words(ready):
+        note(f"{about}: {text}")
     spreads = [(one.spread, one.realised.icon.name) for one in ready if one.spread is not None]
     if spreads:
         widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
@@ -91,8 +94,6 @@ def told_of(one: Prepared) -> Iterator[str]:
         f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-    for line in one.verdict.notes:
-        yield f"{realised.icon.name}: {line}"
     for warning in one.warnings:
         yield f"warning: {realised.icon.name}: {warning}"
 

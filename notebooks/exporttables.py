@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-from thermicon.notebooks.export import CAUTION, steps_of, told_of
+from thermicon.circuit.inputs import signed
+from thermicon.notebooks.export import CAUTION, steps_of
+from thermicon.notebooks.gatewords import gate_words, short_scenario
 from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:
@@ -35,7 +37,14 @@ def delivered_html(ready: Ready) -> str:
     against = "".join(
         f'<div class="th-note th-bad">{escape(name)}: {escape(str(refusal))}</div>' for name, refusal in ready.against
     )
-    return table + against + "".join(f'<div class="th-note">{escape(line)}</div>' for line in dict.fromkeys(notes))
+    noted = "".join(f'<div class="th-note">{escape(line)}</div>' for line in dict.fromkeys(notes))
+    return table + asked_html(ready.prepared) + against + noted
+
+
+def asked_html(prepared: Sequence[Prepared]) -> str:
+    """How icons may be repeated and what the hardware must provide, in two columns; empty if none is safe."""
+    rows = "".join(f"<tr><th>{escape(about)}</th><td>{escape(text)}</td></tr>" for about, text in gate_words(prepared))
+    return f'<table class="th asked"><tbody>{rows}</tbody></table>' if rows else ""
 
 
 def _delivered(one: Prepared, felt: FeltChange | None) -> str:
@@ -56,33 +65,38 @@ def _delivered(one: Prepared, felt: FeltChange | None) -> str:
 
 
 def gate_html(one: Prepared) -> str:
-    """The gate's verdict on one icon: every rule with its worst value, the limit, when and in which scenario."""
+    """The gate's verdict on one icon: every rule with its worst value, the limit, when and in which scenario.
+
+    Scenarios are shortened, in full when pointed at; sources stand beneath the table.
+    """
     verdict = one.verdict
     checks: Sequence[Check] = getattr(verdict, "checks", ())
-    name = escape(one.realised.icon.name)
+    name, beyond = escape(one.realised.icon.name), sum(not check.passed for check in checks)
     summary = f'{name}: <span class="{COLOURS[verdict.colour]}">safety {verdict.colour}</span>'
-    first = verdict.reason or next(iter(verdict.cautions), None)
-    told = f" – {escape(first)}" if first else f", {len(checks)} rules kept in {verdict.scenarios} scenarios"
-    body = "".join(_check(check) for check in sorted(checks, key=lambda check: check.passed))
-    head = "".join(f"<th>{word}</th>" for word in ("", "rule", "worst", "limit", "at", "in", "source"))
+    kept = f"{beyond} of {len(checks)} limits exceeded" if beyond else f"{len(checks)} limits kept"
+    sources = {source: place for place, source in enumerate(dict.fromkeys(check.source for check in checks), 1)}
+    body = "".join(_check(check, sources) for check in sorted(checks, key=lambda check: check.passed))
+    head = "".join(f"<th>{word}</th>" for word in ("", "rule", "worst", "limit", "at", "in"))
     table = f'<table class="th gate"><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>'
-    notes = "".join(f'<div class="th-note">{escape(line)}</div>' for line in verdict.notes)
-    return f"<details><summary>{summary}{told}</summary>{table}</details>{notes}"
+    listed = "<br>".join(f"{place} {escape(source)}" for source, place in sources.items())
+    sourced = f'<div class="th-soft">{listed}</div>' if listed else ""
+    return f"<details><summary>{summary}, {kept} in {verdict.scenarios} scenarios</summary>{table}{sourced}</details>"
 
 
-def _check(check: Check) -> str:
+def _check(check: Check, sources: dict[str, int]) -> str:
     unit = "" if check.unit == "1" else f" {check.unit}"
     kind = "" if check.passed else "bad" if check.severity == "hard" else "amber"
     cells = (
         {"": "ok", "bad": "RED", "amber": "amber"}[kind],
         check.quantity,
-        f"{check.value:.4g}{unit}",
-        f"{'≤' if check.upper else '≥'} {check.limit:.4g}{unit} {check.severity}",
+        f"{signed(check.value, '.4g')}{unit}",
+        f"{'≤' if check.upper else '≥'} {signed(check.limit, '.4g')}{unit} {check.severity}",
         f"{check.time_s:.2f} s",
-        check.scenario,
-        check.source,
     )
-    return f'<tr class="{kind}">' + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>"
+    where = f'<td title="{escape(check.scenario)}">{escape(short_scenario(check.scenario))}</td>'
+    marked = [escape(cell) for cell in cells]
+    marked[3] += f'<sup title="{escape(check.source)}"> {sources[check.source]}</sup>'
+    return f'<tr class="{kind}">' + "".join(f"<td>{cell}</td>" for cell in marked) + where + "</tr>"
 
 
 def written_html(ready: Ready, written: Written) -> str:
@@ -96,9 +110,3 @@ def written_html(ready: Ready, written: Written) -> str:
         f'<div class="th-good">{escape(head)}</div><ul class="th th-code">{names}</ul>'
         f'<div class="th-soft">{played}<br>{escape(CAUTION)}</div>'
     )
-
-
-def told_lines(ready: Ready) -> Iterator[str]:
-    """The same in plain lines, as ``thermicon export`` prints them."""
-    for one in ready.prepared:
-        yield from told_of(one)

@@ -52,7 +52,11 @@ class ExportView:
         self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
         self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
         self.pause = widgets.Text(
-            value="", placeholder="recovery time", description="pause, s", continuous_update=False, layout=wide
+            value="",
+            placeholder="in s; empty: recovery time",
+            description="pause",
+            continuous_update=False,
+            layout=wide,
         )
         self.overwrite = widgets.Checkbox(value=False, description="overwrite files that are there", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also what is lossy or not reached", indent=False)

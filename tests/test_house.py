@@ -56,7 +56,7 @@ def project_files() -> Iterator[Path]:
             and (not name.startswith(".") or name in {".github", ".ci"})
             and not (Path(folder) / name / "pyvenv.cfg").exists()
         ]
-        yield from (Path(folder) / name for name in names)
+        yield from (Path(folder) / name for name in names if name != ".git")  # in a second checkout, a file
 
 
 def imported_names(path: Path) -> Iterator[tuple[int, str]]:

@@ -48,10 +48,6 @@ class Verdict(Protocol):
     def demanded(self) -> dict[str, object]:
         """What the hardware must prevent, as the sidecar and the players hold it."""
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What is to be known of repetition and of the hardware, a sentence each."""
-
 
 Gate = Callable[[Realised], Verdict]
 """What judges one realised cue."""

@@ -55,10 +55,11 @@ class Told:
             )
         unit = next(key.removeprefix("offset_") for key in played if key.startswith("offset_"))
         ends = float(played[f"least_command_{unit}"]), float(played[f"greatest_command_{unit}"])
+        shown = "°C" if unit == "C" else unit
         scale = float(played[f"offset_{unit}"]), float(played[f"step_{unit}"])
         lowest = int(played["lowest_code"])
         frames = int(about["format"].get("frames_per_update", 1))
-        return Told(int(played["samples"]), float(played["duration_s"]), *ends, *scale, lowest, frames, unit)
+        return Told(int(played["samples"]), float(played["duration_s"]), *ends, *scale, lowest, frames, shown)
 
 
 def read_back(drive: bytes, about: Mapping[str, Any]) -> Figures | None:
@@ -69,7 +70,8 @@ def read_back(drive: bytes, about: Mapping[str, Any]) -> Figures | None:
     try:
         name = str(about["format"]["name"])
         if name == "psychopy":
-            name = "tcs2-serial" if about["device"]["driven_by"] == "set-points" else "csv"
+            kinds = {"set-points": "tcs2-serial", "temperatures": "setpoint-csv"}
+            name = kinds.get(about["device"]["driven_by"], "csv")
         reader = READERS.get(name)
         return None if reader is None else reader(drive, Told.of(about), about)
     except Exception as problem:  # whatever a damaged file makes a reader do, it is not what was exported
@@ -104,6 +106,12 @@ def _table(drive: bytes, told: Told, about: Mapping[str, Any]) -> Figures:
     if not np.allclose(told.offset + told.step * code, command, rtol=0.0, atol=0.01 * told.step):
         raise ValueError(f"codes and {column} disagree")
     return Figures(None, float(rows[-1]["time_s"]), float(command.min()), float(command.max()))
+
+
+def _setpoints(drive: bytes, told: Told, about: Mapping[str, Any]) -> Figures:
+    rows = list(csv.DictReader(io.StringIO(drive.decode("utf-8"))))
+    levels = [float(row["display_C"]) for row in rows]
+    return Figures(None, float(rows[-1]["time_s"]), min(levels), max(levels))
 
 
 def _pairs(drive: bytes, told: Told, about: Mapping[str, Any]) -> Figures:
@@ -167,6 +175,7 @@ def _of_codes(codes: Any, duration_s: float | None, told: Told) -> Figures:
 
 READERS: dict[str, Callable[[bytes, Told, Mapping[str, Any]], Figures | None]] = {
     "csv": _table,
+    "setpoint-csv": _setpoints,
     "spice-pwl": _pairs,
     "keysight-arb": _arb,
     "rigol-raf": _raf,

@@ -42,7 +42,7 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
 
     >>> from thermicon.icons import load_library
     >>> realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
-    Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.91 … 32.03 °C)
+    Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
     """
     if device.driven_by == "set-points":
         return realise_setpoints(icon, rig, device, tail_s, rate_Hz)

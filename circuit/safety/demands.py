@@ -66,25 +66,6 @@ class Demands:
             f"{cut.react_within_s:g} s, {len(self.faults)} single faults)"
         )
 
-    @property
-    def text(self) -> str:
-        """What the hardware must do, in one line."""
-        cut = self.cut_off_display_C
-        quick = f"within {cut.react_within_s:g} s" if cut.react_within_s >= 0.02 else "at once"
-        parts = [
-            f"watchdog {self.watchdog_s:g} s",
-            f"cut-off at {cut.low:g} and {cut.high:g} °C on the measured display {quick}",
-        ]
-        if self.polarity_check is not None and self.polarity_check.needed:
-            parts.append("polarity check before the first play")
-        if self.rest_before_first_play_s is None:
-            parts.append("no first play without warming up")
-        elif self.rest_before_first_play_s > 0:
-            parts.append(f"rest held for {self.rest_before_first_play_s:g} s before the first play")
-        if self.zero_current_at_most_s is not None:
-            parts.append(f"zero current in contact for {self.zero_current_at_most_s:g} s at most")
-        return ", ".join(parts)
-
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it under `hardware_must_prevent`."""
         return asdict(self)

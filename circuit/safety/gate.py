@@ -96,11 +96,6 @@ class Gate:
         return "\n".join(_lines(self))
 
     @property
-    def notes(self) -> tuple[str, ...]:
-        """What is to be known of repetition and of the hardware, a sentence each."""
-        return f"played again and again: {self.repeated.text}", f"the hardware must provide: {self.demands.text}"
-
-    @property
     def demanded(self) -> dict[str, object]:
         """What the hardware must prevent, as a sidecar and the players hold it."""
         return self.demands.to_dict()

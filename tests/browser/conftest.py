@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.browser.jupyter import Server, end_kernels, running
+from tests.browser.jupyter import Server, end_kernels, page_of, running
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
 WINDOW = {"width": 1280, "height": 800}
@@ -24,7 +24,6 @@ LAB = (
     "--ServerApp.port_retries=0",
     "--LabApp.expose_app_in_browser=True",
 )
-VOILA = ("--Voila.ip=127.0.0.1", "--ServerApp.allow_root=True", "--VoilaConfiguration.show_tracebacks=True")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -76,12 +75,11 @@ def lab(jupyterlab: Server) -> Iterator[Server]:
 
 @pytest.fixture
 def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[[Path], Server]]:
-    """``serve_page(path)`` serves a notebook with Voila, as ``thermicon lab --page`` does."""
+    """``serve_page(folder)`` serves the ``workbench.ipynb`` of a folder, as ``thermicon lab --page`` does."""
     with ExitStack() as stack:
 
-        def serve(notebook: Path) -> Server:
-            own = tmp_path_factory.mktemp("voila")
-            return stack.enter_context(running("voila", (notebook.name, *VOILA), notebook.parent, own))
+        def serve(folder: Path) -> Server:
+            return stack.enter_context(page_of(folder, tmp_path_factory.mktemp("page")))
 
         yield serve
 

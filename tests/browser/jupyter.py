@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -17,6 +18,9 @@ from pathlib import Path
 
 import nbformat
 from playwright.sync_api import Locator, Page
+
+from thermicon.notebooks.lab import command_of
+from thermicon.notebooks.startfolder import VARIABLE
 
 STARTS_WITHIN_S = 60.0
 RUNS_WITHIN_S = 90.0
@@ -42,15 +46,36 @@ def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Ite
     """``python -m MODULE OPTIONS`` in a folder, with settings and runtime files under ``own`` only, until the end."""
     own.mkdir(parents=True, exist_ok=True)
     port, log = free_port(), own / f"{module}.log"
+    command = [sys.executable, "-m", module, *options, "--no-browser", f"--port={port}"]
+    address = f"http://127.0.0.1:{port}"
+    with _started(command, folder, environment(own), log, f"{address}/api"):
+        yield Server(address, folder, log)
+
+
+@contextmanager
+def page_of(folder: Path, own: Path) -> Iterator[Server]:
+    """The page of a folder's workbench as ``thermicon lab --page`` serves it; its address has the token."""
+    own.mkdir(parents=True, exist_ok=True)
+    empty = own / "empty"
+    empty.mkdir()
+    port, log = free_port(), own / "page.log"
+    command = command_of(folder, page=True, no_browser=True, port=port)
+    places = {**environment(own), "PYTHONSAFEPATH": "1", VARIABLE: str(folder.resolve())}
+    with _started(command, empty, places, log, f"http://localhost:{port}"):
+        told = re.search(rf"http://localhost:{port}/\?token=\S+", log.read_text(encoding="utf-8"))
+        assert told is not None, log.read_text(encoding="utf-8")
+        yield Server(told[0], folder, log)
+
+
+@contextmanager
+def _started(command: Sequence[str], folder: Path, places: dict[str, str], log: Path, address: str) -> Iterator[None]:
     with log.open("wb") as said:
-        command = [sys.executable, "-m", module, *options, "--no-browser", f"--port={port}"]
         process = subprocess.Popen(
-            command, cwd=folder, env=environment(own), stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
+            command, cwd=folder, env=places, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
         )
         try:
-            address = f"http://127.0.0.1:{port}"
-            _wait_for(f"{address}/api" if module == "jupyterlab" else address, process, log)
-            yield Server(address, folder, log)
+            _wait_for(address, process, log)
+            yield
         finally:
             process.terminate()
             try:

@@ -60,8 +60,8 @@ def test_a_notebook_is_served_as_a_page(
     page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
 ) -> None:
     cue = "%%cue\nicon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }"
-    made = make_notebook(tmp_path / "page.ipynb", "%load_ext thermicon.notebooks", cue)
-    page.goto(serve_page(made).url)
+    made = make_notebook(tmp_path / "workbench.ipynb", "%load_ext thermicon.notebooks", cue)
+    page.goto(serve_page(made.parent).url)
     page.locator(".jp-OutputArea-output svg").first.wait_for()
     assert page.get_by_text("%%cue").count() == 0
     shot("page-of-a-cue")

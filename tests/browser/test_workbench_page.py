@@ -25,7 +25,7 @@ def test_the_page_designs_compares_and_exports(
     notebook = tmp_path / "workbench.ipynb"
     with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
         shutil.copy(shipped, notebook)
-    page.goto(serve_page(notebook).url)
+    page.goto(serve_page(tmp_path).url)
     wait_until_drawn(page)
     expect(root(page)).to_have_attribute("data-icon", "cooling-step")
     shot("page-design")

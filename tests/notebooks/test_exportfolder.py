@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from tests.notebooks.surerig import SURE
 from thermicon.notebooks import exportfolder, swapping
 from thermicon.notebooks.exportfolder import check_export_folder, publish
 from thermicon.notebooks.locking import lock
@@ -369,7 +370,7 @@ class TestTwoAtOnce:
     @posix
     def test_two_commands(self, tmp_path: Path) -> None:
         command = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "-o", "out"]
-        command += ["--icon", "warming-step"]
+        command += ["--icon", "warming-step", *SURE]
         runs = [
             subprocess.Popen([*command, "--to", name], cwd=tmp_path, stderr=subprocess.PIPE, text=True)
             for name in ("csv", "spice-pwl")

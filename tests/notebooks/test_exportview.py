@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Rig
+from tests.notebooks.surerig import sure_rig
 from thermicon.notebooks.designing import Designing
 from thermicon.notebooks.exporting import prepare_icons, write
 from thermicon.notebooks.exportview import ExportView
@@ -23,7 +23,7 @@ class Bench:
     """An export view that is shown."""
 
     def __init__(self, folder: Path, text: str = TWO) -> None:
-        self.design = Designing(text, Rig.load("thenar"))
+        self.design = Designing(text, sure_rig())
         self.view = ExportView(self.design, folder)
         self.design.on_change(self.view.renew)
         self.view.shown = True
@@ -128,6 +128,6 @@ def test_preparing_tells_how_far_it_is() -> None:
     from thermicon.icons import parse
 
     steps: list[tuple[int, int]] = []
-    made = prepare_icons(list(parse(TWO)), [], Rig.load("thenar"), step=lambda done, total: steps.append((done, total)))
+    made = prepare_icons(list(parse(TWO)), [], sure_rig(), step=lambda done, total: steps.append((done, total)))
     assert steps == [(1, 2), (2, 2)]
     assert [change.icon for change in made.felt] == ["dip", "glow"]

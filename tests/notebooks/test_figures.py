@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit import draw as circuit_draw
+from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure, sweepfigure
 from thermicon.notebooks.overview import COOL, WARM, single_map

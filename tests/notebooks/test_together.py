@@ -16,6 +16,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from tests.notebooks.surerig import SURE
 from thermicon.notebooks.outputs import OutputError, stopped_cleanly, write_together
 
 FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
@@ -98,7 +99,7 @@ def test_drafts_of_the_dead_are_swept_and_those_of_the_living_are_not(tmp_path: 
 @posix
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder where nobody may write")
 def test_a_folder_that_takes_no_files_is_one_clear_error(process: Callable[..., Any]) -> None:
-    said = process("export", "six-icons", "--icon", "double-dip", "--to", "csv", "-o", "/proc/self")
+    said = process("export", "six-icons", "--icon", "double-dip", "--to", "csv", "-o", "/proc/self", *SURE)
     assert said.exit_code == 1
     assert said.stderr.splitlines()[-1].startswith("cannot write ")
     assert "Traceback" not in said.stderr
@@ -116,7 +117,7 @@ def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path: Path) -> No
     assert names(tmp_path) == []
 
 
-EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "--to", "csv"]
+EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "--to", "csv", *SURE]
 
 # A real export that has done all its work but the writing: for every folder it is told, a child of it writes there
 # again and again, so that signals meet it while it writes.
@@ -138,7 +139,7 @@ def serve(files, folder, replace=False, how=""):
 import thermicon.notebooks.exporting as exporting
 exporting.publish = serve
 from thermicon.notebooks.cli import main
-sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", sys.argv[1]]
+sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", *sys.argv[1:]]
 main()
 """
 
@@ -159,7 +160,7 @@ def check_no_partial_file(folder: Path) -> int:
 def kill_many(folder: Path, times: int, number: int, seed: int) -> list[int]:
     """Send a signal to real exports at random moments of their writing; how many files were found after each."""
     chance, found = random.Random(seed), []
-    command = [sys.executable, "-c", SERVER, folder / "out"]
+    command = [sys.executable, "-c", SERVER, folder / "out", *SURE]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as run:

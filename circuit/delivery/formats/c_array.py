@@ -96,7 +96,7 @@ def period_ns(rate_Hz: float) -> int:
 
 
 def in_comment(text: str) -> str:
-    """Return a text that stands in a C comment and cannot end it, nor begin a line, an escape or a trigraph.
+    r"""Return a text that stands in a C comment and cannot end it, nor begin a line, an escape or a trigraph.
 
     >>> in_comment("d */ #error"), in_comment("a\\b??/c")
     ('d *_ #error', 'a_b__/c')

@@ -1,0 +1,149 @@
+"""Repetition and the hardware at an export: what ``--pause`` allows, what sidecars and players hold, what is said."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.notebooks.surerig import sure_rig
+from thermicon.circuit import Gate, Rig, pack
+from thermicon.icons import load_library, parse
+from thermicon.notebooks.exporting import Ready, prepare_icons
+from thermicon.notebooks.exporttables import delivered_html, gate_html
+from thermicon.notebooks.gatewords import gate_words
+
+Cli = Callable[..., Any]
+GLOW = """cue 1
+set s { site thenar; control display; baseline 32 °C }
+icon glow { warm by 7 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }
+icon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }
+"""
+
+
+@pytest.fixture(scope="module")
+def glow() -> Ready:
+    """Two icons for PsychoPy, played a minute apart on a rig that is known exactly."""
+    return prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form="psychopy", pause_s=60.0)
+
+
+def verdict(ready: Ready, place: int = 0) -> Gate:
+    found = ready.prepared[place].verdict
+    assert isinstance(found, Gate)
+    return found
+
+
+class TestCommand:
+    """The words and exit codes."""
+
+    def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(self, cli: Cli, tmp_path: Path) -> None:
+        (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
+        arguments = ("export", tmp_path / "glow.cue", "--icon", "glow", "--to", "csv", "-o", tmp_path / "out")
+        said = cli(*arguments, "--pause", "5", "--force")
+        assert said.exit_code == 3
+        (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]
+        assert line.startswith("refused: glow is NOT SAFE: skin surface reaches 4")
+        assert "played again and again with 5 s of pause" in line
+        told = re.search(r"the shortest safe pause is (\S+) s \(--pause (\S+)\)$", line)
+        assert told is not None
+        assert told[1] == told[2]
+        assert 5.0 < float(told[1]) < 60.0
+        assert "the hardware must provide" not in said.stderr
+        assert said.stderr.endswith("nothing was written\n")
+        assert not (tmp_path / "out").exists()
+        said = cli(*arguments, "--pause", told[1])
+        assert said.exit_code == 0, said.stderr
+        assert json.loads((tmp_path / "out" / "glow.json").read_text())["safety"]["repeated"]["pause_s"] == float(
+            told[1]
+        )
+
+    @pytest.mark.parametrize("pause", ["-1", "1e9", "nan", "inf"])
+    def test_a_pause_that_cannot_be_is_a_usage_error(self, cli: Cli, two: Path, tmp_path: Path, pause: str) -> None:
+        said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--pause", pause)
+        assert (said.exit_code, said.stdout) == (2, "")
+        assert "is not a time between plays of 0 to 600 s" in " ".join(said.stderr.split())
+        assert not (tmp_path / "out").exists()
+
+
+class TestFiles:
+    """What the gate says stands beside the drive and in what plays it."""
+
+    def test_the_sidecar_has_repetition_and_the_demands(self, glow: Ready) -> None:
+        gate = verdict(glow)
+        about = json.loads(pack(glow.prepared, glow.form)["glow.json"])
+        safety, demands = about["safety"], about["hardware_must_prevent"]
+        assert safety["repeated"]["pause_s"] == 60.0
+        assert safety["repeated"]["plays"] == gate.repeated.plays == 27  # (1800 + 60) / (8.68 + 60) s
+        assert safety["recovery_s"] == gate.repeated.recovery_s
+        assert 0.0 < safety["shortest_pause_s"] < 60.0
+        assert demands == json.loads(json.dumps(gate.demands.to_dict()))
+        assert 0.0 < demands["watchdog_s"] < 60.0
+        cut = demands["cut_off_display_C"]
+        assert cut["low"] < 32.0 < 39.0 < cut["high"] <= 45.0
+        assert cut["react_within_s"] > 0.0
+        assert {"needed", "test_current_A", "test_s", "display_change_at_least_K"} <= set(demands["polarity_check"])
+        assert demands["pause_at_least_s"] == safety["shortest_pause_s"]
+        assert [fault["prevented_by"] for fault in demands["faults"]].count("") == 0
+
+    def test_the_player_in_c_has_the_strictest_numbers_of_the_gate(self) -> None:
+        ready = prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form="c-array", pause_s=60.0)
+        player = pack(ready.prepared, ready.form)["thermicon_player.h"].decode()
+        demands = [verdict(ready, place).demands for place in (0, 1)]
+        numbers = {name: float(value) for name, value in re.findall(r"#define THERMICON_(\w+) \(?(-?[\d.]+)f", player)}
+        assert numbers["WATCHDOG_S"] == min(one.watchdog_s for one in demands) != 0.5
+        assert numbers["LOW_C"] == max(one.cut_off_display_C.low for one in demands) != 10.0
+        assert numbers["HIGH_C"] == min(one.cut_off_display_C.high for one in demands) != 43.0
+        assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands) != 0.1
+        assert numbers["REST_S"] == max(one.rest_before_first_play_s or 0.0 for one in demands) != 60.0
+        assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
+
+    def test_the_player_for_psychopy_has_them_too(self, glow: Ready) -> None:
+        player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
+        demands = [verdict(glow, place).demands for place in (0, 1)]
+        low, high = (
+            max(one.cut_off_display_C.low for one in demands),
+            min(one.cut_off_display_C.high for one in demands),
+        )
+        assert f"LOW_C, HIGH_C = {low}, {high}" in player
+        assert f"\nREST_S = {max(one.rest_before_first_play_s or 0.0 for one in demands)}" in player
+        assert f"\nPAUSE_S = {demands[0].pause_at_least_s}" in player
+
+
+class TestWords:
+    """What holds for a set is said once, and the strictest of what differs."""
+
+    def test_a_set_in_two_lines(self, glow: Ready) -> None:
+        (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
+        assert (again, hardware) == ("played again and again, in any order", "the hardware must provide")
+        assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
+        assert re.search(r"; back within 0.1 K of rest after \S+ s \(dip\) to \S+ s \(glow\)$", repeated)
+        strictest = min((verdict(glow, k).demands.watchdog_s, name) for k, name in enumerate(("glow", "dip")))
+        assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
+        assert "rest held for " in demanded
+
+    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: Ready) -> None:
+        gate = verdict(glow)
+        worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
+        ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
+        demanded = dict(gate_words(ready))["the hardware must provide"]
+        assert demanded.startswith("a current that cannot hang (glow), for which no watchdog is quick enough, cut-off")
+        assert "warming up before the first play (glow)" in demanded
+        assert "zero current in contact for 120 s at most" in demanded
+
+    def test_the_page_has_short_scenarios_with_the_full_ones_to_point_at(self) -> None:
+        ready = prepare_icons([load_library("six-icons")["cooling-step"]], [], Rig.load("thenar"))
+        shown = gate_html(ready.prepared[0])
+        cells = re.findall(r'<td title="([^"]*)">([^<]*)</td>', shown)
+        assert len(cells) == len(verdict(ready).checks)
+        assert any("contact −30 %" in full for full, _ in cells)
+        assert all("%" not in short and len(short) <= 140 for _, short in cells)
+        source = verdict(ready).checks[0].source
+        assert shown.count(f"1 {source}") == 1
+        delivered = delivered_html(ready)
+        assert "<th>played again and again</th><td>green, 12 plays" in delivered
+        assert delivered.count("the hardware must provide") == 1
