@@ -22,7 +22,7 @@ from tests.circuit.replay import Held, Player, Skin, Worst, in_any_order, judged
 from thermicon.circuit.delivery.export import Gate, pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 
-PER_PART = 250
+PER_PART = 100
 LOOKED_AT = 6
 """One in so many refused drives is replayed as well, to see how many were refused though they are safe."""
 LAGS_S = (0.12, 0.21, 0.32)
@@ -111,7 +111,7 @@ def _follow(case: Case, form, found: Told, rng: np.random.Generator, part: int, 
                 found.counts["refused for repetition"] += 1
     try:
         if not safe:
-            if case.number % look == 0:
+            if rng.random() < 1 / look:
                 ready = [replace(one, refusals=()) for one in case.ready]
                 found.refused_margins.append(_replay(ready, form, rng, found, counted=False).margin)
             return

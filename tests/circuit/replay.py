@@ -24,6 +24,10 @@ PLAYS = (2, 5, 30)
 AFTER = ((0.01, 100), (0.1, 90), (1.0, 50))
 """Rows of the minute after a drive: step in s and how many."""
 
+RETURN = "rate of return"
+"""The rate of skin where a display that ends away from its baseline is played again."""
+SHARES = ("rate", RETURN, "dose", "burn", "time above 43")
+
 Beyond = dict[str, float]
 
 
@@ -71,11 +75,11 @@ class Worst:
             self.note(f"{name} low", low - rows[:, :, k].min(axis=0))
             self.note(f"{name} high", rows[:, :, k].max(axis=0) - high)
 
-    def rates(self, rows: Array, steps_s: Array) -> None:
+    def rates(self, rows: Array, steps_s: Array, rule: str = "rate") -> None:
         """Rates of skin over rows, steps in s between them."""
         shape = (-1,) + (1,) * (rows.ndim - 2)
         rate = np.abs(np.diff(rows[:, :, 0], axis=0) / steps_s.reshape(shape)).max(axis=0)
-        self.note("rate", rate / RATE_K_PER_S - 1.0)
+        self.note(rule, rate / RATE_K_PER_S - 1.0)
 
     def doses(self, minutes: Array, burn: Array, warm_s: Array) -> None:
         """What has added up over a session, (W, …)."""
@@ -86,14 +90,12 @@ class Worst:
     @property
     def unsafe(self) -> Beyond:
         """Rules passed by more than rounding."""
-        shares = ("rate", "dose", "burn", "time above 43")
-        return {k: v for k, v in self.beyond.items() if v > (CLOSE_SHARE if k in shares else CLOSE_K)}
+        return {k: v for k, v in self.beyond.items() if v > (CLOSE_SHARE if k in SHARES else CLOSE_K)}
 
     @property
     def margin(self) -> float:
         """How far the nearest limit is, in K or in tenths of a rate or dose; negative where one is passed."""
-        shares = ("rate", "dose", "burn", "time above 43")
-        return -max(10 * v if k in shares else v for k, v in self.beyond.items())
+        return -max(10 * v if k in SHARES else v for k, v in self.beyond.items())
 
 
 def exposure(rows: Array, steps_s: Array) -> tuple[Array, Array, Array]:
@@ -298,10 +300,6 @@ class Skin:
         values = self.circuit.watch @ lumps + self.circuit.offset[:, :, None]
         return np.asarray((values + self.circuit.direct[:, :, None] * display_C).transpose(2, 0, 1))
 
-    def after_jump(self, modes: Array, display_C: float) -> Array:
-        """One row for modes under another display."""
-        return self._rows(self.modes.into @ modes[:, :, None], np.array([display_C]))
-
     def let_go(self, modes: Array) -> Array:
         """Rows of 10 min without any heat through the display."""
         free, state, rows = self.circuit.insulated(), self.modes.into @ modes[:, :, None], []
@@ -320,27 +318,25 @@ def shown(skin: Skin, ticks: Array, step_s: float, pauses: list[float], lags: tu
           rates: bool = True, held: bool = False) -> Worst:  # fmt: skip
     """Play a display (rows,) in °C, once and again and again; at once, and behind each lag (first order)."""
     for pause in pauses:
-        for lag in (0.0, *lags):
+        for lag in (0.0, *(lags if pause == pauses[0] else ())):
             fine = 5 if lag else 1
             step = step_s / fine
             one = np.interp(np.arange((len(ticks) - 1) * fine + 1) / fine, np.arange(len(ticks)), ticks)
-            waiting = np.full(max(0, round(pause / step)), one[-1])
+            waiting = np.full(max(0, round((min(pause, 20.0) if lag else pause) / step)), one[-1])
             period = np.append(one[:-1], waiting) if len(waiting) else one[:-1]
-            many = np.concatenate([np.tile(period, 6), one])
-            course = _lagged(many, step, lag)
-            state = skin.steady(float(one[0]))
-            again = course[-len(one) - len(period) :][: len(period) + 1]
-            _, moved = skin.run(again, step, state, held)
+            many = _lagged(np.concatenate([np.tile(period, 3), one]), step, lag)
+            rest = skin.steady(float(one[0]))
+            again = many[-len(one) - len(period) :][: len(period) + 1]
+            _, moved = skin.run(again, step, rest, held)
             decay = np.exp(skin.modes.rates * step * (len(again) - 1))
-            steady = (moved - decay * state) / (1 - decay)
-            last = course[-len(one) :]
-            for display, start, plays in ((course, state, 1), (last, steady, 0), (again, steady, -1)):
+            steady = (moved - decay * rest) / (1 - decay)
+            for display, start, several in ((many, rest, True), (many[-len(one) :], steady, False), (again, steady, True)):
                 rows, ended = skin.run(display, step, start, held)
                 worst.levels(rows)
                 if rates:
-                    coarse = rows[::fine]
-                    worst.rates(coarse, np.full(len(coarse) - 1, step * fine))
-                if plays == -1:
+                    coarse, away = rows[::fine], several and abs(one[0] - one[-1]) > 1e-9
+                    worst.rates(coarse, np.full(len(coarse) - 1, step * fine), RETURN if away else "rate")
+                if display is again:
                     count = max(1, int((SESSION_S + pause) / ((len(one) - 1) * step + pause) + 1e-9))
                     worst.doses(*(count * each for each in exposure(rows, np.full(len(rows) - 1, step))))
                     continue
