@@ -12,7 +12,7 @@ import numpy as np
 from thermicon.circuit.delivery.device import Device
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.setpoints import Setpoints, setpoints_of
+from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
 from thermicon.circuit.delivery.thermode import display_of
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.skin import Array
@@ -36,7 +36,7 @@ def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
         )
     base = baseline_C(icon, rig)
     end = float(icon.lower(base).duration_s) + tail_s
-    setpoints = _setpoints(icon, rig, device, base, end)
+    setpoints = closed(device, _setpoints(icon, rig, device, base, end))
     end = max(end, float(setpoints.time_s[-1]))
     step, prompt = display_of(setpoints, device, lagged=False, end_s=end)
     outcome = judge_display(
@@ -59,8 +59,10 @@ def traces_of_setpoints(
     times: Array = np.arange(len(display), dtype=np.float64) * step
     ideal = target_at(icon, base, times)
     if icon.frame.control == "skin":
-        _, ideal = display_for(icon, rig, device, base, end_s)
-        ideal = np.interp(times, np.arange(len(ideal)) * step, ideal)
+        course_s, course_C = display_for(icon, rig, device, base, min(end_s, setpoints.cue_s))
+        ideal = np.interp(times, course_s, course_C)
+    if setpoints.closing:
+        ideal = np.where(times > setpoints.cue_s, setpoints.at(times), ideal)
     target = target_at(icon, base, rows)
 
     def traced(display_C: Array) -> Trace:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -16,23 +16,34 @@ from thermicon.circuit.rig.skin import Array
 MOST_SEGMENTS = 1_000_000
 """Segments that are made before they are counted against the device's own limit."""
 
+CLOSING_K_PER_S = 1.0
+"""How fast a display goes back to its baseline behind a cue: a tenth of the limit on the rate of skin, so that it is
+never what a cue is refused for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Setpoints:
     """Segments after a baseline: how long each lasts in ticks, and the level at its end in steps of temperature.
 
-    One meaning of time: a segment ends when its ticks are over, warming or cooling alike.
+    One meaning of time: a segment ends when its ticks are over, warming or cooling alike. The last `closing` segments
+    are no part of the cue: they lead back to the baseline.
     """
 
     tick_s: float
     step_K: float
     baseline: int
     segments: tuple[tuple[int, int], ...]
+    closing: int = 0
 
     @property
     def time_s(self) -> Array:
         """Corners' times in s, from 0."""
         return np.concatenate([[0], np.cumsum([ticks for ticks, _ in self.segments])]) * self.tick_s
+
+    @property
+    def cue_s(self) -> float:
+        """Time in s at which the cue ends and the way back to the baseline begins."""
+        return float(self.time_s[len(self.segments) - self.closing])
 
     @property
     def level_C(self) -> Array:
@@ -47,6 +58,30 @@ class Setpoints:
     def at(self, time_s: Array) -> Array:
         """Set-point in °C at times in s; before and after, the ends."""
         return np.asarray(np.interp(time_s, self.time_s, self.level_C), dtype=np.float64)
+
+
+def closed(device: Device, setpoints: Setpoints) -> Setpoints:
+    """Return set-points that end at their baseline: a ramp back where they end away from it, itself where not.
+
+    The next play begins at the baseline, to which the device would jump. Raises DeviceError where segments are lacking.
+
+    >>> closed(Device.load("qst-tcs2"), Setpoints(0.01, 0.1, 320, ((200, 300),))).segments
+    ((200, 300), (200, 320))
+    """
+    last = setpoints.segments[-1][1]
+    away_K = abs(last - setpoints.baseline) * setpoints.step_K
+    ticks = math.ceil(away_K / min(CLOSING_K_PER_S, device.most("ramp rate")) / setpoints.tick_s - 1e-9)
+    count = -(-ticks // int(device.most("segment length")))
+    ends = [ticks * (k + 1) // count for k in range(count)]
+    levels = [round(last + (setpoints.baseline - last) * end / ticks) for end in ends]
+    added = tuple((end - begin, level) for (begin, end), level in zip(pairwise([0, *ends]), levels, strict=True))
+    most = int(device.most("segments"))
+    if added and len(setpoints.segments) + count > most:
+        raise DeviceError(
+            f"{device.name}: {len(setpoints.segments) + count} segments are needed with the way back to the baseline, "
+            f"it takes {most}; shorten the icon, or let it return by itself"
+        )
+    return replace(setpoints, segments=(*setpoints.segments, *added), closing=len(added))
 
 
 def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> Setpoints:

@@ -22,6 +22,8 @@ from thermicon.circuit.solver.drive import Drive
 
 HANG_S, INSTANTS = 60.0, 16
 """How long a current that hangs is followed, and at how many instants of a drive it may hang."""
+SAME_S = 1e-9
+"""Instants closer than this differ by rounding only."""
 HANG_ROWS_S = np.concatenate([np.arange(500) * 0.01, 5.0 + np.arange(551) * 0.1])
 AFTER_ROWS_S = np.concatenate([np.arange(100) * 0.01, 1.0 + np.arange(291) * 0.1])
 """A watchdog may act this share of the time early in which a limit would be passed."""
@@ -64,7 +66,12 @@ class Faulty:
         """States, currents with their gain, and corners, each (lanes,), at instants at which the current may hang."""
         end, corners = float(self.drive.time_s[-1]), len(self.ensemble.corners)
         extremes = [float(self.drive.time_s[k]) for k in (self.drive.current_A.argmin(), self.drive.current_A.argmax())]
-        instants = sorted({*np.linspace(0.0, end, INSTANTS)[1:-1].tolist(), *extremes} - {0.0, end})
+        even = [
+            instant
+            for instant in np.linspace(0.0, end, INSTANTS)[1:-1].tolist()
+            if all(abs(instant - extreme) > SAME_S for extreme in extremes)
+        ]
+        instants = sorted({*even, *extremes} - {0.0, end})
         state, before, nodes, sinks, amps = self.start, 0.0, [], [], []
         for instant in instants:
             state = self.ensemble.end_of(between(self.drive, before, instant), state)
