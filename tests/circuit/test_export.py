@@ -6,11 +6,13 @@ import hashlib
 import json
 import re
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
 import pytest
 
+from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import (
     Device,
     Drive,
@@ -42,6 +44,7 @@ COLD = parse(
 )
 
 
+@cache
 def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
     return prepare(SIX[name], rig, Device.load(device), load_format(form))
 
@@ -72,7 +75,7 @@ def test_what_is_unsafe_is_refused_and_cannot_be_packed() -> None:
     one = prepare(COLD["frost"], rig, Device.load("dac-16"), CSV)
     refusal = one.refusals[0]
     assert (refusal.kind, refusal.forcible) == ("unsafe", False)
-    assert str(refusal).startswith("NOT SAFE: skin surface reaches 1")
+    assert str(refusal).startswith("NOT SAFE: skin surface reaches 4.358 °C at 10.26 s, with contact −30 %")
     with pytest.raises(FormatError, match=r"frost: NOT SAFE: skin surface reaches .* below the hard limit of 15 °C"):
         pack([one], CSV)
 
@@ -251,7 +254,7 @@ class TestWorstCase:
 def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], words: str) -> None:
     text = "cue 1\n" + "".join(f"icon {name} {{ hold for 1 s }}\n" for name in names)
     form = load_format(form_name)
-    made = [prepare(icon, RIG, Device.load("dac-16"), form) for icon in parse(text)]
+    made = [prepare(icon, RIG, Device.load("dac-16"), form, gate=GreenVerdict) for icon in parse(text)]
     with pytest.raises(FormatError, match=re.escape(words)):
         pack(made, form)
 
