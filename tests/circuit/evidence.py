@@ -27,6 +27,8 @@ from thermicon.circuit.delivery.formats import Format, FormatError, load_format
 PER_PART = 100
 LOOKED_AT = 6
 """One in so many refused drives is replayed as well, to see how many were refused though they are safe."""
+FAR = 0.1
+"""A refused drive is safe by far when it keeps this from every limit: K, or a hundredth of a rate or dose."""
 LAGS_S = (0.12, 0.21, 0.32)
 
 
@@ -37,6 +39,7 @@ class Told:
     counts: Counter[str] = field(default_factory=Counter)
     unsafe: list[str] = field(default_factory=list)
     refused_margins: list[float] = field(default_factory=list)
+    refused_though_safe: list[str] = field(default_factory=list)
     seconds: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: Told) -> None:
@@ -45,6 +48,7 @@ class Told:
         self.seconds += other.seconds
         self.unsafe += other.unsafe
         self.refused_margins += other.refused_margins
+        self.refused_though_safe += other.refused_though_safe
 
 
 def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Generator) -> Worst:
@@ -118,7 +122,10 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
         if not safe:
             if rng.random() < 1 / look:
                 ready = [replace(one, refusals=()) for one in case.ready]
-                found.refused_margins.append(_replay(ready, form, rng).margin)
+                margin = _replay(ready, form, rng).margin
+                found.refused_margins.append(margin)
+                if margin > FAR:
+                    found.refused_though_safe.append(f"{margin:.2f}: {case!r}: {case.ready[0].verdict.reason}")
             return
         worst = _replay(safe, form, rng)
     except FormatError:
@@ -145,6 +152,7 @@ def main(parts: list[int], count: int) -> None:
         found = run_part(part, count)
         print(json.dumps({
             "part": part, "seconds": round(time.perf_counter() - begun), "counts": found.counts, "unsafe": found.unsafe,
+            "refused_though_safe": found.refused_though_safe,
             "refused_margins": [round(one, 3) for one in found.refused_margins], "cpu_s": found.seconds,
         }), flush=True)  # fmt: skip
 

@@ -21,6 +21,8 @@ def lines_of(circuit: Circuit, world: int, held: Held) -> Iterator[str]:
     yield "independent circuit"
     corners, time, before = [], 0.0, float(held.mean_A[0])
     for length, ampere in zip([*held.length_s, AFTER_S], [*held.mean_A, 0.0], strict=True):
+        if length < 4 * FLANK_S:  # the end of a source in SPICE's own format, 1 µs behind the last row
+            continue
         corners += [(max(0.0, time - FLANK_S / 2), before), (time + FLANK_S / 2, float(ampere))]
         time, before = time + float(length), float(ampere)
     yield "Vampere ampere 0 PWL("

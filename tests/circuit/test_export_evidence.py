@@ -52,8 +52,8 @@ def test_a_dozen_drives_are_safe_as_written() -> None:
 
 @pytest.mark.slow
 def test_what_a_weakened_gate_writes_is_found_unsafe() -> None:
-    told = run_part(1001, 100, gate=too_kind)
-    assert len(told.unsafe) >= 5, told.counts
+    told = run_part(1001, 60, gate=too_kind)
+    assert len(told.unsafe) >= 3, told.counts
 
 
 @pytest.mark.slow
