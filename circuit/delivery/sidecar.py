@@ -127,6 +127,7 @@ def _played(realised: Realised) -> dict[str, object]:
             "greatest_level_C": float(played.level_C.max()),
             "icon_begins_at_s": 0.0,
             "duration_s": realised.file_s,
+            "cue_ends_at_s": played.cue_s,
             "lag_s": lag_of(realised.device),
             "clock": (
                 "times count from the start command; the display follows with the lag, which is a delay and not "

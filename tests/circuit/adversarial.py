@@ -16,7 +16,8 @@ from thermicon.icons import Icon, parse
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
 WAYS = (
-    ("dac-12", "csv"), ("dac-14", "csv"), ("dac-16", "csv"), ("coarse", "csv"), ("coarse", "csv"), ("coarse", "c-array"),
+    ("dac-12", "csv"), ("dac-14", "csv"), ("dac-16", "csv"), ("coarse", "csv"), ("coarse", "csv"),
+    ("coarse", "c-array"),
     ("ni-analogue-output", "tdms"), ("ni-analogue-output", "psychopy"), ("dac-16", "spice-pwl"), ("dac-12", "c-array"),
     ("keysight-33500b", "keysight-arb"), ("rigol-dg1000z", "rigol-raf"),
     ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "tcs2-serial"),
@@ -43,7 +44,8 @@ class Case:
         one = self.ready[0].realised
         cues = " ".join(" ".join(str(each.realised.icon).split()) for each in self.ready)
         changes = ", ".join(one.rig.changes)
-        return f"#{self.number} {cues} | {one.rig.name} with {changes} | {one.device.name} as {self.form} | {self.pause_s}"
+        where = f"{one.rig.name} with {changes} | {one.device.name} as {self.form}"
+        return f"#{self.number} {cues} | {where} | pause {self.pause_s}"
 
 
 def between(rng: np.random.Generator, low: float, high: float) -> float:
@@ -65,7 +67,7 @@ def some_rig(rng: np.random.Generator, device: str) -> Rig:
         "contact.area_cm2": between(rng, 2, 20),
         "contact.resistance_m2K_per_W": between(rng, 1e-4, 3e-3),
         "driver.current_limit_A": between(rng, 0.5, 2),
-        "driver.update_Hz": float(rng.choice([10, 20, 25, 50, 100] if device != "closed-loop-controller" else [10, 20])),
+        "driver.update_Hz": float(rng.choice([10, 20] if device in LOOPS else [10, 20, 25, 50, 100])),
     }
     if rng.random() < 0.3:
         del changes["heat_sink.temperature_C"], changes["module.seebeck_V_per_K"]
@@ -95,8 +97,8 @@ def some_device(rng: np.random.Generator, name: str, folder: Path) -> Device:
     bits, rate = int(rng.integers(5, 10)), int(rng.choice([7, 10, 15, 40]))
     path = folder / f"coarse-{bits}-{rate}.toml"
     path.write_text(
-        f'format = 1\nname = "{path.stem}"\ntitle = "coarse and slow"\ndriven_by = "volts"\ncodes = "two\'s complement"\n'
-        f'streams = true\nplayed = false\nnote = "made up"\n'
+        f'format = 1\nname = "{path.stem}"\ntitle = "coarse and slow"\ndriven_by = "volts"\n'
+        f'codes = "two\'s complement"\nstreams = true\nplayed = false\nnote = "made up"\n'
         + "".join(
             f'[[record]]\nquantity = "{what}"\nunit = "{unit}"\n{value}\nsource = "made up for a test"\n'
             f'confidence = "low"\n'
@@ -120,7 +122,7 @@ def some_cue(rng: np.random.Generator, device: str, name: str = "a") -> Icon:
     if current:
         return parse(f"cue 1\nset s {{ control current }}\nicon {name} {{ {currents(rng)} }}")[name]
     control = "display" if rng.random() < 0.6 else "skin"
-    base, unit = f"{rng.uniform(29, 35):.1f} °C", "°C"
+    base = f"{rng.uniform(29, 35):.1f} °C"
     way = "cool" if rng.random() < 0.5 else "warm"
     size = rng.uniform(0.5, 12) if way == "cool" else rng.uniform(0.3, 8)
     rate = float(np.exp(rng.uniform(np.log(0.5), np.log(30))))
@@ -134,12 +136,12 @@ def some_cue(rng: np.random.Generator, device: str, name: str = "a") -> Icon:
         shape = f"{wave} by {size / 4:.2f} °C every {period:g} s for {period * rng.integers(2, 12):.4g} s"
     elif kind < 0.9:
         gap = hold_s(rng) / 3
-        shape = f"repeat {rng.integers(2, 5)} {{ pulse {way} by {size / 2:.2f} °C for {rng.uniform(0.03, 1.5):.3f} s; "
-        shape += f"hold for {max(0.05, gap):.3g} s }}"
+        shape = f"repeat {rng.integers(2, 5)} {{ pulse {way} by {size / 2:.2f} °C "
+        shape += f"for {rng.uniform(0.03, 1.5):.3f} s; hold for {max(0.05, gap):.3g} s }}"
     else:
         other = "warm" if way == "cool" else "cool"
-        shape = f"step {way} by {size / 2:.2f} {unit}; hold for {hold_s(rng):.3g} s; {other} by {size / 3:.2f} °C at 2 °C/s; "
-        shape += f"hold for {rng.uniform(0.1, 2):.2f} s"
+        shape = f"step {way} by {size / 2:.2f} °C; hold for {hold_s(rng):.3g} s; "
+        shape += f"{other} by {size / 3:.2f} °C at 2 °C/s; hold for {rng.uniform(0.1, 2):.2f} s"
     return parse(f"cue 1\nset s {{ control {control}\n baseline {base} }}\nicon {name} {{ {shape} }}")[name]
 
 
@@ -151,7 +153,8 @@ def currents(rng: np.random.Generator) -> str:
         period = float(rng.choice([0.013, 0.04, 0.07, 0.11, 0.3]))
         wave = str(rng.choice(["square", "triangle", "sine", "sawtooth"]))
         way = str(rng.choice(["up", "down"]))
-        return f"step to {bias:.3f} A; {wave} by {wide:.3f} A every {period:g} s for {period * 10:.3g} s starting {way}; step to 0.05 A"
+        course = f"{wave} by {wide:.3f} A every {period:g} s for {period * 10:.3g} s starting {way}"
+        return f"step to {bias:.3f} A; {course}; step to 0.05 A"
     parts = [f"step to {bias + rng.uniform(-wide, wide):.3f} A; hold for {hold_s(rng):.3g} s"]
     for _ in range(int(rng.integers(0, 4))):
         goal = bias + rng.uniform(-wide, wide)

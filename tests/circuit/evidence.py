@@ -18,13 +18,17 @@ import numpy as np
 
 from tests.circuit.adversarial import Case, some_case
 from tests.circuit.exported_files import Course, read_file, sidecar_in
+from tests.circuit.independent import Json
 from tests.circuit.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
+from thermicon.circuit import Prepared
 from thermicon.circuit.delivery.export import Gate, pack
-from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.formats import Format, FormatError, load_format
 
 PER_PART = 100
 LOOKED_AT = 6
 """One in so many refused drives is replayed as well, to see how many were refused though they are safe."""
+FAR = 0.1
+"""A refused drive is safe by far when it keeps this from every limit: K, or a hundredth of a rate or dose."""
 LAGS_S = (0.12, 0.21, 0.32)
 
 
@@ -35,6 +39,7 @@ class Told:
     counts: Counter[str] = field(default_factory=Counter)
     unsafe: list[str] = field(default_factory=list)
     refused_margins: list[float] = field(default_factory=list)
+    refused_though_safe: list[str] = field(default_factory=list)
     seconds: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: Told) -> None:
@@ -43,6 +48,7 @@ class Told:
         self.seconds += other.seconds
         self.unsafe += other.unsafe
         self.refused_margins += other.refused_margins
+        self.refused_though_safe += other.refused_though_safe
 
 
 def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Generator) -> Worst:
@@ -56,19 +62,22 @@ def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Genera
     other = float(np.exp(rng.uniform(np.log(max(least, 0.5)), np.log(600))))
     pauses = sorted({least, judged_s, round(other, 2)})
     chain = [float(rng.choice([least, other, rng.uniform(least, least + 20)])) for _ in range(6)]
-    for one in played:
-        if isinstance(one, Held):
-            player = Player(rig, rng) if one is played[0] else player
-            judged(player, one, pauses, chain, worst)
-        else:
-            as_shown(rig, one, pauses, rng, worst)
-    if len(played) > 1 and all(isinstance(one, Held) for one in played):
-        order = [(int(rng.integers(len(played))), float(rng.choice([judged_s, other]))) for _ in range(12)]
-        in_any_order(player, [one for one in played if isinstance(one, Held)], [(k, max(p, least)) for k, p in order], worst)
+    for course in played:
+        if isinstance(course, Course):
+            as_shown(rig, course, pauses, rng, worst)
+    currents = [one for one in played if isinstance(one, Held)]
+    player = Player(rig, rng) if currents else None
+    for held in currents:
+        assert player is not None
+        judged(player, held, pauses, chain, worst)
+    if len(currents) > 1:
+        assert player is not None
+        order = [(int(rng.integers(len(currents))), float(rng.choice([judged_s, other]))) for _ in range(12)]
+        in_any_order(player, currents, [(which, max(pause, least)) for which, pause in order], worst)
     return worst
 
 
-def as_shown(rig: dict[str, object], course: Course, pauses: list[float], rng: np.random.Generator, worst: Worst) -> None:
+def as_shown(rig: Json, course: Course, pauses: list[float], rng: np.random.Generator, worst: Worst) -> None:
     """A display that is prescribed: a thermode's, or the set-points of a controller, exactly reached."""
     skin = Skin(rig, rng)
     if not course.held:
@@ -100,7 +109,7 @@ def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: i
     return found
 
 
-def _follow(case: Case, form, found: Told, rng: np.random.Generator, part: int, look: int, kind: str) -> None:  # type: ignore[no-untyped-def]
+def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, part: int, look: int, kind: str) -> None:
     safe = [one for one in case.ready if all(each.forcible for each in one.refusals)]
     begun = time.process_time()
     for one in case.ready:
@@ -113,9 +122,12 @@ def _follow(case: Case, form, found: Told, rng: np.random.Generator, part: int, 
         if not safe:
             if rng.random() < 1 / look:
                 ready = [replace(one, refusals=()) for one in case.ready]
-                found.refused_margins.append(_replay(ready, form, rng, found, counted=False).margin)
+                margin = _replay(ready, form, rng).margin
+                found.refused_margins.append(margin)
+                if margin > FAR:
+                    found.refused_though_safe.append(f"{margin:.2f}: {case!r}: {case.ready[0].verdict.reason}")
             return
-        worst = _replay(safe, form, rng, found, counted=True)
+        worst = _replay(safe, form, rng)
     except FormatError:
         found.counts["format cannot hold it"] += len(safe)
         return
@@ -123,10 +135,11 @@ def _follow(case: Case, form, found: Told, rng: np.random.Generator, part: int, 
     found.counts["written " + kind] += len(safe)
     found.seconds["replay " + kind] += round(time.process_time() - begun, 3)
     if worst.unsafe:
-        found.unsafe.append(f"part {part}: {worst.unsafe} in world {worst.world}: {case!r}, pause {case.ready[0].verdict.notes}")
+        where = {rule: worst.world[rule] for rule in worst.unsafe}
+        found.unsafe.append(f"part {part}: {worst.unsafe} in {where}: {case!r}; {case.ready[0].verdict.notes[0]}")
 
 
-def _replay(ready, form, rng: np.random.Generator, found: Told, counted: bool) -> Worst:  # type: ignore[no-untyped-def]
+def _replay(ready: list[Prepared], form: Format, rng: np.random.Generator) -> Worst:
     files = pack(ready, form)
     stems = [form.stem(one.realised.icon.name) for one in ready]
     return replayed(files, stems, rng)
@@ -139,6 +152,7 @@ def main(parts: list[int], count: int) -> None:
         found = run_part(part, count)
         print(json.dumps({
             "part": part, "seconds": round(time.perf_counter() - begun), "counts": found.counts, "unsafe": found.unsafe,
+            "refused_though_safe": found.refused_though_safe,
             "refused_margins": [round(one, 3) for one in found.refused_margins], "cpu_s": found.seconds,
         }), flush=True)  # fmt: skip
 

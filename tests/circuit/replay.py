@@ -6,6 +6,7 @@ for rates and doses; negative where all stays inside.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -173,7 +174,8 @@ class Player:
     def cycle(self, held: Held, pause_s: float) -> tuple[Array, Array]:
         """A play with its pause as x → Φ·x + γ."""
         worlds, nodes = self.circuit.capacity.shape
-        probes = np.concatenate([np.zeros((worlds, nodes, 1)), np.broadcast_to(np.eye(nodes), (worlds, nodes, nodes))], 2)
+        probes = np.zeros((worlds, nodes, nodes + 1))
+        probes[:, :, 1:] = np.eye(nodes)
         after = self.through(held, probes, pause_s)
         return after[:, :, 1:] - after[:, :, :1], after[:, :, :1]
 
@@ -244,7 +246,7 @@ def judged(player: Player, held: Held, pauses: list[float], chain: list[float], 
 def _session(per_play: Array, plays: int) -> Array:
     """What a session adds up to at least, from the 1st, 2nd, 5th, 30th and a late play (W, 5)."""
     edges, total = [1, *PLAYS, 10**9], per_play[:, 0].copy()
-    for k, (begin, end) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+    for k, (begin, end) in enumerate(itertools.pairwise(edges)):
         count = min(max(plays - begin, 0), end - begin)
         total += count * np.minimum(per_play[:, k], per_play[:, k + 1])
     return total
@@ -330,7 +332,8 @@ def shown(skin: Skin, ticks: Array, step_s: float, pauses: list[float], lags: tu
             _, moved = skin.run(again, step, rest, held)
             decay = np.exp(skin.modes.rates * step * (len(again) - 1))
             steady = (moved - decay * rest) / (1 - decay)
-            for display, start, several in ((many, rest, True), (many[-len(one) :], steady, False), (again, steady, True)):
+            late = many[-len(one) :]
+            for display, start, several in ((many, rest, True), (late, steady, False), (again, steady, True)):
                 rows, ended = skin.run(display, step, start, held)
                 worst.levels(rows)
                 if rates:
@@ -353,4 +356,3 @@ def _lagged(display_C: Array, step_s: float, lag_s: float) -> Array:
     late = 1 - (1 - keep) * lag_s / step_s
     force = (1 - keep) * display_C[:-1] + late * np.diff(display_C)
     return np.append(display_C[0], lfilter([1.0], [1.0, -keep], force, zi=[keep * display_C[0]])[0])
-
