@@ -39,8 +39,9 @@ def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
     setpoints = closed(device, _setpoints(icon, rig, device, base, end))
     end = max(end, float(setpoints.time_s[-1]))
     step, prompt = display_of(setpoints, device, lagged=False, end_s=end)
+    asked = prompt[: round(setpoints.cue_s / step) + 1]  # the way back behind the cue is not prescribed
     outcome = judge_display(
-        icon, modes_of(rig), base, step, prompt, device.interval("set-point range"), device.most("ramp rate")
+        icon, modes_of(rig), base, step, asked, device.interval("set-point range"), device.most("ramp rate")
     )
     designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end, rate_Hz)
     rate = 1.0 / setpoints.tick_s

@@ -164,7 +164,10 @@ def test_the_page_says_what_becomes_of_everyday_steps(rig: str, device: str) -> 
 
 @pytest.mark.parametrize(("rig", "device"), ORDINARY[:3])
 def test_every_everyday_step_is_exported_on_the_default_rig(rig: str, device: str) -> None:
-    assert {case.mark for case in steps_on(rig, device)} == {"yes"}
+    marks = {case.column: case.mark for case in steps_on(rig, device)}
+    if device.startswith("pwm"):  # heats with its peak: 42.02 °C in the worst of 65 corners, the limit is 42
+        assert marks.pop("skin +6 K") == "not safe"
+    assert set(marks.values()) == {"yes"}
 
 
 def test_a_device_that_cannot_play_is_a_cause_like_any_other() -> None:

@@ -15,16 +15,11 @@ import pytest
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import (
     Device,
-    Drive,
     Prepared,
     Realised,
     Rig,
     Verdict,
-    gate,
-    judge_safety,
     prepare,
-    realise,
-    worst_case,
 )
 from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
@@ -32,7 +27,6 @@ from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest
 from thermicon.circuit.records import Record
-from thermicon.circuit.safety.gate import gate_set
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -165,73 +159,6 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
     one = prepare(SIX["double-dip"], RIG, Device.load("dac-16"), CSV, gate=stern)
     assert seen == ["double-dip"]
     assert one.refusals == (Refusal("unsafe", "the gate says red"),)
-
-
-class TestWorstCase:
-    """What every kind of device meets."""
-
-    def test_it_is_the_default_and_in_it_more_is_red_than_on_the_rig_as_given(self) -> None:
-        icon = parse(
-            "cue 1\nset s { control skin\n baseline 32 °C }\n"
-            "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
-        )
-        one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
-        assert judge_safety(one.realised.trace).colour == "amber"
-        assert one.verdict == worst_case(one.realised)
-        assert one.verdict.colour == "red"
-        (refusal,) = (refusal for refusal in one.refusals if refusal.kind == "unsafe")
-        assert "with contact −30 %, ambient −3 K, gain +10 %, heat sink +1 K, " in str(refusal)
-        with pytest.raises(FormatError, match="hot: NOT SAFE: skin surface reaches "):
-            pack([one], CSV)
-
-    def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
-        found = ready().realised
-        assert worst_case(found) == gate(found.delivered, RIG)
-
-    def test_a_bridge_rests_and_ends_with_means(self) -> None:
-        found = ready(device="pwm-h-bridge-10").realised
-        (rest, *_) = found.played.command  # type: ignore[union-attr]
-        means = Drive(found.played.time_s, 1.5 * found.played.command, held=True)  # type: ignore[union-attr]
-        assert found.device.most("carrier frequency") >= 100.0, "too fast for a plate to follow"
-        (by_means,) = gate_set([(means, 1.5 * float(rest))], RIG, bridge_A=1.5, averaged=True)
-        assert worst_case(found) == by_means
-
-    def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
-        found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").realised)
-        assert (found.drift_C, found.scenarios, len(found.checks)) == (None, 20, 21)
-        lowest = min(check.value for check in found.checks if check.quantity == "display" and not check.upper)
-        assert lowest == pytest.approx(26.0, abs=0.06), "the set-point, in the corners too"
-        coldest = next(check for check in found.checks if check.quantity == "skin surface" and not check.upper)
-        given = realise(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
-        assert coldest.value < given - 0.1
-        assert coldest.scenario.startswith("contact −30 %")
-
-    def test_a_thermode_is_stronger_than_the_rig(self) -> None:
-        text = (
-            "cue 1\nset s { control display\n baseline 32 °C }\n"
-            "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
-        )
-        found = realise(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
-        assert judge_safety(found.trace).colour == "red", "the thermode follows its set-points, whatever the rig can"
-        assert worst_case(found).reason is not None
-        assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
-
-    def test_the_rigs_driver_does_not_hold_a_thermode_back(self) -> None:
-        weak = RIG.with_(**{"driver.current_limit_A": 0.4})
-        (refusal,) = ready(rig=weak).refusals
-        assert refusal.kind == "unreachable"
-        one = ready(device="qst-tcs2", form="tcs2-serial", rig=weak)
-        assert (one.refusals, one.warnings) == ((), ())
-        assert one.realised.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
-
-    def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
-        text = (
-            "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 29 °C at 2 °C/s\n return at 2 °C/s }\n"
-        )
-        rig = RIG.with_(**{"module.seebeck_V_per_K": 0.026})
-        found = worst_case(realise(parse(text)["a"], rig, Device.load("qst-tcs2")))
-        check = next(check for check in found.findings if check.quantity == "display")
-        assert (check.value, check.scenario) == (pytest.approx(3.0), "the rig as given, followed at once")
 
 
 @pytest.mark.parametrize(

@@ -155,12 +155,16 @@ class TestPsychopy:
         assert list(rows[0]) == [
             "icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s",
             "baseline_reached_s", "ramp_start_2_s", "target_reached_2_s", "return_start_2_s", "baseline_reached_2_s",
+            "safety", "recovery_s", "shortest_pause_s",
         ]  # fmt: skip
         warming, dips = rows
         assert {warming[column] for column in rows[0] if "_2_" in column} == {""}
         for row in (warming, dips):
             events = json.loads(files[row["sidecar_file"]])["events"]
-            told = sorted(float(row[column]) for column in row if column.endswith("_s") and row[column])
+            timed = [
+                column for column in row if column.endswith("_s") and not column.startswith(("recovery", "shortest"))
+            ]
+            told = sorted(float(row[column]) for column in timed if row[column])
             assert told == pytest.approx(sorted(event["time_s"] for event in events))
         lead = float(dips["ramp_start_s"])
         second = [

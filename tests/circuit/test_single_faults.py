@@ -163,4 +163,3 @@ def test_everything_that_is_demanded_is_in_the_verdict() -> None:
         "driver stuck at its limit",
     ]  # fmt: skip
     assert all(f"single fault, {fault.fault}: {fault.text}" in found.text for fault in found.demands.faults)
-    assert found.notes[1].startswith(f"the hardware must provide: watchdog {found.demands.watchdog_s:g} s, cut-off at ")

@@ -51,8 +51,8 @@ def test_a_steady_cycle_comes_back_to_itself_however_short_the_pause(pause_s: fl
 @pytest.mark.parametrize("pause_s", [2.0, 20.0])
 def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float) -> None:
     shows, begun = [COOL, WARM, QUICK], UNDER.steady(32.0)
-    warm = lumps_of(UNDER.bound(shows, pause_s, begun, warm=True))
-    cold = lumps_of(UNDER.bound(shows, pause_s, begun, warm=False))
+    warm = lumps_of(UNDER.bound(shows, pause_s, warm=True))
+    cold = lumps_of(UNDER.bound(shows, pause_s, warm=False))
     rng = np.random.default_rng(3)
     for order in (*rng.integers(0, 3, (3, 30)), [1] * 30, [0] * 30):
         states = begun

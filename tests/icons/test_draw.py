@@ -136,7 +136,7 @@ def test_a_crowded_curve_is_a_band_and_says_so() -> None:
     assert not any("band" in text for text in texts(picture(SHAPES["sine"])))
 
 
-EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">&amp; \u202eabc $x^2$ {amount"
+EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">&amp; abc $x^2$ {amount"
 
 
 @pytest.mark.parametrize("show", ["set", "icon", "thumbnail", "library"])
@@ -155,7 +155,11 @@ def test_texts_cannot_become_markup(show: str) -> None:
     tags = {each.tag.rpartition("}")[2] for each in tree.iter()}
     assert tags <= {"svg", "g", "path", "text", "title", "table", "thead", "tbody", "tr", "th", "td", "b", "br"}
     assert not any(name.startswith("on") for each in tree.iter() for name in each.attrib)
-    assert "\u202e" not in made or show == "library"
+
+
+def test_marks_that_turn_the_writing_direction_reach_no_picture() -> None:
+    with pytest.raises(ValueError, match=r"means: the text holds the control character U\+202E"):
+        Metadata(means="warm \u202emraw")
 
 
 def test_long_texts_are_cut_and_kept_for_the_pointer() -> None:
