@@ -51,16 +51,14 @@ class Commands(TyperGroup):
             raise typer.Exit(0) from None
         except MemoryError:
             fail("not enough memory for this; ask for fewer people, fewer rows a second or a shorter tail")
-        except RuntimeError as error:
-            if "Symlink loop" not in str(error):  # pathlib's words for links that lead to themselves
-                raise
-            fail(f"a path cannot be followed, its links lead in a circle: {str(error).partition('from ')[2]}")
         except OSError as error:
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
         except RecursionError:
             fail("this is nested too deeply to be read")
         except Exception as error:
+            if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
+                fail(f"a path cannot be followed, its links lead in a circle: {str(error).partition('from ')[2]}")
             if isinstance(error, typer.BadParameter) or not is_ours(error):
                 raise
             fail(str(error))
