@@ -50,11 +50,6 @@ class Setpoints:
         """Corners' temperatures in °C, the baseline first."""
         return np.array([self.baseline, *(level for _, level in self.segments)]) * self.step_K
 
-    def sampled(self) -> Array:
-        """Set-point in °C at every tick from 0 to the end, where they all stand: nothing lies between ticks."""
-        ticks = np.concatenate([[0], np.cumsum([ticks for ticks, _ in self.segments])])
-        return np.asarray(np.interp(np.arange(ticks[-1] + 1), ticks, self.level_C), dtype=np.float64)
-
     def at(self, time_s: Array) -> Array:
         """Set-point in °C at times in s; before and after, the ends."""
         return np.asarray(np.interp(time_s, self.time_s, self.level_C), dtype=np.float64)

@@ -68,6 +68,16 @@ def colour_of(findings: Sequence[Check]) -> str:
     return "amber" if findings else "green"
 
 
+def hard_reason(findings: Sequence[Check]) -> str | None:
+    """The first hard finding in one sentence; None where there is none."""
+    return next((str(finding) for finding in findings if finding.severity == "hard"), None)
+
+
+def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
+    """A sentence for each finding that is not hard."""
+    return tuple(str(finding) for finding in findings if finding.severity != "hard")
+
+
 def as_dict(check: Check) -> dict[str, object]:
     """A check as a sidecar holds it."""
     return {**asdict(check), "passed": check.passed, "text": str(check)}

@@ -10,8 +10,6 @@ current; later it drifts towards the room, which is no hazard.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from thermicon.circuit.rig.rules import Limits
@@ -19,8 +17,7 @@ from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import Bank, Intervals, State, run_on
-from thermicon.circuit.solver.network import Network
-from thermicon.circuit.solver.poweroff import SINK_C, SINK_LIMIT_W
+from thermicon.circuit.solver.poweroff import unpowered
 from thermicon.circuit.solver.steady import steady_state
 
 ENDING_S = 60.0
@@ -93,15 +90,10 @@ def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: A
 
 def without_power(ensemble: Ensemble, state: State, times_s: Array) -> tuple[Array, State]:
     """WATCHED at times from now of rigs whose controlled heat sinks have lost their power, and the last states."""
-    networks = [_dark(network, float(sink)) for network, sink in zip(ensemble.networks, state.sink[:, 0], strict=True)]
+    networks = [
+        unpowered(network, float(sink)) for network, sink in zip(ensemble.networks, state.sink[:, 0], strict=True)
+    ]
     none = np.zeros((len(times_s) - 1, len(networks)))
     intervals = Intervals(times_s, np.arange(len(times_s)), none, none)
     begun = State.settled(state.nodes_C)
     return run_on(Bank.of(networks), ensemble.lanes, ensemble.lanes, intervals, begun, WATCHED)
-
-
-def _dark(network: Network, sink_C: float) -> Network:
-    """A network whose heat sink stands at a temperature in °C and has no power."""
-    plates = network.plates.copy()
-    plates[SINK_C], plates[SINK_LIMIT_W] = sink_C, 0.0
-    return replace(network, plates=plates)

@@ -12,7 +12,7 @@ from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.uncertainty import stated, surer
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, worst_of
+from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
 from thermicon.circuit.safety.demands import Demands
 from thermicon.circuit.safety.endings import ENDING_S, ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
@@ -82,13 +82,13 @@ class Gate:
 
         One play comes first: that repetition goes farther says nothing more where one is not safe.
         """
-        once = next((str(finding) for finding in findings_of(self.once) if finding.severity == "hard"), None)
+        once = hard_reason(findings_of(self.once))
         return once or self.repeated.reason
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit passed."""
-        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")
+        return soft_cautions(self.findings)
 
     @property
     def text(self) -> str:

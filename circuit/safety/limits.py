@@ -12,7 +12,7 @@ import numpy as np
 
 from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of
+from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
 from thermicon.circuit.safety.tally import WATCHED, Tally
 from thermicon.circuit.solver.trace import Trace
 
@@ -36,12 +36,12 @@ class SafetyVerdict:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence; None where there is none."""
-        return next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
+        return hard_reason(self.findings)
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit passed."""
-        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")
+        return soft_cautions(self.findings)
 
     def to_dict(self) -> dict[str, object]:
         """Colour and findings, as a sidecar holds them."""

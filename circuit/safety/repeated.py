@@ -12,7 +12,7 @@ import numpy as np
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rules import Limits
 from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of
+from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason
 from thermicon.circuit.safety.endings import ENDINGS, follow_endings
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.repetition import Cycle, bound, steady_cycle
@@ -61,7 +61,7 @@ class Repeated:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
-        found = next((str(check) for check in findings_of(self.checks) if check.severity == "hard"), None)
+        found = hard_reason(findings_of(self.checks))
         return None if found is None else f"{found}; {self.cure}"
 
     @property

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.safety.checks import Check, as_dict, beyond, colour_of, findings_of
+from thermicon.circuit.safety.checks import Check, as_dict, beyond, colour_of, findings_of, hard_reason, soft_cautions
 from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
 from thermicon.circuit.safety.sessionplan import SessionPlan
 from thermicon.circuit.solver.trace import Trace
@@ -107,12 +107,12 @@ class Session:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence; None where there is none."""
-        return next((str(finding) for finding in self.findings if finding.severity == "hard"), None)
+        return hard_reason(self.findings)
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit passed."""
-        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")
+        return soft_cautions(self.findings)
 
     @property
     def baseline_drift_K(self) -> float:

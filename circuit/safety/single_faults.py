@@ -149,23 +149,22 @@ class Faulty:
         least, most = driver.current_min_A, driver.current_max_A
         if self.ensemble.bridge_A is not None:
             least, most = -self.ensemble.bridge_A, self.ensemble.bridge_A
-        slowest, worst = REACTIONS_S[0], "no limit is passed"
+        slowest, worst, colour = REACTIONS_S[0], "no limit is passed", "green"
         for full in (least, most):
-            slowest = min(slowest, self._reaction_s(full, low, high, lanes))
-            values, _ = _constant(self.ensemble, full * self.ensemble.gain, self.start, HANG_ROWS_S, lanes)
+            amps = full * self.ensemble.gain
+            values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, lanes)
+            slowest = min(slowest, self._reaction_s(amps, values[WATCHED.index("display_C")], low, high))
             text, beyond = _passed(self.limits, values)
-            worst = text if beyond.any() else worst
+            if beyond.any():
+                worst, colour = text, "red"
         cut = CutOff(round(low, 1), round(high, 1), slowest)
         prevented = f"a cut-off at {cut.low:g} and {cut.high:g} °C on the measured display, within {slowest:g} s"
         if slowest == 0.0:
             prevented = "a lower current limit of the driver; no cut-off is quick enough at this one"
-        return cut, SingleFault("driver stuck at its limit", "red" if worst[:2] != "no" else "green", worst, prevented)
+        return cut, SingleFault("driver stuck at its limit", colour, worst, prevented)
 
-    def _reaction_s(self, full_A: float, low: float, high: float, lanes: Index) -> float:
-        """The longest reaction to a cut-off that is still safe with a current at its limit."""
-        amps = full_A * self.ensemble.gain
-        values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, lanes)
-        display = values[WATCHED.index("display_C")]
+    def _reaction_s(self, amps: Array, display: Array, low: float, high: float) -> float:
+        """The longest reaction to a cut-off that is safe under currents that take the display (lanes, rows) so."""
         out = ~((display > low) & (display < high))
         trips = [float(HANG_ROWS_S[int(row.argmax())]) if row.any() else HANG_S for row in out]
         for reaction in REACTIONS_S:

@@ -25,7 +25,7 @@ from thermicon.icons import Icon
 FINEST_S = 0.01
 """Longer updates are divided into equal parts of at most this, so that lag and skin are resolved within them."""
 
-SKIN_ROW, DISPLAY_ROW = FELT.index("skin_C"), FELT.index("display_C")
+SKIN_ROW = FELT.index("skin_C")
 
 
 def part_of(update_s: float, finest_s: float = FINEST_S) -> float:

@@ -21,7 +21,6 @@ from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.poweroff import sink_at_end_C
 from thermicon.circuit.solver.pwm import steady_of, switched
 from thermicon.icons import load_library
 
@@ -88,6 +87,27 @@ def test_power_off_is_zero_current_on_an_ideal_sink_and_not_on_its_own() -> None
     apart = own.values[WATCHED.index("hot_plate_C"), 2] - own.values[WATCHED.index("hot_plate_C"), 1]
     assert np.abs(apart[:, -1]).min() > 0.3
     assert (apart[:, own.time_s <= own.end_s] == 0).all()
+
+
+def sink_at_end_C(rig: Rig, time_s: np.ndarray, hot_C: np.ndarray) -> float:
+    """Return the temperature in °C of a heat sink at the end of a run with this hot plate (rows,) in °C.
+
+    The steps of its controller are those of the kernel, one for each row.
+    """
+    sink, own = rig.heat_sink, rig.heat_sink.controller
+    if own is None:
+        return sink.temperature_C
+    now, integral, out = sink.temperature_C, 0.0, 1.0 / sink.resistance_K_per_W
+    rest = -out * (float(hot_C[0]) - now)
+    for step, begin, end in zip(np.diff(time_s).tolist(), hot_C[:-1].tolist(), hot_C[1:].tolist(), strict=True):
+        miss = sink.temperature_C - now
+        asked = rest + own.kp_W_per_K * miss + own.ki_W_per_Ks * integral
+        power = min(max(asked, -own.power_limit_W), own.power_limit_W)
+        if asked == power or asked * miss < 0.0:
+            integral += miss * step
+        share = out / (own.capacity_J_per_K / (0.5 * step) + out)
+        now += 2.0 * share * (power / out + 0.5 * (begin + end) - now)
+    return now
 
 
 def test_power_off_by_an_independent_solver() -> None:
