@@ -4,16 +4,21 @@ Text stays text, so that it can be searched and read aloud. There are no ids, no
 pictures fit on one page without touching one another, and equal icons give equal bytes.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from html import escape
 from itertools import pairwise
+from typing import TYPE_CHECKING, TypeGuard, cast
 
-from thermicon.icons.corners import Corners
-from thermicon.icons.family import Family
-from thermicon.icons.icon import Icon
-from thermicon.icons.iconset import IconSet
 from thermicon.icons.strokes import COLOURS, STAY, Direction, chosen, directions, envelope, shown, spread, ticks
 from thermicon.icons.svg import document, path, plain, words
+
+if TYPE_CHECKING:
+    from thermicon.icons.corners import Corners
+    from thermicon.icons.family import Family
+    from thermicon.icons.icon import Icon
+    from thermicon.icons.iconset import IconSet
 
 MOST_MEMBERS, MOST_PICTURES = 24, 12
 _COLUMNS = 3
@@ -45,9 +50,9 @@ def picture(drawn: Icon | Family | IconSet) -> str:
     >>> len(picture(read_cue("six-icons")["cooling-step"])) < 3000
     True
     """
-    if isinstance(drawn, IconSet):
+    if _is_set(drawn):
         return _grid(drawn)
-    curves = _curves(drawn, MOST_MEMBERS, alone=True)
+    curves = _curves(cast("Icon | Family", drawn), MOST_MEMBERS, alone=True)
     cell = _Cell(320, 196, 13, min(4, len(curves.lines)))
     return document(cell.width, cell.height, _label(curves), [cell.draw(curves)])
 
@@ -59,9 +64,17 @@ def thumbnail(entry: Icon | Family, width: int = 72, height: int = 34) -> str:
     return document(width, height, _label(curves), [_baseline(frame, curves), _paths(frame, curves, 2.0)])
 
 
+def _is_set(drawn: Icon | Family | IconSet) -> TypeGuard[IconSet]:
+    return hasattr(drawn, "entries")
+
+
+def _is_family(entry: Icon | Family) -> TypeGuard[Family]:
+    return hasattr(entry, "parameters")
+
+
 def _grid(icons: IconSet) -> str:
     entries = icons.entries[:MOST_PICTURES]
-    families = sum(isinstance(entry, Family) for entry in entries)
+    families = sum(_is_family(entry) for entry in entries)
     # Few curves a family when there are many families, so that a picture of a set stays small.
     all_curves = _alike([_curves(entry, max(3, MOST_MEMBERS // max(1, families))) for entry in entries])
     found = icons.summary()
@@ -84,7 +97,7 @@ def _grid(icons: IconSet) -> str:
         x, y = column * cell.width, 46 + row * cell.height
         parts.append(f'<g transform="translate({x} {y})">{cell.draw(curves)}</g>')
     height = 46 + cell.height * -(-len(entries) // columns)
-    if rest := len(icons) - sum(len(entry) if isinstance(entry, Family) else 1 for entry in entries):
+    if rest := len(icons) - sum(len(entry) if _is_family(entry) else 1 for entry in entries):
         parts.append(words(10, height + 13, f"and {rest:,} more", 12, width - 20))
         height += 24
     return document(width, height, f"{title}: {count}", parts)
@@ -107,8 +120,8 @@ def _curves(entry: Icon | Family, most: int, alone: bool = False) -> Curves:
     axis = "current (A)" if frame.control == "current" else f"{frame.control} (°C)"
     if alone and frame.control != "current" and frame.baseline_C is None:
         axis += ", baseline assumed"
-    if isinstance(entry, Icon):
-        one = _fine(entry)
+    if not _is_family(entry):
+        one = _fine(cast("Icon", entry))
         return Curves((one,), one.lowest, one.highest, one.duration_s, entry.name, tuple(lines), axis)
     places = chosen(tuple(map(len, entry.parameters)), most)
     drawn = f"{len(places)} drawn · " if len(places) < len(entry) else ""
@@ -139,7 +152,7 @@ class _Frame:
     high: float
 
     @classmethod
-    def of(cls, curves: Curves, x: float, y: float, width: float, height: float) -> "_Frame":
+    def of(cls, curves: Curves, x: float, y: float, width: float, height: float) -> _Frame:
         least = 0.1 if curves.corners[0].quantity == "current_A" else 1.0
         room = max(0.0, least - (curves.high - curves.low)) / 2
         return cls(x, y, width, height, curves.duration_s, curves.low - room, curves.high + room)

@@ -1,11 +1,14 @@
 """What a drawn curve is made of, in plots and in pictures: directions of its pieces, ticks, members chosen."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from thermicon.icons.corners import Corners
+if TYPE_CHECKING:
+    from thermicon.icons.corners import Corners
 
 Direction = Literal["cool", "warm", "stay"]
 Points = Sequence[tuple[float, float]]
@@ -18,6 +21,7 @@ COLOURS: dict[Direction, str] = {"stay": STAY, "cool": COOL, "warm": WARM}
 def directions(corners: Corners) -> list[Direction]:
     """Return, for every straight piece, whether it cools, warms or stays; under control current, more current cools.
 
+    >>> from thermicon.icons import Corners
     >>> directions(Corners((0.0, 2.0, 6.0), (32.0, 26.0, 26.0), "temperature_C"))
     ['cool', 'stay']
     """

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from thermicon.notebooks.cues import MOST_ICONS, warn_of_site
-from thermicon.notebooks.door import fail, note
+from thermicon.notebooks.messages import fail, note
 from thermicon.notebooks.wording import number, span
 
 if TYPE_CHECKING:

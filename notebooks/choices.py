@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.notebooks.door import usage
+from thermicon.notebooks.messages import usage
 from thermicon.notebooks.wording import number, percent
 
 if TYPE_CHECKING:

@@ -16,7 +16,8 @@ import typer
 
 from thermicon.notebooks import handing, hardware, lab, searching, session, validation, whatif
 from thermicon.notebooks.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
-from thermicon.notebooks.door import Commands, check_changes, interrupted, load_rig, usage
+from thermicon.notebooks.door import Commands
+from thermicon.notebooks.messages import check_changes, interrupted, load_rig, usage
 from thermicon.notebooks.options import (
     Bias,
     Changes,

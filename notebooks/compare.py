@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from thermicon.notebooks.cues import pick, read_set
 from thermicon.notebooks.curves import Curves, LogError, curves_of, read_curves
 from thermicon.notebooks.differences import Aligned, align, differences, quantity, with_unit
-from thermicon.notebooks.door import load_rig, note, usage
 from thermicon.notebooks.duel import duel_of
+from thermicon.notebooks.messages import load_rig, note, usage
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
 from thermicon.notebooks.sides import Request, check_request, kind_of_both
 from thermicon.notebooks.simulate import headline

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from thermicon.notebooks.cues import pick, read_set
-from thermicon.notebooks.door import fail, note
+from thermicon.notebooks.messages import fail, note
 from thermicon.notebooks.outputs import STDOUT, OutputError, check_output, complete_or_absent
 from thermicon.notebooks.wording import number
 

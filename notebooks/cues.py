@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from thermicon.notebooks.door import note, usage
+from thermicon.notebooks.messages import note, usage
 from thermicon.notebooks.wording import number
 
 if TYPE_CHECKING:

@@ -119,7 +119,7 @@ def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
 
 def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
     from thermicon.circuit.inputs import nearest
-    from thermicon.notebooks.door import usage
+    from thermicon.notebooks.messages import usage
 
     names = [str(name) for name in frame["icon"].dropna().unique()] if "icon" in frame else []
     if icon is None:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import typer
 
 from thermicon.notebooks.cues import pick, read_set, warn_of_site
-from thermicon.notebooks.door import REFUSED, note
 from thermicon.notebooks.exportfolder import check_export_folder
 from thermicon.notebooks.exporting import Ready, others, prepare_icons, write
 from thermicon.notebooks.gatewords import gate_words
+from thermicon.notebooks.messages import REFUSED, note
 from thermicon.notebooks.progress import progress_bar
 from thermicon.notebooks.wording import number
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import typer
 
-from thermicon.notebooks.door import BAD_INPUT, note
+from thermicon.notebooks.messages import BAD_INPUT, note
 from thermicon.notebooks.outputs import OutputError, check_output, complete_or_absent
 
 

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks.door import Missing, check_changes, load_rig, usage
+from thermicon.notebooks.messages import Missing, check_changes, load_rig, usage
 from thermicon.notebooks.options import Changes, IconName, RigName, Tail, check_pause, check_tail
 
 

@@ -19,7 +19,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from thermicon.icons.handed import NotRegular, TooLarge, read_limited
-from thermicon.notebooks.door import fail, interrupted, note, usage
+from thermicon.notebooks.messages import fail, interrupted, note, usage
 from thermicon.notebooks.outputs import check_folder, stopped_cleanly, write_together
 from thermicon.notebooks.startfolder import VARIABLE
 

@@ -13,7 +13,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from thermicon.perception import PerceptualMap
-    from thermicon.perception.receptors import Array
+    from thermicon.perception.rows import Array
 
 WIDTH, LOWEST, HIGHEST, EDGE = 330.0, 110.0, 300.0, 14.0
 LETTER, LINE, DOT = 5.9, 13.0, 3.5

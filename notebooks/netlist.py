@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from thermicon.notebooks.cues import only, read_set, warn_of_site
-from thermicon.notebooks.door import note
+from thermicon.notebooks.messages import note
 from thermicon.notebooks.outputs import NETLIST_SUFFIXES, STDOUT, check_output, complete_or_absent
 from thermicon.notebooks.simulate import headline
 

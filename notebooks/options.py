@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks.door import usage
+from thermicon.notebooks.messages import usage
 
 LONGEST_GAP_S, MOST_BIAS = 600.0, 5.0
 """The ends of `thermicon.perception.Task`, here without its imports."""

@@ -8,7 +8,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from thermicon.notebooks import beside
-from thermicon.notebooks import ranking as told
+from thermicon.notebooks import ranktext as told
 from thermicon.notebooks.byrules import rules_caveat, rules_lines
 from thermicon.notebooks.choices import choice_lines
 from thermicon.notebooks.reportpage import Cell, bullets, cards, element, facts, grid, page

@@ -99,7 +99,7 @@ def cue_text(icon: Icon) -> str:
 def _overview(icon: Icon, rig: Rig, count: int) -> str:
     from thermicon.circuit import simulate
     from thermicon.notebooks.overview import overview
-    from thermicon.notebooks.simulate import FELT_TAIL_S, on_one_clock
+    from thermicon.notebooks.traceoverview import FELT_TAIL_S, on_one_clock
     from thermicon.perception import perceive
 
     trace = on_one_clock(simulate(icon, rig, tail_s=FELT_TAIL_S))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from thermicon.notebooks.choices import OBJECTIVES
-from thermicon.notebooks.door import check_changes, load_rig, note, usage
+from thermicon.notebooks.messages import check_changes, load_rig, note, usage
 from thermicon.notebooks.options import Changes, OneFile, RigName
 from thermicon.notebooks.outputs import STDOUT, check_output, complete_or_absent
 

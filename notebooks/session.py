@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.notebooks.door import check_changes, load_rig, note, usage
+from thermicon.notebooks.messages import check_changes, load_rig, note, usage
 from thermicon.notebooks.options import Changes, OneFile, RigName
 
 if TYPE_CHECKING:

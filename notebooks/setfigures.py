@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.notebooks.door import note
+from thermicon.notebooks.messages import note
 from thermicon.notebooks.outputs import complete_or_absent
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, folder: Path) -> N
     The set has ranking, distance, confusion, map and places; the last two need two icons, places two people.
     """
     from thermicon.circuit import simulate
-    from thermicon.notebooks.simulate import FELT_TAIL_S, draw_overview
+    from thermicon.notebooks.traceoverview import FELT_TAIL_S, draw_overview
 
     folder.mkdir(exist_ok=True)
     drawn = set_axes(ranking)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.notebooks.beside import outside_lines, trouble_lines
 from thermicon.notebooks.choices import choice_lines
-from thermicon.notebooks.ranking import caveat, rival
+from thermicon.notebooks.ranktext import caveat, rival
 from thermicon.notebooks.wording import number, percent, seconds
 
 if TYPE_CHECKING:

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import dataclasses
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy
 import typer
 
 from thermicon.notebooks.cues import pick, read_set, warn_of_site
-from thermicon.notebooks.door import note
+from thermicon.notebooks.messages import note
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from thermicon.notebooks.traceoverview import FELT_TAIL_S, draw_overview
 from thermicon.notebooks.wording import number, span
-
-FELT_TAIL_S = 10.0
-"""How long an overview follows sensation after the last corner, unless told."""
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -135,31 +131,6 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
         return
     with complete_or_absent(output) as draft:
         write_trace(list(traces), draft)
-
-
-def draw_overview(trace: Trace, picture: Path, rig_changes: Sequence[str] = ()) -> None:
-    """Write the overview figure of one trace, its percept included."""
-    from thermicon.notebooks.overview import overview
-    from thermicon.perception import perceive
-
-    trace = on_one_clock(trace)
-    with complete_or_absent(picture) as draft:
-        overview(trace, perceive(trace), rig_changes).savefig(draft, dpi=130)
-
-
-def on_one_clock(trace: Trace) -> Trace:
-    """Drop the last row where it comes off the beat, as when a drive ends between two rows."""
-    steps = numpy.diff(trace.time_s)
-    if len(steps) < 2 or abs(steps[-1] - steps[0]) < 1e-6 * steps[0]:
-        return trace
-    return dataclasses.replace(
-        trace,
-        **{
-            field.name: getattr(trace, field.name)[:-1]
-            for field in dataclasses.fields(trace)
-            if isinstance(getattr(trace, field.name), numpy.ndarray)
-        },
-    )
 
 
 def headline(trace: Trace) -> str:

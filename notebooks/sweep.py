@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from thermicon.notebooks.cues import pick, read_set, warn_of_site
-from thermicon.notebooks.door import fail, note, usage
+from thermicon.notebooks.messages import fail, note, usage
 from thermicon.notebooks.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
 from thermicon.notebooks.progress import Progress, progress_bar
 from thermicon.notebooks.wording import span

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.notebooks.door import note, usage
+from thermicon.notebooks.messages import note, usage
 from thermicon.notebooks.outputs import OutputError, check_folder
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.notebooks.door import BAD_INPUT, note
 from thermicon.notebooks.exportfolder import STAGE
+from thermicon.notebooks.messages import BAD_INPUT, note
 from thermicon.notebooks.outputs import OutputError
 from thermicon.notebooks.tables import show, table
 from thermicon.notebooks.wording import number, span

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.notebooks.door import check_changes, load_rig, usage
+from thermicon.notebooks.messages import check_changes, load_rig, usage
 from thermicon.notebooks.options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
 METHODS = ("sobol", "morris")

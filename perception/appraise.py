@@ -15,7 +15,7 @@ from thermicon.perception.measures import information_bits, percent_correct
 from thermicon.perception.namings import Objective
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import People, draw_people
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from functools import lru_cache
 import numpy as np
 
 from thermicon.perception.namings import Namings, Objective
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.widest import widest
 
 NODES = 20_000

@@ -15,7 +15,7 @@ import numpy as np
 from thermicon.perception.distance import differences, identification_noise
 from thermicon.perception.observer import NORMS, Norm, Observer
 from thermicon.perception.percept import perceive_many, uniform_clock
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.task import Task
 
 if TYPE_CHECKING:

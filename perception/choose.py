@@ -20,8 +20,8 @@ from thermicon.perception.intervals import ParameterIntervals
 from thermicon.perception.namings import Namings, Objective
 from thermicon.perception.observer import Norm
 from thermicon.perception.people import People
-from thermicon.perception.receptors import Array
 from thermicon.perception.request import ChoiceError, Choosing, Usable, usable
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 from thermicon.perception.widest import Limits, OutOfBudget, widest
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.perception.chunks import Found, Work
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 KEY, CHUNK = b"thermicon.work", b"thermicon.chunk"
 

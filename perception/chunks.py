@@ -23,7 +23,7 @@ from thermicon.perception.measures import experiments_bits, information_bits
 from thermicon.perception.observer import NORMS, Norm, Observer
 from thermicon.perception.parallel import in_order
 from thermicon.perception.people import People, draw_people
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermicon.perception.parallel import over_rows
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 SAMPLES = 10_240
 """Presentations of an icon to a person: no cell of that person's has a standard error of more than 0.00495."""

@@ -14,7 +14,7 @@ import numpy as np
 from thermicon.circuit.records import Record, Table, load_records
 from thermicon.perception.digits import significant
 from thermicon.perception.observer import DATA
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from thermicon.perception.parameters import latin
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 LEVELS = 4
 

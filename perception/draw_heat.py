@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermicon.circuit.solver.draw import COOL, new_axes
-from thermicon.perception.receptors import Array
-from thermicon.perception.rulescore import APART_DPRIME
+from thermicon.perception.criteria import APART_DPRIME
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

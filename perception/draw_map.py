@@ -10,7 +10,7 @@ import numpy as np
 
 from thermicon.circuit.solver.draw import COOL, new_axes
 from thermicon.perception.draw_heat import short
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -16,12 +16,12 @@ import numpy as np
 
 from thermicon.perception.appraise import distances
 from thermicon.perception.carryover import prepared
+from thermicon.perception.criteria import APART_DPRIME
 from thermicon.perception.nominal import Sensed, dprimes, end_of, sense
 from thermicon.perception.numbers import Number, line_of, numbers_of, repeated, with_number
 from thermicon.perception.observer import Norm
 from thermicon.perception.people import People, draw_people
-from thermicon.perception.receptors import Array
-from thermicon.perception.rulescore import APART_DPRIME
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:

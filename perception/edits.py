@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from thermicon.perception.criteria import APART_DPRIME
 from thermicon.perception.edit import cheapest_edit
 from thermicon.perception.observer import Norm
 from thermicon.perception.people import People
-from thermicon.perception.receptors import Array
-from thermicon.perception.rulescore import APART_DPRIME
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ import numpy as np
 
 from thermicon.perception.observer import Channel, Observer
 from thermicon.perception.percept import Percept, perceive
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -14,7 +14,7 @@ from thermicon.perception.confusion import SAMPLES, normalised, sampling_error
 from thermicon.perception.intervals import EVERY
 from thermicon.perception.judge import Played
 from thermicon.perception.observer import Norm
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,7 +18,7 @@ from thermicon.perception.observer import Norm
 from thermicon.perception.parallel import in_order
 from thermicon.perception.parameters import latin, observer_at, observer_parameters
 from thermicon.perception.people import People
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768

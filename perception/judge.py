@@ -12,7 +12,7 @@ from thermicon.perception.measures import information_bits, percent_correct
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import People
 from thermicon.perception.percept import perceive_many, uniform_clock
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.task import USUAL, Task
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from thermicon.perception.confusion import embed
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)

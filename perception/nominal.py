@@ -12,8 +12,8 @@ import numpy as np
 from thermicon.perception.distance import differences, identification_dprime
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.percept import perceive_many, uniform_clock
-from thermicon.perception.receptors import Array
 from thermicon.perception.request import against
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

@@ -17,7 +17,8 @@ import numpy as np
 
 from thermicon.circuit.records import Record, Table, load_records
 from thermicon.perception.observer import CHANNELS, DATA, NORMS, Channel, Norm, Observer, load_thresholds, on_forearm
-from thermicon.perception.receptors import Array, receptor_drive
+from thermicon.perception.receptors import receptor_drive
+from thermicon.perception.rows import Array
 
 PER_PERSON = ("conduction velocity", "path length to the cord", "decision time", "lapse rate")
 ANCHORED = "drive of a threshold step"

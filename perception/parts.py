@@ -17,7 +17,7 @@ from thermicon.perception.distance import smooth
 from thermicon.perception.features import directions, excursion_rate_K_per_s
 from thermicon.perception.observer import CHANNELS, Channel, Observer
 from thermicon.perception.percept import Percept, perceive
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.rules import load_rules
 
 if TYPE_CHECKING:

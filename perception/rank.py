@@ -28,8 +28,8 @@ from thermicon.perception.people import People, draw_people
 from thermicon.perception.percept import Percept, perceive
 from thermicon.perception.ranking import IconScore, PairScore, Ranking
 from thermicon.perception.reasons import pair_reasons
-from thermicon.perception.receptors import Array
 from thermicon.perception.request import Choosing, against, check_asked
+from thermicon.perception.rows import Array
 from thermicon.perception.rules import icon_rules, pair_rules, rig_rules
 from thermicon.perception.rulescore import disagreements, icon_score, pair_margin, worst_by_rules
 from thermicon.perception.spread import spread_over_people

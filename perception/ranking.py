@@ -12,7 +12,7 @@ import numpy as np
 from thermicon.perception.intervals import ParameterIntervals
 from thermicon.perception.observer import Channel
 from thermicon.perception.parts import Part
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.rules import TOLD_APART, RuleResult
 from thermicon.perception.rulescore import counted
 from thermicon.perception.spread import Spread

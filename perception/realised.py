@@ -12,7 +12,7 @@ from thermicon.circuit.solver.difference import loss_limit
 from thermicon.perception.distance import differences, identification_dprime
 from thermicon.perception.observer import Observer, check_norm
 from thermicon.perception.percept import Percept, perceive
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

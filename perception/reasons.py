@@ -24,7 +24,7 @@ from thermicon.perception.features import (
 )
 from thermicon.perception.observer import CHANNELS, Channel, Norm, Observer, check_norm
 from thermicon.perception.percept import Percept
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.rules import load_rules
 
 if TYPE_CHECKING:

@@ -17,15 +17,14 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from thermicon.perception.channels import Channel, sign_of
 from thermicon.perception.impulses import counted_impulses
 from thermicon.perception.observer import Observer
 from thermicon.perception.parallel import over_rows
-from thermicon.perception.rows import as_rows
+from thermicon.perception.rows import Array, as_rows
 
-Array = NDArray[np.float64]
 BLOCK = 16
 """Rows counted at once, few enough that what lies between the steps stays in the processor's cache."""
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.perception.namings import OBJECTIVES, Objective
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

@@ -19,8 +19,8 @@ from thermicon.perception.measures import information_bits, percent_correct
 from thermicon.perception.namings import OBJECTIVES, Objective
 from thermicon.perception.observer import check_norm
 from thermicon.perception.people import draw_people
-from thermicon.perception.receptors import Array
 from thermicon.perception.request import ChoiceError
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from thermicon.perception.criteria import APART_DPRIME
 from thermicon.perception.digits import decimals, significant
 from thermicon.perception.rules import OURS, RuleResult, passes
 
 if TYPE_CHECKING:
     from thermicon.perception.ranking import IconScore, PairScore
 
-APART_DPRIME = 2.563
-"""The model calls a pair apart from here on: two icons on their own would be named 90 % correctly, Φ(d′/2) = 0.9."""
 FELT = 0.9
 
 

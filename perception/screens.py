@@ -13,7 +13,7 @@ from thermicon.perception.namings import Namings, Objective
 from thermicon.perception.nominal import dprimes, end_of, sense
 from thermicon.perception.observer import Norm, Observer
 from thermicon.perception.people import draw_people
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

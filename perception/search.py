@@ -18,8 +18,8 @@ from thermicon.perception.genes import Gene, drawn
 from thermicon.perception.namings import OBJECTIVES, Namings, Objective
 from thermicon.perception.observer import check_norm
 from thermicon.perception.people import draw_people
-from thermicon.perception.receptors import Array
 from thermicon.perception.request import ChoiceError
+from thermicon.perception.rows import Array
 from thermicon.perception.screens import Few, Nominal
 from thermicon.perception.widest import widest, worst
 

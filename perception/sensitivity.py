@@ -19,7 +19,7 @@ from thermicon.perception.observer import Norm, check_norm
 from thermicon.perception.parallel import in_order
 from thermicon.perception.parameters import Parameter, observer_at
 from thermicon.perception.ranking import with_changes
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 from thermicon.perception.stage import Stage, set_stage
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 MOST_PEOPLE, MOST_CELLS = 64, 200_000
 """How many people a map is drawn from, and how many d′ are kept for it: fewer people of many icons."""

@@ -17,7 +17,7 @@ from thermicon.perception.judge import Played
 from thermicon.perception.observer import Norm, load_thresholds
 from thermicon.perception.parameters import Parameter, observer_parameters
 from thermicon.perception.people import People, draw_people, people_records
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

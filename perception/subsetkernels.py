@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.circuit.compiled import kernel
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 
 def _valued(correct: float, bits: float, duration_s: float, code: int) -> float:

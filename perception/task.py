@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.perception.observer import NORMS, Norm, Observer
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 NARROWEST = 0.25
 """Below a quarter of the calibrating task's range memory gets no better: then the trace itself is what is compared."""

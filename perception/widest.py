@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.perception.receptors import Array
+from thermicon.perception.rows import Array
 
 MOST_NODES = 200_000
 """Branches of one search, some ten seconds of them; after that the answer says that it is not proven."""
