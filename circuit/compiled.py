@@ -30,7 +30,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from thermicon.circuit.userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from .userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
 
 HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0

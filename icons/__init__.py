@@ -3,28 +3,28 @@
 The names below stand in the order of the flow; nothing heavier than the standard library is imported before it is used.
 """
 
-from thermicon.icons.check import ASSUMED_BASELINE_C
-from thermicon.icons.corners import Corners
-from thermicon.icons.draw import plot_icon
-from thermicon.icons.errors import CueError, CueErrors
-from thermicon.icons.frame import Frame, Metadata
-from thermicon.icons.parameter import Parameter
-from thermicon.icons.icon import Icon
-from thermicon.icons.family import Family
-from thermicon.icons.slots import Slot
-from thermicon.icons.iconset import IconSet, Members
-from thermicon.icons.shipped import library_names, load_library, read_cue
-from thermicon.icons.gallery import Library, library
-from thermicon.icons.parse import parse
-from thermicon.icons.layout import format_text
-from thermicon.icons.exchange import from_json, to_json
-from thermicon.icons.hjif import to_hjif
-from thermicon.icons.recorded import from_csv
-from thermicon.icons.cite import bibtex, methods
-from thermicon.icons.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
-from thermicon.icons.shapes import Pulse, Step, Wave
-from thermicon.icons.write import back, cool, drive, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
-from thermicon.icons.write import total, triangle, warm
+from .model.check import ASSUMED_BASELINE_C
+from .model.corners import Corners
+from .pictures.draw import plot_icon
+from .model.errors import CueError, CueErrors
+from .model.frame import Frame, Metadata
+from .model.parameter import Parameter
+from .model.icon import Icon
+from .model.family import Family
+from .model.slots import Slot
+from .model.iconset import IconSet, Members
+from .files.shipped import library_names, load_library, read_cue
+from .files.gallery import Library, library
+from .language.parse import parse
+from .language.layout import format_text
+from .files.exchange import from_json, to_json
+from .files.hjif import to_hjif
+from .recordings.recorded import from_csv
+from .papers.cite import bibtex, methods
+from .model.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from .model.shapes import Pulse, Step, Wave
+from .model.builders import back, cool, drive, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
+from .model.builders import total, triangle, warm
 
 # In the order of the flow, not of the alphabet.
 __all__ = [

@@ -1,19 +1,19 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
-from thermicon.notebooks.startup import guard
+from .startup import guard
 
 guard()  # before anything that takes time to import
 
 from typing import TYPE_CHECKING, Any
 
-from thermicon.notebooks.overview import overview, set_figure
-from thermicon.notebooks.sweep import sweep
-from thermicon.notebooks.sweepfigure import sweep_figure
+from .figures.overview import overview, set_figure
+from .cli.sweep import sweep
+from .figures.sweep_figure import sweep_figure
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-    from thermicon.notebooks.workbench import Workbench as Workbench
+    from .workbench.workbench import Workbench as Workbench
 
 __all__ = ["overview", "set_figure", "sweep", "sweep_figure", "Workbench"]
 
@@ -21,7 +21,7 @@ __all__ = ["overview", "set_figure", "sweep", "sweep_figure", "Workbench"]
 def __getattr__(name: str) -> Any:
     """Load the workbench when it is first asked for: commands that draw nothing do without."""
     if name == "Workbench":
-        from thermicon.notebooks.workbench import Workbench
+        from .workbench.workbench import Workbench
 
         return Workbench
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -29,7 +29,8 @@ def __getattr__(name: str) -> Any:
 
 def load_ipython_extension(shell: "InteractiveShell") -> None:
     """Bring the ``%%cue`` cell magic and small pictures of figures: what ``%load_ext thermicon.notebooks`` calls."""
-    from thermicon.notebooks import inline, magic
+    from .figures import inline
+    from .workbench import magic
 
     magic.register(shell)
     inline.register(shell)
@@ -37,7 +38,8 @@ def load_ipython_extension(shell: "InteractiveShell") -> None:
 
 def unload_ipython_extension(shell: "InteractiveShell") -> None:
     """Take both away again: what ``%unload_ext thermicon.notebooks`` calls."""
-    from thermicon.notebooks import inline, magic
+    from .figures import inline
+    from .workbench import magic
 
     magic.unregister(shell)
     inline.unregister(shell)

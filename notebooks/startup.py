@@ -11,7 +11,7 @@ COMMANDS = ("thermicon", "thermicon.exe", "thermicon-script.py")
 def is_command() -> bool:
     """Whether this process is the ``thermicon`` command, and not somebody's own program."""
     first = os.path.basename(sys.argv[0]) if sys.argv else ""  # noqa: PTH119 - pathlib takes too long to import
-    return first in COMMANDS or sys.orig_argv[1:3] == ["-m", "thermicon.notebooks.cli"]
+    return first in COMMANDS or sys.orig_argv[1:3] == ["-m", "thermicon.notebooks.cli.main"]
 
 
 def guard() -> None:

@@ -3,7 +3,7 @@
 Everything here is light to import; compiled kernels and matplotlib load when first used.
 """
 
-from thermicon.perception.observer import (
+from .observer.observer import (
     CHANNELS,
     NORMS,
     Channel,
@@ -12,53 +12,53 @@ from thermicon.perception.observer import (
     Receptor,
     load_thresholds,
 )
-from thermicon.perception.variants import MODELS, VARIABLES, VARIANTS, Model, Variable, receptor_column
-from thermicon.perception.receptors import receptor_drive
-from thermicon.perception.sensation import amplitude_jnd, psi_of_multiple, sensation
-from thermicon.perception.detection import Detection, criterion_of, detect, false_alarms, forced_choice_dprime
-from thermicon.perception.percept import Percept, perceive, perceive_many
-from thermicon.perception.distance import (
+from .observer.variants import MODELS, VARIABLES, VARIANTS, Model, Variable, receptor_column
+from .sensation.receptors import receptor_drive
+from .sensation.sensation import amplitude_jnd, psi_of_multiple, sensation
+from .sensation.detection import Detection, criterion_of, detect, false_alarms, forced_choice_dprime
+from .sensation.percept import Percept, perceive, perceive_many
+from .identification.distance import (
     back_to_back_dprime,
     difference,
     difference_trace,
     differences,
     identification_dprime,
 )
-from thermicon.perception.confusion import Confusion, confuse, equal_percent_correct
-from thermicon.perception.measures import Plugin, information_bits, percent_correct, plugin_bits
-from thermicon.perception.people import People, age_factor, draw_people, people_records
-from thermicon.perception.bench import Bench, Stimuli
-from thermicon.perception.passage import ResponseTimes, response_times
-from thermicon.perception.measured import Measured
-from thermicon.perception.procedures import (
+from .identification.confusion import Confusion, confuse, equal_percent_correct
+from .identification.measures import Plugin, information_bits, percent_correct, plugin_bits
+from .observer.people import People, age_factor, draw_people, people_records
+from .sensation.bench import Bench, Stimuli
+from .sensation.first_passage import ResponseTimes, response_times
+from .validation.measured import Measured
+from .validation.procedures import (
     choice_reaction_time,
     forced_choice,
     method_of_levels,
     method_of_limits,
     yes_no,
 )
-from thermicon.perception.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
-from thermicon.perception.rules import RuleResult, icon_rules, load_rules, pair_rules, rig_rules
-from thermicon.perception.coverage import load_coverage, outside_data
-from thermicon.perception.reasons import Reason, largest_difference, pair_reasons
-from thermicon.perception.parts import Part, distance_parts
-from thermicon.perception.parameters import Parameter, observer_at, observer_parameters
-from thermicon.perception.intervals import ParameterIntervals
-from thermicon.perception.appraise import Appraisal, appraise
-from thermicon.perception.request import ChoiceError, Choosing, energy_J
-from thermicon.perception.choose import Choice, choose
-from thermicon.perception.edit import Edit, NoEdit, cheapest_edit
-from thermicon.perception.search import Searched, search
-from thermicon.perception.robust import Duel, Survival, beats, survives
-from thermicon.perception.ranking import IconScore, PairScore, Ranking
-from thermicon.perception.task import Task
-from thermicon.perception.carryover import CarryOver, carry_over
-from thermicon.perception.rank import rank
-from thermicon.perception.map import PerceptualMap, map_of, perceptual_map
-from thermicon.perception.designs import MissingError
-from thermicon.perception.sensitivity import Effect, Sensitivity, sensitivity
-from thermicon.perception.validate import ValidationReport, validate
-from thermicon.perception.realised import Change, FeltChange, judge_delivered
+from .sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
+from .comparison.rules import RuleResult, icon_rules, load_rules, pair_rules, rig_rules
+from .sensation.coverage import load_coverage, outside_data
+from .comparison.reasons import Reason, largest_difference, pair_reasons
+from .comparison.distance_components import Part, distance_parts
+from .sensation.parameters import Parameter, observer_at, observer_parameters
+from .identification.intervals import ParameterIntervals
+from .selection.appraise import Appraisal, appraise
+from .selection.request import ChoiceError, Choosing, energy_J
+from .selection.choose import Choice, choose
+from .selection.edit import Edit, NoEdit, cheapest_edit
+from .selection.search import Searched, search
+from .selection.robust import Duel, Survival, beats, survives
+from .ranking.ranking import IconScore, PairScore, Ranking
+from .identification.task import Task
+from .identification.carry_over import CarryOver, carry_over
+from .ranking.rank import rank
+from .identification.map import PerceptualMap, map_of, perceptual_map
+from .sensitivity.designs import MissingError
+from .sensitivity.sensitivity import Effect, Sensitivity, sensitivity
+from .validation.validate import ValidationReport, validate
+from .identification.delivered import Change, FeltChange, judge_delivered
 
 # The order is that of the flow, which is not the alphabet's.
 __all__ = [

@@ -9,9 +9,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.delivery.devicefile import DeviceError, DrivenBy, read_device_table, records_of
-from thermicon.circuit.inputs import nearest, read_text
-from thermicon.circuit.records import Record
+from ..inputs import nearest, read_text
+from ..records import Record
+from .devicefile import DeviceError, DrivenBy, read_device_table, records_of
 
 FINEST_SETPOINT_K = 0.001
 """Step of set-points where a controller states none: a tenth of what the best display thermistors resolve."""

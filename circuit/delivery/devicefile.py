@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import (
+from ..inputs import (
     LONGEST_NAME,
     TEXT_FAULT,
     InputError,
@@ -19,7 +19,7 @@ from thermicon.circuit.inputs import (
     read_toml,
     signed,
 )
-from thermicon.circuit.records import Record, RecordError
+from ..records import Record, RecordError
 
 
 class DeviceError(InputError):

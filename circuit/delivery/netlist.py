@@ -10,12 +10,12 @@ import textwrap
 from collections.abc import Iterator
 from importlib.metadata import version
 
-from thermicon.circuit.inputs import InputError
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.network import HOT, PROBES, Network, network_of
-from thermicon.circuit.solver.steady import steady_state
+from ..inputs import InputError
+from ..rig.module import ZERO_C_IN_K
+from ..rig.rig import Rig
+from ..solver.drive import Drive
+from ..solver.network import HOT, PROBES, Network, network_of
+from ..solver.steady import steady_state
 
 EDGE_S = 1e-6
 """Width of the flank that stands for a jump of a held current; less where rows are closer than four of these."""

@@ -10,23 +10,24 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.realised import Narrowed, Realised
-from thermicon.circuit.delivery.regulated import realise_setpoints, traces_of_setpoints
-from thermicon.circuit.delivery.samples import Samples, current_of, led, rate_of, sample, within
-from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.delivery.temperatures import designed_until, follow_samples, realise_temperatures
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import bank_of, run_follow
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, design
-from thermicon.circuit.solver.pwm import steady_of
-from thermicon.circuit.solver.simulate import duration_s, simulate_current
-from thermicon.circuit.solver.steady import hold
-from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
+
+from ..inputs import signed
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.batch_inputs import bank_of, run_follow
+from ..solver.drive import Drive
+from ..solver.inverse import Design, design
+from ..solver.pwm import steady_of
+from ..solver.simulate import duration_s, simulate_current
+from ..solver.steady import hold
+from ..solver.trace import Trace
+from .device import Device
+from .realised import Narrowed, Realised
+from .regulated import realise_setpoints, traces_of_setpoints
+from .samples import Samples, current_of, led, rate_of, sample, within
+from .setpoints import Setpoints
+from .temperatures import designed_until, follow_samples, realise_temperatures
 
 BRIDGE_ROUNDS = 3
 """Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.delivery.samples import Samples
-from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.solver.difference import Difference, difference
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.trace import Outcome, Trace
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..solver.difference import Difference, difference
+from ..solver.drive import Drive
+from ..solver.trace import Outcome, Trace
+from .device import Device
+from .devicefile import DeviceError
+from .samples import Samples
+from .setpoints import Setpoints
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,19 +9,20 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
-from thermicon.circuit.delivery.thermode import display_of
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.displayed import judge_display, part_of, trace_of_display
-from thermicon.circuit.solver.inverse import baseline_C, target_at
-from thermicon.circuit.solver.prescribed import modes_of
-from thermicon.circuit.solver.simulate import rows_until
-from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.displayed import judge_display, part_of, trace_of_display
+from ..solver.inverse import baseline_C, target_at
+from ..solver.prescribed import modes_of
+from ..solver.simulate import rows_until
+from ..solver.trace import Trace
+from .device import Device
+from .devicefile import DeviceError
+from .realised import Realised
+from .setpoints import Setpoints, closed, setpoints_of
+from .thermode import display_of
 
 
 def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.delivery.device import Device, Scale
-from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design
-from thermicon.circuit.solver.pwm import duty_of, switched
+from ..inputs import signed
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.drive import Drive
+from ..solver.inverse import Design
+from ..solver.pwm import duty_of, switched
+from .device import Device, Scale
+from .devicefile import DeviceError
 
 DENSEST_HZ = 10_000.0
 """From here on a drive has a row for each change and not for each sample; the sum is the same."""

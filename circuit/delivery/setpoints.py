@@ -9,9 +9,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.rig.skin import Array
+from ..rig.skin import Array
+from .device import Device
+from .devicefile import DeviceError
 
 MOST_SEGMENTS = 1_000_000
 """Segments that are made before they are counted against the device's own limit."""

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.samples import Samples
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.pwm import steady_of
-from thermicon.circuit.solver.simulate import rows_until
-from thermicon.circuit.solver.steady import steady_state
+from ..rig.skin import Array
+from ..safety.corners import corners_of
+from ..solver.batch_inputs import Bank, cut, run_forward
+from ..solver.network import network_of
+from ..solver.pwm import steady_of
+from ..solver.simulate import rows_until
+from ..solver.steady import steady_state
+from .realised import Realised
+from .samples import Samples
 
 ROWS_HZ = 10.0
 """Rows a second in which extremes are looked for; the steps inside are finer."""

@@ -11,18 +11,19 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.samples import Samples, led, rate_of
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import bank_of, run_follow, run_regulate
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, baseline_C, design, design_ideal, gains_of
-from thermicon.circuit.solver.simulate import duration_s, simulate_current
-from thermicon.circuit.solver.steady import hold
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.batch_inputs import bank_of, run_follow, run_regulate
+from ..solver.drive import Drive
+from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
+from ..solver.simulate import duration_s, simulate_current
+from ..solver.steady import hold
+from .device import Device
+from .devicefile import DeviceError
+from .realised import Realised
+from .samples import Samples, led, rate_of
 
 
 def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:

@@ -9,11 +9,11 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.displayed import part_of
-from thermicon.circuit.solver.prescribed import shown
+from ..rig.skin import Array
+from ..solver.displayed import part_of
+from ..solver.prescribed import shown
+from .device import Device
+from .setpoints import Setpoints
 
 
 def lag_of(device: Device) -> float:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.rig.parts import Thermode
+from .parts import Thermode
 
 if TYPE_CHECKING:
-    from thermicon.circuit.rig.rig import Rig
+    from .rig import Rig
 
 WIDTH = 118
 

@@ -7,12 +7,12 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
-from thermicon.circuit.rig.modules import PARAMETERS
-from thermicon.circuit.rig.parts import HeatSink
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
+from ..inputs import signed
+from .module import ZERO_C_IN_K, Peltier
+from .modules import PARAMETERS
+from .parts import HeatSink
+from .rig import Rig
+from .rigfile import RigError
 
 
 def perturbed(

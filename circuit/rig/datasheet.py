@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
+from .module import ZERO_C_IN_K, Peltier
 
 Method = Literal["three", "four"]
 

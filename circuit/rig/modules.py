@@ -9,13 +9,13 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.inputs import nearest
-from thermicon.circuit.records import Record, RecordError, Table, load_records
-from thermicon.circuit.rig.datasheet import Datasheet, Extraction, at_mean_C
-from thermicon.circuit.rig.module import Peltier
+from ..inputs import nearest
+from ..records import Record, RecordError, Table, load_records
+from .datasheet import Datasheet, Extraction, at_mean_C
+from .module import Peltier
 
 if TYPE_CHECKING:
-    from thermicon.circuit.rig.rigfile import ModuleTable
+    from .rigfile import ModuleTable
 
 COLUMNS = (
     "module",

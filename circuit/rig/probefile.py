@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import cache
 from importlib import resources
 
-from thermicon.circuit.records import Table, load_records
-from thermicon.circuit.rig.parts import Probe
-from thermicon.circuit.rig.rigfile import ProbeTable
+from ..records import Table, load_records
+from .parts import Probe
+from .rigfile import ProbeTable
 
 
 @cache

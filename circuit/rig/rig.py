@@ -10,11 +10,11 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.inputs import nearest, read_text
-from thermicon.circuit.rig.about import about
-from thermicon.circuit.rig.module import Peltier
-from thermicon.circuit.rig.modules import ModuleOrigin, module_names, module_of, unlike_before
-from thermicon.circuit.rig.parts import (
+from ..inputs import nearest, read_text
+from .about import about
+from .module import Peltier
+from .modules import ModuleOrigin, module_names, module_of, unlike_before
+from .parts import (
     Ambient,
     Contact,
     Controller,
@@ -25,13 +25,13 @@ from thermicon.circuit.rig.parts import (
     Thermode,
     Uncertainty,
 )
-from thermicon.circuit.rig.probefile import probes_of
-from thermicon.circuit.rig.receptors import HORNY_LAYER, ReceptorDepths
-from thermicon.circuit.rig.rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.settings import put_all, read_settings
-from thermicon.circuit.rig.skin import Column, Layer, Skin, column_of
-from thermicon.circuit.rig.uncertainty import surer, uncertainty_of
+from .probefile import probes_of
+from .receptors import HORNY_LAYER, ReceptorDepths
+from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
+from .rules import Limits
+from .settings import put_all, read_settings
+from .skin import Column, Layer, Skin, column_of
+from .uncertainty import surer, uncertainty_of
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import (
+from ..inputs import (
     LONGEST_NAME,
     TEXT_FAULT,
     InputError,
@@ -19,10 +19,10 @@ from thermicon.circuit.inputs import (
     quoted,
     read_toml,
 )
-from thermicon.circuit.rig.keyunits import unit_of
-from thermicon.circuit.rig.modules import module_faults
-from thermicon.circuit.rig.rules import faults_of
-from thermicon.circuit.rig.uncertainty import uncertainty_faults
+from .keyunits import unit_of
+from .modules import module_faults
+from .rules import faults_of
+from .uncertainty import uncertainty_faults
 
 
 class RigError(InputError):

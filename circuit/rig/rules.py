@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.records import Record, Table, load_records
+from ..inputs import signed
+from ..records import Record, Table, load_records
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4
 """Fewest characters and different words of a reason for a loosened limit: a sentence, not a word."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from thermicon.circuit.rig.modules import PARAMETERS, build_of, module_names
-from thermicon.circuit.rig.rigfile import RigError, parse_toml, rig_keys, unknown_key
+from .modules import PARAMETERS, build_of, module_names
+from .rigfile import RigError, parse_toml, rig_keys, unknown_key
 
 _OPTIONAL = ("controller", "uncertainty", "safety")
 """Tables that a rig need not have; the first key that is set makes one."""

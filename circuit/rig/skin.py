@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.receptors import HORNY_LAYER, ReceptorDepths
+from .receptors import HORNY_LAYER, ReceptorDepths
 
 Array = npt.NDArray[np.float64]
 

@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 
-from thermicon.circuit.records import Table, load_records
-from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.rig.rules import SHORTEST_REASON, is_reason
+from ..records import Table, load_records
+from .parts import Uncertainty
+from .rules import SHORTEST_REASON, is_reason
 
 _WORDS = {
     "contact_resistance_relative": ("contact resistance", 100.0, "%"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 
-from thermicon.circuit.inputs import signed
+from ..inputs import signed
 
 LEVEL = 1e-6
 """What is as near as this to the extreme, in its unit, has reached it: a level that is held has no latest row."""

@@ -12,9 +12,9 @@ import itertools
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.corner import perturbed
-from thermicon.circuit.rig.rig import Rig
+from ..inputs import signed
+from ..rig.corner import perturbed
+from ..rig.rig import Rig
 
 _WORDS = {
     "contact_relative": ("contact", 100.0, "%"),

@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
-from thermicon.circuit.solver.batch_inputs import Bank, Intervals, State, run_on
-from thermicon.circuit.solver.poweroff import unpowered
-from thermicon.circuit.solver.steady import steady_state
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.batch_inputs import Bank, Intervals, State, run_on
+from ..solver.poweroff import unpowered
+from ..solver.steady import steady_state
+from .ensemble import Ensemble
+from .tally import HOTTEST_C, WATCHED, Tally
 
 ENDING_S = 60.0
 ENDINGS = ("last value held", "zero current", "power off")
@@ -77,7 +77,7 @@ def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: A
 
     `dose_before` (corners,) in min CEM43 is what the drive has added.
     """
-    from thermicon.circuit.safety.exposure import cem43_min
+    from .exposure import cem43_min
 
     most = next(rule.limit for rule in limits.rules if rule.quantity == "thermal dose")
     times = np.concatenate([[0.0], np.geomspace(1.0, session_s, 120)])

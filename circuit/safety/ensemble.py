@@ -11,17 +11,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.corners import Corner, corners_of
-from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED
-from thermicon.circuit.solver.batch_inputs import Bank, Index, Intervals, State, cut, run_on
-from thermicon.circuit.solver.constant_current import ConstantCurrent
-from thermicon.circuit.solver.drive import Drive, DriveError
-from thermicon.circuit.solver.network import Network, network_of
-from thermicon.circuit.solver.pwm import steady_of
-from thermicon.circuit.solver.steady import check_sink, steady_state
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from ..solver.batch_inputs import Bank, Index, Intervals, State, cut, run_on
+from ..solver.constant_current import ConstantCurrent
+from ..solver.drive import Drive, DriveError
+from ..solver.network import Network, network_of
+from ..solver.pwm import steady_of
+from ..solver.steady import check_sink, steady_state
+from .corners import Corner, corners_of
+from .tally import HOTTEST_C, WATCHED
 
 ROW_S, FINEST_S = 0.01, 1e-4
 """The longest and the shortest distance of rows; in 0.1 ms no plate moves by more than a few millikelvins."""

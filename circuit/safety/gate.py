@@ -7,16 +7,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.uncertainty import stated, surer
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
-from thermicon.circuit.safety.demands import Demands
-from thermicon.circuit.safety.endings import ENDING_S, ENDINGS
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.repeated import (
+from ..inputs import signed
+from ..rig.parts import Uncertainty
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from ..rig.uncertainty import stated, surer
+from ..solver.drive import Drive
+from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
+from .demands import Demands
+from .endings import ENDING_S, ENDINGS
+from .ensemble import Ensemble
+from .repeated import (
     LONGEST_PAUSE_S,
     Repeated,
     Repeating,
@@ -24,10 +25,9 @@ from thermicon.circuit.safety.repeated import (
     plays_in,
     shortest_pause_s,
 )
-from thermicon.circuit.safety.repetition import Cycle, mapped
-from thermicon.circuit.safety.scenarios import rest_of
-from thermicon.circuit.safety.single import Single
-from thermicon.circuit.solver.drive import Drive
+from .repetition import Cycle, mapped
+from .scenarios import rest_of
+from .single import Single
 
 WHAT_IT_IS_NOT = (
     "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
-from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.trace import Trace
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.trace import Trace
+from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
+from .tally import WATCHED, Tally
 
 
 @dataclass(frozen=True, slots=True)

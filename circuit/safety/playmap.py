@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import State
-from thermicon.circuit.solver.drive import Drive
+from ..rig.skin import Array
+from ..solver.batch_inputs import State
+from ..solver.drive import Drive
 
 if TYPE_CHECKING:
-    from thermicon.circuit.safety.ensemble import Ensemble
+    from .ensemble import Ensemble
 
 MOST_STEPS = 20_000
 """A drive of more steps is run again and again instead: a map takes some 50 runs, a search for a cycle about ten."""

@@ -9,15 +9,15 @@ from functools import partial
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, as_dict, colour_of, findings_of, hard_reason
-from thermicon.circuit.safety.endings import ENDINGS, follow_endings
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.repetition import Cycle, bound, steady_cycle
-from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.batch_inputs import State
+from ..inputs import InputError
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.batch_inputs import State
+from .checks import Check, as_dict, colour_of, findings_of, hard_reason
+from .endings import ENDINGS, follow_endings
+from .ensemble import Ensemble
+from .repetition import Cycle, bound, steady_cycle
+from .tally import WATCHED, Tally
 
 RECOVERED_K = 0.1
 LONGEST_PAUSE_S = 600.0

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.ensemble import Ensemble, row_of
-from thermicon.circuit.safety.playmap import MOST_STEPS, NEAR_K, PlayMap, least_bound
-from thermicon.circuit.safety.tally import COLDEST_C, HOTTEST_C
-from thermicon.circuit.solver.batch_inputs import Index, State
-from thermicon.circuit.solver.drive import Drive
+from ..rig.skin import Array
+from ..solver.batch_inputs import Index, State
+from ..solver.drive import Drive
+from .ensemble import Ensemble, row_of
+from .playmap import MOST_STEPS, NEAR_K, PlayMap, least_bound
+from .tally import COLDEST_C, HOTTEST_C
 
 CLOSE_K = 2e-5
 """A cycle is steady when it comes back to where it began within this."""

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, ROWS_S, without_power
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.solver.drive import Drive, DriveError
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.drive import Drive, DriveError
+from .corners import Corner
+from .endings import ENDING_S, ENDINGS, ROWS_S, without_power
+from .ensemble import Ensemble
+from .tally import WATCHED
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, fields
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.safety.checks import Check, as_dict, beyond, colour_of, findings_of, hard_reason, soft_cautions
-from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
-from thermicon.circuit.safety.sessionplan import SessionPlan
-from thermicon.circuit.solver.trace import Trace
+from ..rig.parts import Uncertainty
+from ..rig.rules import Limits
+from ..solver.trace import Trace
+from .checks import Check, as_dict, beyond, colour_of, findings_of, hard_reason, soft_cautions
+from .gate import WHAT_IT_IS_NOT
+from .sessionplan import SessionPlan
 
 if TYPE_CHECKING:
     import pandas as pd

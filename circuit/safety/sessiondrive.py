@@ -8,14 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan, check_length
-from thermicon.circuit.solver.batch_inputs import bank_of, run_follow, run_regulate
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import Design, baseline_C, design, gains_of, target_at
-from thermicon.circuit.solver.simulate import duration_s, simulate
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.batch_inputs import bank_of, run_follow, run_regulate
+from ..solver.drive import Drive
+from ..solver.inverse import Design, baseline_C, design, gains_of, target_at
+from ..solver.simulate import duration_s, simulate
+from .sessionplan import SessionError, SessionPlan, check_length
 
 TRACKINGS = ("replay", "display")
 """The current of each icon open loop, as exported drives are played; or its display temperature, as a thermode does."""

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, read_text
 from thermicon.icons import IconSet
+
+from ..inputs import InputError, read_text
 
 MOST_PLAYS = 5_000
 """More plays than fit into the longest session with icons of 2 s."""

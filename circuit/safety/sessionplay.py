@@ -7,21 +7,22 @@ from itertools import pairwise
 
 import numpy as np
 
-from thermicon.circuit.inputs import nearest
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import findings_of
-from thermicon.circuit.safety.exposure import cem43_min, henriques
-from thermicon.circuit.safety.limits import SafetyVerdict, checks_of
-from thermicon.circuit.safety.session import Play, Session, TimeBeyond
-from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
-from thermicon.circuit.safety.sessionplan import SessionError, SessionPlan
-from thermicon.circuit.safety.sessionworst import Progress, worst_case_of
-from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.solver.simulate import simulate_current
-from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
+
+from ..inputs import nearest
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.simulate import simulate_current
+from ..solver.trace import Trace
+from .checks import findings_of
+from .exposure import cem43_min, henriques
+from .limits import SafetyVerdict, checks_of
+from .session import Play, Session, TimeBeyond
+from .sessiondrive import SessionDrive, drive_of
+from .sessionplan import SessionError, SessionPlan
+from .sessionworst import Progress, worst_case_of
+from .tally import WATCHED
 
 PLACES = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
 """Columns of temperatures that limits are about, where it is not the skin surface."""

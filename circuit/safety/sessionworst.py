@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.safety.checks import Check, worst_of
-from thermicon.circuit.safety.endings import ENDINGS, follow_endings, judge_the_end
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.repeated import recovery_s, skin_C
-from thermicon.circuit.safety.sessiondrive import SessionDrive
-from thermicon.circuit.safety.tally import Tally
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from .checks import Check, worst_of
+from .endings import ENDINGS, follow_endings, judge_the_end
+from .ensemble import Ensemble
+from .repeated import recovery_s, skin_C
+from .sessiondrive import SessionDrive
+from .tally import Tally
 
 Progress = Callable[[int, int], None]
 

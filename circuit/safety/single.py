@@ -6,17 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, worst_of
-from thermicon.circuit.safety.demands import Demands
-from thermicon.circuit.safety.endings import ENDINGS, dose_time_s, follow_endings, judge_the_end, zero_current_C
-from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.repeated import Repeated, recovery_s, skin_C
-from thermicon.circuit.safety.single_faults import Faulty
-from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.batch_inputs import State
-from thermicon.circuit.solver.drive import Drive
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.batch_inputs import State
+from ..solver.drive import Drive
+from .checks import Check, worst_of
+from .demands import Demands
+from .endings import ENDINGS, dose_time_s, follow_endings, judge_the_end, zero_current_C
+from .ensemble import Ensemble
+from .repeated import Repeated, recovery_s, skin_C
+from .single_faults import Faulty
+from .tally import WATCHED, Tally
 
 MOST_CORNERS = 6
 """Corners in which single faults are looked at: the rig as given, and those that go farthest."""

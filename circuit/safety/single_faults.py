@@ -10,15 +10,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.rules import Limits, Rule
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import colour_of, findings_of
-from thermicon.circuit.safety.demands import CutOff, PolarityCheck, SingleFault
-from thermicon.circuit.safety.ensemble import Ensemble, between, held_currents
-from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.batch_inputs import Index, Intervals, State, run_on
-from thermicon.circuit.solver.drive import Drive
+from ..inputs import signed
+from ..rig.rules import Limits, Rule
+from ..rig.skin import Array
+from ..solver.batch_inputs import Index, Intervals, State, run_on
+from ..solver.drive import Drive
+from .checks import colour_of, findings_of
+from .demands import CutOff, PolarityCheck, SingleFault
+from .ensemble import Ensemble, between, held_currents
+from .tally import WATCHED, Tally
 
 HANG_S, INSTANTS = 60.0, 16
 """How long a current that hangs is followed, and at how many instants of a drive it may hang."""

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from thermicon.circuit.safety.limits import judge_safety
-from thermicon.circuit.solver.trace import Trace
+from ..solver.trace import Trace
+from .limits import judge_safety
 
 HELD = ("skin", "display")
 """Controls whose current is held from row to row; others are taken as linear between rows."""

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rules import Limits, Rule
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import LEVEL, Check
-from thermicon.circuit.safety.exposure import cem43_min, henriques
+from ..rig.rules import Limits, Rule
+from ..rig.skin import Array
+from .checks import LEVEL, Check
+from .exposure import cem43_min, henriques
 
 WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""

@@ -13,17 +13,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.circuit.rig.corner import perturbed
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.endings import ENDING_S, LATER_S
-from thermicon.circuit.safety.playmap import PlayMap, least_bound
-from thermicon.circuit.safety.repeated import RECOVERED_K
-from thermicon.circuit.safety.repeated import ROWS_S as RECOVERY_ROWS_S
-from thermicon.circuit.safety.tally import WATCHED, Tally
-from thermicon.circuit.solver.prescribed import FELT, SkinModes, modes_of
+from ..rig.corner import perturbed
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from ..solver.prescribed import FELT, SkinModes, modes_of
+from .corners import Corner
+from .endings import ENDING_S, LATER_S
+from .playmap import PlayMap, least_bound
+from .repeated import RECOVERED_K
+from .repeated import ROWS_S as RECOVERY_ROWS_S
+from .tally import WATCHED, Tally
 
 LAST, LOST = "last set-point held", "control lost"
 ENDINGS = (LAST, LOST)

@@ -7,24 +7,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thermicon.circuit.inputs import signed
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.safety.checks import Check, colour_of, findings_of, worst_of
-from thermicon.circuit.safety.demands import CutOff, Demands, SingleFault
-from thermicon.circuit.safety.endings import ENDING_S
-from thermicon.circuit.safety.gate import Gate
-from thermicon.circuit.safety.repeated import (
+from ..inputs import signed
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from .checks import Check, colour_of, findings_of, worst_of
+from .demands import CutOff, Demands, SingleFault
+from .endings import ENDING_S
+from .gate import Gate
+from .repeated import (
     LONGEST_PAUSE_S,
     Repeated,
     check_pause,
     pause_rows,
     shortest_of,
 )
-from thermicon.circuit.safety.single_faults import BEYOND_K, MARGIN
-from thermicon.circuit.safety.tally import Tally
-from thermicon.circuit.safety.thermode import (
+from .single_faults import BEYOND_K, MARGIN
+from .tally import Tally
+from .thermode import (
     ENDINGS,
     Shown,
     Under,

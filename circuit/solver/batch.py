@@ -8,16 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import Bank, Index, cut, run_follow, run_forward, run_regulate
-from thermicon.circuit.solver.displayed_batch import displays_on
-from thermicon.circuit.solver.inverse import baseline_C, design, design_many, gains_of, periods, target_at
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.simulate import rows_until, simulate
-from thermicon.circuit.solver.steady import hold, steady_state
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .batch_inputs import Bank, Index, cut, run_follow, run_forward, run_regulate
+from .displayed_batch import displays_on
+from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
+from .network import network_of
+from .simulate import rows_until, simulate
+from .steady import hold, steady_state
 
 TRACKINGS = ("replay", "display", "ideal")
 """What each rig is played: the nominal current open loop, the nominal display trajectory, or its own solution."""

@@ -10,10 +10,10 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.cores import cores
-from thermicon.circuit.solver.network import PROBES, Network, network_of
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from .cores import cores
+from .network import PROBES, Network, network_of
 
 Index = npt.NDArray[np.int64]
 
@@ -137,7 +137,7 @@ def run_on(
     extra: tuple[Index, Array] | None = None,
 ) -> tuple[Array, State]:  # fmt: skip
     """`run_forward` from states that may be in the middle of something; returns also the states at the end."""
-    from thermicon.circuit.solver import kernel, kernel_batch
+    from . import kernel, kernel_batch
 
     which = [PROBES.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
@@ -165,7 +165,7 @@ def run_follow(
     bank: Bank, rig_of: Index, cue_of: Index, period_s: float, target_C: Array, skin_control: bool, state: Array
 ) -> tuple[Array, Array, Index]:
     """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
-    from thermicon.circuit.solver import kernel, kernel_batch
+    from . import kernel, kernel_batch
 
     shape = (len(rig_of), target_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
@@ -192,7 +192,7 @@ def run_regulate(
     state: Array,
 ) -> tuple[Array, Array, Index]:
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
-    from thermicon.circuit.solver import kernel_pid
+    from . import kernel_pid
 
     shape = (len(rig_of), setpoint_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
@@ -220,7 +220,7 @@ def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SH
     if lanes < FEWEST:
         work(np.arange(lanes, dtype=np.int64))
         return
-    from thermicon.circuit.solver.kernel_batch import LANES
+    from .kernel_batch import LANES
 
     count = -(-lanes // LANES)
     blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)

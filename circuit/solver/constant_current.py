@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import Index
-from thermicon.circuit.solver.network import COLD, HOT, PROBES, SKIN, Network
+from ..rig.module import ZERO_C_IN_K
+from ..rig.skin import Array
+from .batch_inputs import Index
+from .network import COLD, HOT, PROBES, SKIN, Network
 
 READ = PROBES[:5]
 """What can be read: the temperatures of PROBES."""

@@ -8,8 +8,8 @@ from importlib import resources
 
 import numpy as np
 
-from thermicon.circuit.records import Table, load_records
-from thermicon.circuit.solver.trace import Trace
+from ..records import Table, load_records
+from .trace import Trace
 
 PLACES = {"skin": "skin_C", "cold receptor": "cold_receptor_C", "warm receptor": "warm_receptor_C"}
 

@@ -11,16 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.parts import Thermode
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.inverse import baseline_C, steps_at, target_at
-from thermicon.circuit.solver.network import skin_network_of
-from thermicon.circuit.solver.prescribed import FELT, Index, SkinModes, modes_of, modes_on, shown
-from thermicon.circuit.solver.probes import joined, readings_of, sensed
-from thermicon.circuit.solver.trace import Outcome, Trace, judge
 from thermicon.icons import Icon
+
+from ..rig.parts import Thermode
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .inverse import baseline_C, steps_at, target_at
+from .network import skin_network_of
+from .prescribed import FELT, Index, SkinModes, modes_of, modes_on, shown
+from .probes import joined, readings_of, sensed
+from .trace import Outcome, Trace, judge
 
 FINEST_S = 0.01
 """Longer updates are divided into equal parts of at most this, so that lag and skin are resolved within them."""

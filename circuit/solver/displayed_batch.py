@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.displayed import design_display
-from thermicon.circuit.solver.prescribed import FELT, modes_of
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .displayed import design_display
+from .prescribed import FELT, modes_of
 
 
 def displays_on(

@@ -5,8 +5,8 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.trace import Trace
+from ..rig.skin import Array
+from .trace import Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

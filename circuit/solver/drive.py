@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, quoted, read_text
-from thermicon.circuit.rig.skin import Array
-from thermicon.icons.cleaning import clean_line
+from thermicon.icons.model.cleaning import clean_line
+
+from ..inputs import InputError, quoted, read_text
+from ..rig.skin import Array
 
 COLUMNS = ("time_s", "current_A")
 MOST_MB, LONGEST_CELL = 200, 60

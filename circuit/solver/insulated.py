@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.parts import Probe
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
+from ..rig.parts import Probe
+from ..rig.rig import Rig
+from ..rig.skin import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def insulated_C(rig: Rig, probe: Probe, time_s: Array, display_C: Array, lumps_C
 
     Steps from row to row by the trapezoidal rule, and starts steady.
     """
-    from thermicon.circuit.solver import kernel_probes
+    from . import kernel_probes
 
     column = beside_of(rig, probe)
     at = probe.insulation_m2K_per_W + rig.skin.resistance_to_m2K_per_W(probe.depth_m)

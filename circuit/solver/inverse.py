@@ -8,13 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.steady import hold
-from thermicon.circuit.solver.trace import Outcome, judge
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from .batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
+from .drive import Drive
+from .steady import hold
+from .trace import Outcome, judge
 
 LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
 """What held a current back, by the code that the kernel writes."""

@@ -12,9 +12,9 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.solver import plate
+from ..compiled import kernel
+from ..rig.module import ZERO_C_IN_K
+from . import plate
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 greatest_cooling = compiled(plate.greatest_cooling_A)

@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.solver.kernel import (
+from ..rig.module import ZERO_C_IN_K
+from .kernel import (
     JUMP_A,
     LONGEST_STEP_S,
     SHORTEST_STEP_S,

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.solver.kernel import LONGEST_STEP_S, advance, compiled, factor, limited, load, settle, weighed
+from .kernel import LONGEST_STEP_S, advance, compiled, factor, limited, load, settle, weighed
 
 
 @compiled

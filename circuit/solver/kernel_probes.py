@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.compiled import kernel
+from ..compiled import kernel
 
 
 @kernel(nogil=True)

@@ -12,8 +12,8 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array, Column
+from ..rig.rig import Rig
+from ..rig.skin import Array, Column
 
 PROBES = (
     "hot_plate_C",

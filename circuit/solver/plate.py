@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K
+from ..rig.module import ZERO_C_IN_K
 
 
 def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:

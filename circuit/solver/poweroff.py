@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from thermicon.circuit.solver.network import Network
+from .network import Network
 
 SINK_C, SINK_LIMIT_W = 5, 14
 """Places among `Network.plates`."""

@@ -13,9 +13,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.network import COLD, HOT, PROBES, SKIN, Network, skin_network_of
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from .network import COLD, HOT, PROBES, SKIN, Network, skin_network_of
 
 FELT = PROBES[PROBES.index("display_C") :]
 """What a run under a prescribed display records: PROBES without the hot plate, which no thermode shows."""

@@ -10,13 +10,13 @@ import math
 
 import numpy as np
 
-from thermicon.circuit.rig.parts import Probe
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import Index
-from thermicon.circuit.solver.insulated import insulated_C
-from thermicon.circuit.solver.network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
+from ..rig.parts import Probe
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .batch_inputs import Index
+from .insulated import insulated_C
+from .network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
 
 SLOWEST_ROWS_S = 0.01
 """What has a memory of its own, a lag or a second column, is stepped at least this finely, whatever the rows."""
@@ -106,7 +106,7 @@ def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[
 def _lagged(probe: Probe, time_s: Array, value: Array) -> Array:
     if not probe.lag_s:
         return value
-    from thermicon.circuit.solver import kernel_probes
+    from . import kernel_probes
 
     out = np.empty_like(value)
     kernel_probes.lagged(time_s, value, probe.lag_s, out)

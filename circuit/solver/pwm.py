@@ -10,12 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.steady import steady_state
+from ..rig.module import ZERO_C_IN_K, Peltier
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from .drive import Drive
+from .network import network_of
+from .steady import steady_state
 
 RESISTANCE = 1
 """Place of the module's resistance among `Network.plates`."""

@@ -6,19 +6,20 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.batch_inputs import FEWEST, Index, bank_of, cut, run_forward
-from thermicon.circuit.solver.displayed import play_display, refuse_current
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import baseline_C, design, design_many, target_at
-from thermicon.circuit.solver.network import PROBES, network_of
-from thermicon.circuit.solver.probes import between, divided, joined, readings_of, sensed
-from thermicon.circuit.solver.steady import check_sink, hold, steady_state
-from thermicon.circuit.solver.trace import Outcome, Trace
 from thermicon.icons import Icon
+
+from ..rig.module import ZERO_C_IN_K, Peltier
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from .displayed import play_display, refuse_current
+from .drive import Drive
+from .inverse import baseline_C, design, design_many, target_at
+from .network import PROBES, network_of
+from .probes import between, divided, joined, readings_of, sensed
+from .steady import check_sink, hold, steady_state
+from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
 HOTTEST_C = 1000.0

@@ -5,16 +5,17 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.rig.parts import Thermode
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.solver.displayed import refuse_current
-from thermicon.circuit.solver.inverse import baseline_C
-from thermicon.circuit.solver.network import COLD, HOT, network_of
-from thermicon.circuit.solver.prescribed import modes_of
-from thermicon.circuit.solver.steady import hold, holding_current_A, steady_state
 from thermicon.icons import Corners, Icon
+
+from ..rig.module import ZERO_C_IN_K
+from ..rig.parts import Thermode
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from .displayed import refuse_current
+from .inverse import baseline_C
+from .network import COLD, HOT, network_of
+from .prescribed import modes_of
+from .steady import hold, holding_current_A, steady_state
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:

@@ -6,12 +6,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.network import COLD, HOT, SKIN, Network, network_of
-from thermicon.circuit.solver.plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
+from ..rig.module import ZERO_C_IN_K
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import Array
+from .network import COLD, HOT, SKIN, Network, network_of
+from .plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
 
 @lru_cache(maxsize=512)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.circuit.rig.rules import Limits
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.network import PROBES
+from ..rig.rules import Limits
+from ..rig.skin import Array
+from .network import PROBES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -108,7 +108,7 @@ class Trace:
         )
 
     def _repr_html_(self) -> str:
-        from thermicon.circuit.solver.draw import svg_of
+        from .draw import svg_of
 
         return svg_of(self)
 
@@ -147,7 +147,7 @@ class Trace:
 
     def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
         """Draw target, display, skin and receptor temperatures against time, and probes if asked; returns the Axes."""
-        from thermicon.circuit.solver.draw import plot_temperatures
+        from .draw import plot_temperatures
 
         return plot_temperatures(self, ax, probes)
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.solver.simulate import simulate
-from thermicon.circuit.solver.steady import hold
-from thermicon.circuit.studies.meshstudy import Mesh, mesh_study
-from thermicon.circuit.studies.paper import (
+from ..rig.rig import Rig
+from ..solver.simulate import simulate
+from ..solver.steady import hold
+from .meshstudy import Mesh, mesh_study
+from .paper import (
     ControlledCue,
     Thermistors,
     coldest_display_C,

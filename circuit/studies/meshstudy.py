@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Array, column_of
-from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
-from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.inverse import baseline_C, design, periods, target_at
-from thermicon.circuit.solver.network import Network, network_on
-from thermicon.circuit.solver.simulate import rows_until
-from thermicon.circuit.solver.steady import holding_current_A, steady_state
 from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, Array, column_of
+from ..solver.batch_inputs import Bank, cut, run_follow, run_forward
+from ..solver.drive import Drive
+from ..solver.inverse import baseline_C, design, periods, target_at
+from ..solver.network import Network, network_on
+from ..solver.simulate import rows_until
+from ..solver.steady import holding_current_A, steady_state
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -147,7 +148,7 @@ class MeshStudy:
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the error of every mesh in mK against time, solid at cold, dashed at warm depth; returns the Axes."""
-        from thermicon.circuit.studies.studydraw import plot_mesh_study
+        from .studydraw import plot_mesh_study
 
         return plot_mesh_study(self, ax)
 

@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.records import Table, load_records
-from thermicon.circuit.rig.rig import Rig
-from thermicon.circuit.rig.skin import Array
-from thermicon.circuit.solver.depths import Likeness, probe_depths, resembles
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.simulate import simulate
-from thermicon.circuit.solver.steady import steady_state
-from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon, load_library
+
+from ..records import Table, load_records
+from ..rig.rig import Rig
+from ..rig.skin import Array
+from ..solver.network import network_of
+from ..solver.simulate import simulate
+from ..solver.steady import steady_state
+from ..solver.trace import Trace
+from .depths import Likeness, probe_depths, resembles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,7 +105,7 @@ class ControlledCue:
 
     def plot(self, ax: Axes | None = None, control: str = "skin") -> Axes:
         """Draw target, display and skin under `skin` or `display` control; returns the Axes."""
-        from thermicon.circuit.studies.studydraw import plot_controlled
+        from .studydraw import plot_controlled
 
         return plot_controlled(self.skin if control == "skin" else self.display, ax)
 
@@ -146,7 +147,7 @@ class Thermistors:
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the change of all three, and of the depth that the third resembles; returns the Axes."""
-        from thermicon.circuit.studies.studydraw import plot_thermistors
+        from .studydraw import plot_thermistors
 
         return plot_thermistors(self, ax)
 
@@ -205,7 +206,7 @@ class DermisChange:
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw change and fastest fall against depth, with what the paper says of both; returns the Axes."""
-        from thermicon.circuit.studies.studydraw import plot_dermis
+        from .studydraw import plot_dermis
 
         return plot_dermis(self, ax)
 
@@ -244,7 +245,7 @@ class MissByLimit:
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the miss against the limit, with the shipped limit and the module's own marked; returns the Axes."""
-        from thermicon.circuit.studies.studydraw import plot_miss
+        from .studydraw import plot_miss
 
         return plot_miss(self, ax)
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
+from ..solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit.solver.trace import Trace
-    from thermicon.circuit.studies.meshstudy import MeshStudy
-    from thermicon.circuit.studies.paper import DermisChange, MissByLimit, Thermistors
+    from ..solver.trace import Trace
+    from .meshstudy import MeshStudy
+    from .paper import DermisChange, MissByLimit, Thermistors
 
 MARKS = ("", "s", "o", "^", "D", "v", "x", "P")
 """Meshes carry marks, so that they can be told apart in grey; the first, the one judged, is the thick plain line."""
@@ -72,7 +72,7 @@ def plot_thermistors(found: Thermistors, ax: Axes | None = None) -> Axes:
 
 def plot_dermis(seen: DermisChange, ax: Axes | None = None) -> Axes:
     """Draw largest change and fastest fall against depth on a logarithmic axis, with the paper's two numbers."""
-    from thermicon.circuit.studies.paper import printed
+    from .paper import printed
 
     ax = new_axes(ax)
     depth = seen.depth_m * 1e3
@@ -95,7 +95,7 @@ def plot_dermis(seen: DermisChange, ax: Axes | None = None) -> Axes:
 
 def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     """Draw the largest miss against the current limit; filled where the cue counts as reached."""
-    from thermicon.circuit.studies.paper import printed
+    from .paper import printed
 
     ax = new_axes(ax)
     own = printed().one("module current").central

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-COMMAND = [sys.executable, "-m", "thermicon.notebooks.cli", "check", "six-icons"]
+COMMAND = [sys.executable, "-m", "thermicon.notebooks.cli.main", "check", "six-icons"]
 
 
 @pytest.mark.benchmark(group="check")

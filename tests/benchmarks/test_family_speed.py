@@ -11,7 +11,7 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from thermicon.icons import Family, Icon, back, format_text, hold, parse, ramp
-from thermicon.icons.source import MOST_BYTES
+from thermicon.icons.language.source import MOST_BYTES
 
 pytestmark = pytest.mark.benchmark
 MILLION = (

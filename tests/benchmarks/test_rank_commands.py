@@ -33,7 +33,7 @@ def ten_seconds(folder: Path, icons: int = 64) -> Path:
 def took(*words: str | Path) -> str:
     """Run a command of thermicon; its elapsed and processor time, and the most memory that any has had."""
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    command = [sys.executable, "-c", "from thermicon.notebooks.cli import main; main()", *map(str, words)]
+    command = [sys.executable, "-c", "from thermicon.notebooks.cli.main import main; main()", *map(str, words)]
     subprocess.run(command, check=True, capture_output=True)
     wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime

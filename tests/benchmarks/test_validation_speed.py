@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from thermicon.perception.validate import validate
+from thermicon.perception.validation.validate import validate
 
 LIMIT_S = 180.0
 

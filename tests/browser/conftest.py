@@ -62,7 +62,7 @@ def jupyterlab(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> It
 @pytest.fixture
 def lab(jupyterlab: Server) -> Iterator[Server]:
     """JupyterLab on the notebooks as ``thermicon lab --files-only`` puts them, fresh and without a kernel."""
-    from thermicon.notebooks.lab import copy_notebooks
+    from thermicon.notebooks.cli.lab import copy_notebooks
 
     theme = jupyterlab.log.parent / "settings/@jupyterlab/apputils-extension/themes.jupyterlab-settings"
     theme.unlink(missing_ok=True)

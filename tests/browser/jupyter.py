@@ -19,8 +19,8 @@ from pathlib import Path
 import nbformat
 from playwright.sync_api import Locator, Page
 
-from thermicon.notebooks.lab import command_of
-from thermicon.notebooks.startfolder import VARIABLE
+from thermicon.notebooks.cli.lab import command_of
+from thermicon.notebooks.files.start_folder import VARIABLE
 
 STARTS_WITHIN_S = 60.0
 RUNS_WITHIN_S = 90.0

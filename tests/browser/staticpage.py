@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy
 
-from thermicon.notebooks.canvas import module_text, style_text
+from thermicon.notebooks.workbench.canvas import module_text, style_text
 
 URL = "http://thermicon.test/"
 PAGE = """<!doctype html><html><head><meta charset="utf-8"><style>%s</style></head><body><div id="app"></div>

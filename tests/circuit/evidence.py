@@ -21,8 +21,8 @@ from tests.circuit.exported_files import Course, read_file, sidecar_in
 from tests.circuit.independent import Json
 from tests.circuit.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
 from thermicon.circuit import Prepared
-from thermicon.circuit.delivery.export import Gate, pack
 from thermicon.circuit.delivery.formats import Format, FormatError, load_format
+from thermicon.circuit.packing.export import Gate, pack
 
 PER_PART = 100
 LOOKED_AT = 6

@@ -6,8 +6,8 @@ from scipy.linalg import expm
 
 from thermicon.circuit import Drive, Rig, RigError, simulate_current
 from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.solver.depths import probe_depths, resembles
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.studies.depths import probe_depths, resembles
 from thermicon.icons import load_library
 
 STEP = load_library("six-icons")["cooling-step"]

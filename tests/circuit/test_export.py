@@ -21,10 +21,10 @@ from thermicon.circuit import (
     Verdict,
     prepare,
 )
-from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of
-from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
+from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.refusal import Refusal, needed_A, refusals_of
+from thermicon.circuit.packing.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest
 from thermicon.circuit.records import Record
 from thermicon.icons import load_library, parse

@@ -21,10 +21,10 @@ from tests.circuit.evidence import PER_PART, Told, run_part
 from tests.circuit.exported_files import read_file, sidecar_in
 from tests.circuit.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.spice_replay import by_ngspice
-from thermicon.circuit.delivery.export import Verdict, pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.worstcase import worst_case
+from thermicon.circuit.packing.export import Verdict, pack
+from thermicon.circuit.packing.worstcase import worst_case
 
 DRIVES = int(os.environ.get("THERMICON_EVIDENCE", "10000"))
 BY_NGSPICE, WITHIN_K = 300, 5e-3

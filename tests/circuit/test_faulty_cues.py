@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Rig, prepare, realise, worst_case
-from thermicon.circuit.delivery.export import Prepared, pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.packing.export import Prepared, pack
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon, parse
 

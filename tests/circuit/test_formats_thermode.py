@@ -15,9 +15,9 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Device, Realised, Rig, Setpoints, prepare, realise
-from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
+from thermicon.circuit.packing.export import pack
 from thermicon.icons import Corners, Icon, load_library, parse
 
 RIG = Rig.load("thenar")

@@ -15,10 +15,10 @@ import pytest
 
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Record, Rig, prepare
-from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
+from thermicon.circuit.packing.export import pack
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})

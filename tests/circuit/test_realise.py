@@ -22,7 +22,7 @@ from thermicon.circuit import (
 from thermicon.circuit.delivery.realise import traces_until
 from thermicon.circuit.delivery.samples import rate_of, within
 from thermicon.circuit.delivery.setpoints import closed, setpoints_of
-from thermicon.circuit.delivery.worstcase import worst_case
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import duty_of, steady_of, switched

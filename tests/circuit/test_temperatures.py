@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, DeviceError, Record, Rig, RigError, Samples, prepare, realise, simulate_current
-from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.realise import traces_until
 from thermicon.circuit.delivery.spread import open_loop_spread
+from thermicon.circuit.packing.export import pack
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.icons import load_library, parse
 

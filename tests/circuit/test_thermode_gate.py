@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Limits, Rig, realise, worst_case
-from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
+from thermicon.circuit.packing.worstcase import ways_of, worst_cases
 from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED

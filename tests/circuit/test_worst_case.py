@@ -7,8 +7,8 @@ from functools import cache
 import pytest
 
 from thermicon.circuit import Device, Drive, Prepared, Rig, gate, judge_safety, prepare, realise, worst_case
-from thermicon.circuit.delivery.export import pack
 from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.packing.export import pack
 from thermicon.circuit.safety.gate import gate_set
 from thermicon.icons import load_library, parse
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons import CueErrors, parse, read_cue
-from thermicon.icons.catalogue import Entry, catalogue, explain, page
-from thermicon.icons.errors import TITLES
-from thermicon.icons.exchange import from_json
+from thermicon.icons.files.catalogue import Entry, catalogue, explain, page
+from thermicon.icons.files.exchange import from_json
+from thermicon.icons.model.errors import TITLES
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "errors.md"
 ENTRIES = list(catalogue().values())

@@ -7,9 +7,16 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons import IconSet, library_names, load_library, parse
-from thermicon.icons.cite import AUTHORS, LICENCE, TITLE, bibtex, escaped, methods
-from thermicon.icons.course import course
-from thermicon.icons.references import BibliographyError, Reference, cited, plain_doi, read_references, references
+from thermicon.icons.papers.cite import AUTHORS, LICENCE, TITLE, bibtex, escaped, methods
+from thermicon.icons.papers.course import course
+from thermicon.icons.papers.references import (
+    BibliographyError,
+    Reference,
+    cited,
+    plain_doi,
+    read_references,
+    references,
+)
 
 ROOT = Path(__file__).parents[2]
 # Every DOI that a page was seen to show; one that is added to the bibliography is added here with the page.

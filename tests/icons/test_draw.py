@@ -10,10 +10,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from thermicon.icons import Frame, Hold, Icon, IconSet, Metadata, library, load_library, parse, plot_icon
-from thermicon.icons.corners import Corners
-from thermicon.icons.draw import plot_icons
-from thermicon.icons.picture import picture, thumbnail
-from thermicon.icons.strokes import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
+from thermicon.icons.model.corners import Corners
+from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
+from thermicon.icons.pictures.draw import plot_icons
+from thermicon.icons.pictures.picture import picture, thumbnail
 
 SIX = load_library("six-icons")
 SHAPES = parse("""cue 1
@@ -143,7 +143,7 @@ EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">
 def test_texts_cannot_become_markup(show: str) -> None:
     icon = Icon("a", (Hold(1),), Frame("skin", 32), Metadata(means=EVIL, by=EVIL))
     icons = IconSet("s", EVIL, icon.frame, Metadata(by=EVIL), (icon,))
-    from thermicon.icons.gallery import Library
+    from thermicon.icons.files.gallery import Library
 
     made = {
         "set": icons._repr_html_,
@@ -281,7 +281,7 @@ def test_an_unknown_shipped_set_is_told() -> None:
 
 
 def test_families_in_the_library_count_without_being_made() -> None:
-    from thermicon.icons.gallery import Library
+    from thermicon.icons.files.gallery import Library
 
     shelf = Library((("huge", HUGE),))
     assert shelf.entries[0].count == 1_000_000

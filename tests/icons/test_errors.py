@@ -4,7 +4,7 @@ import pytest
 
 from tests.icons.mistakes import ALL, DOWN, Mistake
 from thermicon.icons import CueError, CueErrors, parse
-from thermicon.icons.errors import TITLES
+from thermicon.icons.model.errors import TITLES
 
 
 def errors_of(text: str | bytes) -> tuple[CueError, ...]:

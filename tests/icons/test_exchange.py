@@ -36,10 +36,10 @@ from thermicon.icons import (
     parse,
     read_cue,
 )
-from thermicon.icons.exchange import from_json, to_json
-from thermicon.icons.exchangemodel import schema_text
-from thermicon.icons.exchangetypes import LIMITS
-from thermicon.icons.faults import fault
+from thermicon.icons.files.exchange import from_json, to_json
+from thermicon.icons.files.exchangetypes import LIMITS
+from thermicon.icons.files.json_schema import schema_text
+from thermicon.icons.model.value_limits import fault
 
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))
 VALID = Draft202012Validator(SCHEMA)

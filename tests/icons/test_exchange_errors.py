@@ -3,7 +3,7 @@
 import pytest
 
 from thermicon.icons import CueErrors
-from thermicon.icons.exchange import from_json
+from thermicon.icons.files.exchange import from_json
 
 
 def error(text: str | bytes) -> str:

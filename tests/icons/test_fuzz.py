@@ -13,7 +13,7 @@ from concurrent.futures import ProcessPoolExecutor
 import pytest
 
 from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
-from thermicon.icons.shipped import _folder
+from thermicon.icons.files.shipped import _folder
 
 EVERYTHING = """cue 1  # the version
 set everything "All of it" {

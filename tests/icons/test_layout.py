@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import thermicon.icons
 from tests.icons.test_roundtrip import families, icons, sets
 from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, library_names, parse
-from thermicon.icons.layout import tidy_number
+from thermicon.icons.language.layout import tidy_number
 
 COMMENTS = ["# one", "#", '# a "text" { } ; (', "#two  ", "# °C −5 °", "##"]
 NUMBERS = ["{}", "+{}", "{}.", "0{}", "{}e0", "{}E+00", "{}.0"]

@@ -28,7 +28,7 @@ from thermicon.icons import (
     load_library,
     parse,
 )
-from thermicon.icons.statements import Broken
+from thermicon.icons.model.statements import Broken
 
 HOLD = (Hold(1),)
 WAIT = Icon("wait", (Rest(1),))

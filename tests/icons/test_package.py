@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import thermicon.icons
 from thermicon.icons import Frame, Hold, Icon, load_library, plot_icon
-from thermicon.icons.draw import COOL, STAY, WARM
+from thermicon.icons.pictures.draw import COOL, STAY, WARM
 
 MODULES = [
     "thermicon.icons",

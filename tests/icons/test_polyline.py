@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from thermicon.icons.fewest import fewest_links
-from thermicon.icons.polyline import fit_corners, noise
+from thermicon.icons.recordings.fewest import fewest_links
+from thermicon.icons.recordings.polyline import fit_corners, noise
 
 Array = NDArray[np.float64]
 Corners = tuple[tuple[float, ...], tuple[float, ...]]

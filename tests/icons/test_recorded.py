@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from thermicon.icons import Change, Hold, Icon, Rest, Return, Step, parse
-from thermicon.icons.recorded import from_csv
+from thermicon.icons.recordings.recorded import from_csv
 
 Array = NDArray[np.float64]
 STEP = ((0.0, 2.0, 4.0, 8.0, 10.0, 12.0), (32.0, 32.0, 26.0, 26.0, 32.0, 32.0))
@@ -212,13 +212,13 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(ValueError, match="E003 unreadable file\n  the system says: Permission denied"):
         from_csv(path)
-    monkeypatch.setattr("thermicon.icons.readings.MOST_MB", 1e-5)
+    monkeypatch.setattr("thermicon.icons.recordings.readings.MOST_MB", 1e-5)
     with pytest.raises(ValueError, match="E004 file too large"):
         from_csv(path)
 
 
 def test_a_file_of_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("thermicon.icons.readings.MOST_ROWS", 4)
+    monkeypatch.setattr("thermicon.icons.recordings.readings.MOST_ROWS", 4)
     with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  keep every tenth row"):
         from_csv(written(tmp_path, DIP))
 

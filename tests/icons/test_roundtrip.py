@@ -31,8 +31,8 @@ from thermicon.icons import (
     Wave,
     parse,
 )
-from thermicon.icons.shapes import Shape
-from thermicon.icons.units import exact, quantity, to_si
+from thermicon.icons.model.shapes import Shape
+from thermicon.icons.model.units import exact, quantity, to_si
 
 TIMES = st.one_of(st.floats(1e-6, 50), st.integers(1, 999).map(lambda n: n / 1000), st.integers(1, 50).map(float))
 RATES = st.one_of(

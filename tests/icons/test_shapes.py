@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from thermicon.icons import Corners, Frame, Icon, Statement, parse, pulse, sine, square, step
-from thermicon.icons.corners import STEP_S
-from thermicon.icons.shapes import Shape, Wave
+from thermicon.icons.model.corners import STEP_S
+from thermicon.icons.model.shapes import Shape, Wave
 
 
 def lowered(body: str, settings: str = "") -> Corners:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from thermicon.icons import CueErrors, parse
-from thermicon.icons.source import MOST_BYTES
+from thermicon.icons.language.source import MOST_BYTES
 
 PAIR = "a in 1..1000 step 1 ms, b in 1..1000 step 1 ms"
 

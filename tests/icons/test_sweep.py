@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from thermicon.icons import CueErrors, Family, Wave, parse
-from thermicon.icons.check import MOST_CORNERS, corner_count
+from thermicon.icons.model.check import MOST_CORNERS, corner_count
 
 # Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
 VALUES = {

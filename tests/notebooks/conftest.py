@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from thermicon.notebooks.cli import app
+from thermicon.notebooks.cli.main import app
 
 TWO_ICONS = """cue 1
 
@@ -53,7 +53,7 @@ def process() -> Callable[..., Said]:
     """``process("check", "a.cue")`` runs a command as a person would, in a process of its own."""
 
     def run(*arguments: object, cwd: Path | None = None) -> Said:
-        command = [sys.executable, "-m", "thermicon.notebooks.cli", *(str(each) for each in arguments)]
+        command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *(str(each) for each in arguments)]
         done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=120, check=False)
         return Said(done.returncode, done.stdout, done.stderr)
 

@@ -19,9 +19,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.delivery.claims import claims_of
-from thermicon.notebooks import exportfolder, swapping
-from thermicon.notebooks.outputs import OutputError
+from thermicon.circuit.packing.claims import claims_of
+from thermicon.notebooks.files import export_folder as exportfolder
+from thermicon.notebooks.files import swapping
+from thermicon.notebooks.files.outputs import OutputError
 
 EVENTS = (
     "mkdir",

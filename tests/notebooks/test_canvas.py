@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from thermicon.notebooks.canvas import PARTS, STYLES, Canvas, module_text, style_text
+from thermicon.notebooks.workbench.canvas import PARTS, STYLES, Canvas, module_text, style_text
 
 FOLDER = Path(__file__).parents[2] / "notebooks" / "canvas_parts"
 

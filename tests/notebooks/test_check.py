@@ -68,7 +68,7 @@ def test_a_rest_that_the_language_does_not_know(cli: Cli, tmp_path: Path) -> Non
 @pytest.mark.parametrize("more", [(), ("--rig", "thenar")], ids=["alone", "with a rig"])
 def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...]) -> None:
     program = (
-        "import sys\nfrom thermicon.notebooks.cli import app\n"
+        "import sys\nfrom thermicon.notebooks.cli.main import app\n"
         "try:\n    app(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code\n"
         "print(*sorted({name.partition('.')[0] for name in sys.modules}))\n"
     )

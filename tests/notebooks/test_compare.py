@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.notebooks.comparefigure import compare_figure
-from thermicon.notebooks.curves import Curves, LogError, read_curves
-from thermicon.notebooks.differences import align, differences
+from thermicon.notebooks.figures.compare_figure import compare_figure
+from thermicon.notebooks.figures.differences import align, differences
+from thermicon.notebooks.files.trace_files import Curves, LogError, read_curves
 
 Cli = Callable[..., Any]
 

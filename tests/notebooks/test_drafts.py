@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.notebooks.drafts import draft_of, sweep
+from thermicon.notebooks.files.drafts import draft_of, sweep
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs signals")
 
@@ -19,7 +19,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="needs signals")
 def test_the_next_command_sweeps_the_draft_of_one_that_was_killed(tmp_path: Path) -> None:
     script = (
         "import os, signal, sys\nfrom pathlib import Path\n"
-        "from thermicon.notebooks.outputs import complete_or_absent\n"
+        "from thermicon.notebooks.files.outputs import complete_or_absent\n"
         "with complete_or_absent(Path(sys.argv[1])) as draft:\n"
         "    draft.write_text('half')\n    os.kill(os.getpid(), signal.SIGKILL)\n"
     )
@@ -28,7 +28,7 @@ def test_the_next_command_sweeps_the_draft_of_one_that_was_killed(tmp_path: Path
     (left,) = tmp_path.iterdir()
     mine = tmp_path / left.name.replace("thermicon-part", "part")
     mine.write_text("not a draft of ours")
-    again = "from pathlib import Path; import sys\nfrom thermicon.notebooks.outputs import complete_or_absent\n"
+    again = "from pathlib import Path; import sys\nfrom thermicon.notebooks.files.outputs import complete_or_absent\n"
     again += "with complete_or_absent(Path(sys.argv[1])) as draft: draft.write_text('x')\n"
     subprocess.run([sys.executable, "-c", again, tmp_path / "other.json"], check=True)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([mine.name, "other.json"])

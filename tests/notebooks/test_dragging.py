@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.dragging import Dragged, drag
-from thermicon.notebooks.handles import MOST_HANDLES, handles_of
-from thermicon.notebooks.reading import read_text
+from thermicon.notebooks.workbench.cue_check import read_text
+from thermicon.notebooks.workbench.dragging import Dragged, drag
+from thermicon.notebooks.workbench.handles import MOST_HANDLES, handles_of
 
 HEAD = "cue 1\n"
 

@@ -225,7 +225,7 @@ def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(
 def test_very_many_icons_are_not_compared_with_each_other(
     cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("thermicon.notebooks.exporting.MOST_COMPARED", 1)
+    monkeypatch.setattr("thermicon.notebooks.files.exporting.MOST_COMPARED", 1)
     said = cli("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
     assert said.exit_code == 0, said.stderr
     assert "warning: 2 icons are too many to compare with each other; d′ is left out" in said.stderr

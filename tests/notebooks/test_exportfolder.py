@@ -16,10 +16,11 @@ from typing import Any
 import pytest
 
 from tests.notebooks.surerig import SURE
-from thermicon.notebooks import exportfolder, swapping
-from thermicon.notebooks.exportfolder import check_export_folder, publish
-from thermicon.notebooks.locking import lock
-from thermicon.notebooks.outputs import OutputError
+from thermicon.notebooks.files import export_folder as exportfolder
+from thermicon.notebooks.files import swapping
+from thermicon.notebooks.files.export_folder import check_export_folder, publish
+from thermicon.notebooks.files.locking import lock
+from thermicon.notebooks.files.outputs import OutputError
 
 DYING = Path(__file__).with_name("dying.py")
 posix = pytest.mark.skipif(os.name != "posix", reason="needs fork and signals")
@@ -289,9 +290,9 @@ import json, os, sys, time
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from dying import drive
-from thermicon.circuit.delivery.claims import claims_of
-from thermicon.notebooks.exportfolder import publish
-from thermicon.notebooks.outputs import OutputError
+from thermicon.circuit.packing.claims import claims_of
+from thermicon.notebooks.files.export_folder import publish
+from thermicon.notebooks.files.outputs import OutputError
 folder, mine, rounds, same = Path(sys.argv[2]), sys.argv[3], int(sys.argv[4]), sys.argv[5] == "same"
 for turn in range(rounds):
     print("ready", flush=True)
@@ -369,7 +370,7 @@ class TestTwoAtOnce:
 
     @posix
     def test_two_commands(self, tmp_path: Path) -> None:
-        command = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "-o", "out"]
+        command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-icons", "-o", "out"]
         command += ["--icon", "warming-step", *SURE]
         runs = [
             subprocess.Popen([*command, "--to", name], cwd=tmp_path, stderr=subprocess.PIPE, text=True)

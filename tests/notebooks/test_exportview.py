@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from tests.notebooks.surerig import sure_rig
-from thermicon.notebooks.designing import Designing
-from thermicon.notebooks.exporting import prepare_icons, write
-from thermicon.notebooks.exportview import ExportView
-from thermicon.notebooks.outputs import OutputError
+from thermicon.notebooks.files.exporting import prepare_icons, write
+from thermicon.notebooks.files.outputs import OutputError
+from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.export_view import ExportView
 
 TWO = """cue 1
 icon dip { cool by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }

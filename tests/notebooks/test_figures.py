@@ -9,9 +9,10 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
-from thermicon.notebooks import overview, set_figure, sweepfigure
-from thermicon.notebooks.overview import COOL, WARM, single_map
-from thermicon.notebooks.setfigures import write_figures
+from thermicon.notebooks import overview, set_figure
+from thermicon.notebooks.figures import sweep_figure as sweepfigure
+from thermicon.notebooks.figures.overview import COOL, WARM, single_map
+from thermicon.notebooks.figures.set_figures import write_figures
 from thermicon.perception import Percept, perceive, rank
 
 

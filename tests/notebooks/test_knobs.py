@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
-from thermicon.notebooks.knobs import aged, apply, knobs_of
+from thermicon.notebooks.workbench.knobs import aged, apply, knobs_of
 from thermicon.perception import Observer, age_factor, perceive, perceive_many
 
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks import lab
+from thermicon.notebooks.cli.main import lab
 
 Cli = Callable[..., Any]
 FIRST = "01_first_icon.ipynb"
@@ -171,7 +171,7 @@ def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: 
     (tmp_path / "config").mkdir()
     (tmp_path / "config/jupyter_server_config.py").write_text("c.ServerApp.allow_root = True\n", encoding="utf-8")
     own = {f"JUPYTER_{name.upper()}_DIR": str(tmp_path / name) for name in ("config", "data", "runtime")}
-    command = [sys.executable, "-m", "thermicon.notebooks.cli", "lab", tmp_path / "mine", "--no-browser"]
+    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "lab", tmp_path / "mine", "--no-browser"]
     program = subprocess.Popen(
         [*command, *words, "--port", str(port)],
         env={**os.environ, **own},

@@ -184,6 +184,6 @@ def test_a_notebook_shows_pictures_and_stops_at_mistakes() -> None:
 
 
 def test_the_icons_do_not_import_ipython() -> None:
-    code = "import sys, thermicon.icons.picture, thermicon.notebooks; print('IPython' in sys.modules)"
+    code = "import sys, thermicon.icons.pictures.picture, thermicon.notebooks; print('IPython' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"

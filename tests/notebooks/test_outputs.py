@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.notebooks.outputs import (
+from thermicon.notebooks.files.outputs import (
     STDOUT,
     TRACE_SUFFIXES,
     OutputError,

@@ -16,8 +16,8 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.notebooks.outputs import OutputError
-from thermicon.notebooks.startfolder import VARIABLE, below_start
+from thermicon.notebooks.files.outputs import OutputError
+from thermicon.notebooks.files.start_folder import VARIABLE, below_start
 
 POSIX = sys.platform != "win32"
 TRAPS = ("voila", "jupyterlab", "json", "numba", "IPython", "ipykernel", "jupyter_server_config", "voila_config")
@@ -51,7 +51,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, Path
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     own = {f"JUPYTER_{name.upper()}_DIR": str(whole / name) for name in ("config", "data", "runtime")}
-    command = [sys.executable, "-P", "-m", "thermicon.notebooks.cli", "lab", ".", "--page", "--no-browser"]
+    command = [sys.executable, "-P", "-m", "thermicon.notebooks.cli.main", "lab", ".", "--page", "--no-browser"]
     log = whole / "log"
     with log.open("wb") as said:
         program = subprocess.Popen(
@@ -105,7 +105,7 @@ def test_no_file_of_the_folder_is_served(served: tuple[str, Path]) -> None:
 def test_one_page_is_rendered_and_too_many_are_refused(served: tuple[str, Path]) -> None:
     from concurrent.futures import ThreadPoolExecutor
 
-    from thermicon.notebooks.pageserver import MOST_KERNELS
+    from thermicon.notebooks.pages.page_server import MOST_KERNELS
 
     address, folder = served
     with ThreadPoolExecutor(MOST_KERNELS + 1) as pool:

@@ -14,9 +14,9 @@ import pytest
 from tests.notebooks.surerig import sure_rig
 from thermicon.circuit import Gate, Rig, pack
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.exporting import Ready, prepare_icons
-from thermicon.notebooks.exporttables import delivered_html, gate_html
-from thermicon.notebooks.gatewords import gate_words
+from thermicon.notebooks.files.exporting import Ready, prepare_icons
+from thermicon.notebooks.text.gate_words import gate_words
+from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
 
 Cli = Callable[..., Any]
 GLOW = """cue 1

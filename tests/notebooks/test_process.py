@@ -12,14 +12,14 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli import main
+from thermicon.notebooks.cli.main import main
 
 Cli = Callable[..., Any]
 
 
 def test_the_entry_point_is_the_command_line() -> None:
     (found,) = entry_points(group="console_scripts", name="thermicon")
-    assert found.value == "thermicon.notebooks.cli:main"
+    assert found.value == "thermicon.notebooks.cli.main:main"
 
 
 def test_the_version(process: Cli) -> None:
@@ -30,9 +30,9 @@ def test_the_version(process: Cli) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
 def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     program = (
-        "import os, signal, thermicon.notebooks.check as c\n"
+        "import os, signal, thermicon.notebooks.cli.check as c\n"
         "c.check = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n"
-        "from thermicon.notebooks.cli import main\nmain()\n"
+        "from thermicon.notebooks.cli.main import main\nmain()\n"
     )
     run = subprocess.run([sys.executable, "-c", program, "check", "x"], capture_output=True, text=True, check=False)
     assert run.returncode == 130
@@ -42,9 +42,9 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
 @pytest.mark.parametrize(
     "where",
     [
-        "thermicon.notebooks.door.TyperGroup.make_context",
-        "thermicon.notebooks.door.TyperGroup.invoke",
-        "thermicon.notebooks.cli.app",
+        "thermicon.notebooks.cli.app.TyperGroup.make_context",
+        "thermicon.notebooks.cli.app.TyperGroup.invoke",
+        "thermicon.notebooks.cli.main.app",
     ],
 )
 def test_an_interrupt_is_told_wherever_it_comes(
@@ -76,7 +76,7 @@ def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tup
     read, write = os.pipe()
     os.close(read)
     run = subprocess.run(
-        [sys.executable, "-m", "thermicon.notebooks.cli", *command],
+        [sys.executable, "-m", "thermicon.notebooks.cli.main", *command],
         cwd=two.parent, stdout=write, stderr=write, timeout=120, check=False,
     )  # fmt: skip
     os.close(write)
@@ -87,7 +87,7 @@ def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tup
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")
 def test_a_reader_that_goes_away_is_no_error() -> None:
-    command = [sys.executable, "-m", "thermicon.notebooks.cli", "simulate", "six-icons", "-o", "-"]
+    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "simulate", "six-icons", "-o", "-"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
         assert run.stdout is not None
         assert run.stderr is not None
@@ -103,7 +103,7 @@ def test_an_error_of_the_program_itself_is_not_hidden(monkeypatch: pytest.Monkey
     def broken(*_: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("thermicon.notebooks.check.check", broken)
+    monkeypatch.setattr("thermicon.notebooks.cli.check.check", broken)
     with pytest.raises(ZeroDivisionError):
         cli("check", "six-icons")
 
@@ -124,7 +124,7 @@ def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
 
 
 def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.tables import show, table
+    from thermicon.notebooks.text.tables import show, table
 
     made = table("icon")
     made.add_row("[red]loud[/red]")

@@ -14,12 +14,12 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.notebooks.asked import command_text
-from thermicon.notebooks.ranking import Request
-from thermicon.notebooks.report import LIMITS, SAFETY, report
-from thermicon.notebooks.reportpage import page
+from thermicon.notebooks.cli.command_line import command_text
+from thermicon.notebooks.cli.ranking import Request
+from thermicon.notebooks.pages.report import LIMITS, SAFETY, report
+from thermicon.notebooks.pages.report_page import page
 from thermicon.perception import Ranking, rank
-from thermicon.perception.request import Choosing
+from thermicon.perception.selection.request import Choosing
 
 Cli = Callable[..., Any]
 NASTY = """cue 1

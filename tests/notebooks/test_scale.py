@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks import cache
+from thermicon.notebooks.cli import cache
 
 Cli = Callable[..., Any]
 

@@ -8,8 +8,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.scene import scene
-from thermicon.notebooks.sceneplot import MOST_LINES, scene_figure, title_lines
+from thermicon.notebooks.workbench.scene import scene
+from thermicon.notebooks.workbench.scene_plot import MOST_LINES, scene_figure, title_lines
 
 DIP = "cue 1\nicon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }\n"
 DEEP = "cue 1\nicon deep { cool by 9 °C at 10 °C/s; hold for 4 s; return at 1 °C/s }\n"

@@ -89,9 +89,9 @@ def test_without_salib_the_cure_is_told(cli: Cli, two: Path, monkeypatch: pytest
 
 
 def test_nothing_that_moves_and_what_to_do() -> None:
-    from thermicon.notebooks.sensitivity import HOW, how, sentences
+    from thermicon.notebooks.cli.sensitivity import HOW, how, sentences
     from thermicon.perception import Sensitivity, observer_parameters
-    from thermicon.perception.stage import OTHERS
+    from thermicon.perception.sensitivity.simulation_grid import OTHERS
 
     still = Sensitivity("sobol", "thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
     assert sentences(still)[0] == "None of these moves the prediction."

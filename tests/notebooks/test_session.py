@@ -12,7 +12,7 @@ import pytest
 
 from thermicon.circuit import Rig, SessionPlan, play_session
 from thermicon.icons import read_cue
-from thermicon.notebooks.sessionfigure import envelope, session_figure
+from thermicon.notebooks.figures.session_figure import envelope, session_figure
 
 Cli = Callable[..., Any]
 
@@ -209,7 +209,7 @@ def test_the_figure_shows_plays_limits_and_dose(two: Path, monkeypatch: pytest.M
     assert dose.get_yscale() == "log"
     assert temperatures.get_ylabel() == "temperature (°C)"
     assert len(changes.patches) >= 4
-    monkeypatch.setattr("thermicon.notebooks.sessionfigure.MOST_BARS", 1)  # many plays are lines and not bars
+    monkeypatch.setattr("thermicon.notebooks.figures.session_figure.MOST_BARS", 1)  # many plays are lines and not bars
     crowded = session_figure(session).axes[0]
     assert not crowded.patches
     assert len(crowded.collections) == 2

@@ -9,12 +9,12 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.applied import CannotApply, with_edit
-from thermicon.notebooks.background import Newest, Superseded, Turn
-from thermicon.notebooks.designing import Designing
-from thermicon.notebooks.setcompute import QUICK, overlay_frame, rank_set
-from thermicon.notebooks.setview import SetView
-from thermicon.perception.numbers import numbers_of, repeated, with_number
+from thermicon.notebooks.workbench.apply_edit import CannotApply, with_edit
+from thermicon.notebooks.workbench.background import Newest, Superseded, Turn
+from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
+from thermicon.notebooks.workbench.set_view import SetView
+from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
 
 TWO = """cue 1
 
@@ -64,7 +64,7 @@ class Bench:
 def few_people() -> Iterator[None]:
     """Numbers are not what is tested here, so a few people do."""
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr("thermicon.notebooks.setview.WELL", (24, 2))
+        patched.setattr("thermicon.notebooks.workbench.set_view.WELL", (24, 2))
         yield
 
 

@@ -13,7 +13,7 @@ import pytest
 from thermicon.circuit import Rig, RigError, simulate, summarise
 from thermicon.icons import read_cue
 from thermicon.notebooks import sweep, sweep_figure
-from thermicon.perception.features import attack_K_per_s, delay_s, peak_change_K
+from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
 
 Cli = Callable[..., Any]
 AREA = "contact.area_cm2"

@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 from tests.notebooks.surerig import SURE
-from thermicon.notebooks.outputs import OutputError, stopped_cleanly, write_together
+from thermicon.notebooks.files.outputs import OutputError, stopped_cleanly, write_together
 
 FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
 KILLS, MANY_KILLS = 20, 200
@@ -117,14 +117,14 @@ def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path: Path) -> No
     assert names(tmp_path) == []
 
 
-EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli", "export", "six-icons", "--to", "csv", *SURE]
+EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-icons", "--to", "csv", *SURE]
 
 # A real export that has done all its work but the writing: for every folder it is told, a child of it writes there
 # again and again, so that signals meet it while it writes.
 SERVER = """
 import os, sys
 from pathlib import Path
-from thermicon.notebooks import exportfolder
+from thermicon.notebooks.files import export_folder as exportfolder
 real = exportfolder.publish
 def serve(files, folder, replace=False, how=""):
     for line in sys.stdin:
@@ -136,9 +136,9 @@ def serve(files, folder, replace=False, how=""):
         os.waitpid(child, 0)
         print("ended", flush=True)
     os._exit(0)
-import thermicon.notebooks.exporting as exporting
+import thermicon.notebooks.files.exporting as exporting
 exporting.publish = serve
-from thermicon.notebooks.cli import main
+from thermicon.notebooks.cli.main import main
 sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", *sys.argv[1:]]
 main()
 """

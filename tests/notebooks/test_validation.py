@@ -11,12 +11,12 @@ import nbformat
 import pytest
 from nbclient import NotebookClient
 
-from thermicon.notebooks import validation
-from thermicon.notebooks.outputs import OutputError
-from thermicon.notebooks.pages import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
-from thermicon.notebooks.validation import draw_pictures, show_report, write_report
-from thermicon.notebooks.validationpage import page, target_rows
-from thermicon.perception.validate import ValidationReport, validate
+from thermicon.notebooks.cli.main import validation
+from thermicon.notebooks.cli.validation import draw_pictures, show_report, write_report
+from thermicon.notebooks.files.outputs import OutputError
+from thermicon.notebooks.pages.pages import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
+from thermicon.notebooks.pages.validation_page import page, target_rows
+from thermicon.perception.validation.validate import ValidationReport, validate
 
 NOTEBOOK = Path(__file__).parents[2] / "notebooks/07_validation.ipynb"
 

@@ -14,8 +14,8 @@ import pytest
 from thermicon.circuit import Rig, RigError
 from thermicon.icons import CueErrors, load_library, parse
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.designing import Designing
-from thermicon.notebooks.workbench import text_of
+from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.workbench import text_of
 
 DIP = """cue 1
 
@@ -147,7 +147,7 @@ def test_a_mistake_of_the_program_is_a_note_and_the_page_goes_on(send: Send, mon
         raise RuntimeError("the kernel hiccuped")
 
     with monkeypatch.context() as patched:
-        patched.setattr("thermicon.notebooks.designing.drag", broken)
+        patched.setattr("thermicon.notebooks.workbench.design_model.drag", broken)
         assert send(type="drag", handle=0, t=1.0, y=30.0)["notes"][0].endswith("the kernel hiccuped")
     assert send(type="text", text=DIP)["notes"] == []
 

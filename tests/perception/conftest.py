@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from thermicon.perception import Observer
-from thermicon.perception.observer import Receptor
+from thermicon.perception.observer.observer import Receptor
 
 Array = NDArray[np.float64]
 

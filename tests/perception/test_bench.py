@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, perceive
-from thermicon.perception.bench import Bench, curve, raised_cosine, ramp
+from thermicon.perception.sensation.bench import Bench, curve, raised_cosine, ramp
 
 
 @pytest.fixture(scope="module")

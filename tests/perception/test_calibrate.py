@@ -5,14 +5,14 @@ import pytest
 
 from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.perception import Observer, amplitude_jnd, false_alarms, load_thresholds
-from thermicon.perception.calibrate import MODEL_CONSTANTS, calibrate, to_toml
-from thermicon.perception.fits import with_unit_drives
-from thermicon.perception.observer import CHANNELS, DATA, NORMS
-from thermicon.perception.ratetask import rate_task, with_gain
-from thermicon.perception.variants import VARIANTS, source_of
+from thermicon.perception.identification.rate_task import rate_task, with_gain
+from thermicon.perception.observer.observer import CHANNELS, DATA, NORMS
+from thermicon.perception.observer.variants import VARIANTS, source_of
+from thermicon.perception.sensation.fits import with_unit_drives
+from thermicon.perception.validation.calibrate import MODEL_CONSTANTS, calibrate, to_toml
 
 SHIPPED = DATA / "observer.toml"
-AGAIN = "the observer is out of date: run python -m thermicon.perception.calibrate"
+AGAIN = "the observer is out of date: run python -m thermicon.perception.validation.calibrate"
 
 
 def test_the_shipped_observer_is_what_calibrate_finds() -> None:

@@ -8,8 +8,8 @@ import pytest
 from thermicon.circuit import Rig, Trace, duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import ChoiceError, Choosing, appraise, choose, draw_people, energy_J, rank
-from thermicon.perception.appraise import distances
-from thermicon.perception.people import People
+from thermicon.perception.observer.people import People
+from thermicon.perception.selection.appraise import distances
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (

@@ -12,11 +12,11 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import chunks as under_test
 from thermicon.perception import rank
-from thermicon.perception.chunkfile import ChunkError, Shelf
-from thermicon.perception.chunks import Found, Work, run
-from thermicon.perception.gather import Where
+from thermicon.perception.ranking.chunk_store import ChunkError, Shelf
+from thermicon.perception.ranking.chunks import Found, Work, run
+from thermicon.perception.ranking.gather import Where
+from thermicon.perception.ranking import chunks as under_test
 
 RIG = Rig.load("thenar")
 ICONS = load_library("six-icons")
@@ -142,7 +142,8 @@ import sys
 from pathlib import Path
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import chunks, rank
+from thermicon.perception.ranking import chunks
+from thermicon.perception import rank
 chunks.SAMPLES_AT_ONCE = 36_000
 made = rank(load_library("six-icons"), Rig.load("thenar"), people=60, parameters=0, keep=Path(sys.argv[1]), workers=1)
 Path(sys.argv[2]).write_text(made.to_json())

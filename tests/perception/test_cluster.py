@@ -14,8 +14,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import chunks, cluster, rank
-from thermicon.perception.cluster import ClusterError, on_cluster
+from thermicon.perception import rank
+from thermicon.perception.ranking.cluster import ClusterError, on_cluster
+from thermicon.perception.ranking import chunks, cluster
 
 ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
 

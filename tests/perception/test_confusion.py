@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import confuse, equal_percent_correct, percent_correct
-from thermicon.perception.confusion import SAMPLES, embed, sampling_error
+from thermicon.perception.identification.confusion import SAMPLES, embed, sampling_error
 
 
 def equal(d: float, icons: int = 6) -> np.ndarray:

@@ -7,7 +7,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.perception import load_coverage, load_thresholds, outside_data, rank
-from thermicon.perception.coverage import outside_site
+from thermicon.perception.sensation.coverage import outside_site
 
 
 def test_an_ordinary_icon_is_inside(cue: Any) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, criterion_of, detect, false_alarms, forced_choice_dprime
-from thermicon.perception.detection import channel_name
+from thermicon.perception.sensation.detection import channel_name
 
 
 def test_criterion_keeps_its_false_alarms() -> None:

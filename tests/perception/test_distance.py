@@ -11,8 +11,8 @@ from thermicon.perception import (
     differences,
     identification_dprime,
 )
-from thermicon.perception.distance import memory_from_task, sensory_noise, smooth
-from thermicon.perception.observer import check_norm
+from thermicon.perception.identification.distance import memory_from_task, sensory_noise, smooth
+from thermicon.perception.observer.observer import check_norm
 
 
 def percept(cold: object, dt: float = 0.01) -> Percept:

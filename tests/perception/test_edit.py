@@ -6,9 +6,9 @@ import pytest
 from thermicon.circuit import Rig, duration_s, judge_safety, simulate
 from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import Edit, NoEdit, cheapest_edit, draw_people, rank
-from thermicon.perception.appraise import distances
 from thermicon.perception.criteria import APART_DPRIME
-from thermicon.perception.numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.appraise import distances
+from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
 
 PEOPLE = 40
 

@@ -6,10 +6,10 @@ A test that demanded a published result would be a reason to tune for it: misses
 import numpy as np
 import pytest
 
-from thermicon.perception.experiments import limits, methods, rate_curve, reaction_times
-from thermicon.perception.experiments_timing import first_and_return, peak_lead, whole_body_warmth
-from thermicon.perception.predicted import Asked, Predicted, predict
-from thermicon.perception.variants import VARIANTS, Model, Variable
+from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+from thermicon.perception.validation.experiments import limits, methods, rate_curve, reaction_times
+from thermicon.perception.validation.experiments_timing import first_and_return, peak_lead, whole_body_warmth
+from thermicon.perception.validation.predicted import Asked, Predicted, predict
 
 
 def by(found: tuple[Predicted, ...], quantity: str, channel: str) -> Predicted:

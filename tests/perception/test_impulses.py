@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, receptor_drive
-from thermicon.perception.impulses import mean_positive_part
+from thermicon.perception.sensation.impulses import mean_positive_part
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from thermicon.perception.map import (
+from thermicon.perception.identification.map import (
     PerceptualMap,
     between,
     classical,

@@ -4,12 +4,12 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from thermicon.perception.bounds import pair_losses, upper_bound
-from thermicon.perception.choose import pick
-from thermicon.perception.confusion import confuse
-from thermicon.perception.measures import information_bits, percent_correct
-from thermicon.perception.namings import Namings, Objective
-from thermicon.perception.widest import Limits
+from thermicon.perception.identification.confusion import confuse
+from thermicon.perception.identification.measures import information_bits, percent_correct
+from thermicon.perception.selection.choose import pick
+from thermicon.perception.selection.subset_identification import Namings, Objective
+from thermicon.perception.selection.upper_bounds import pair_losses, upper_bound
+from thermicon.perception.selection.widest import Limits
 
 OBJECTIVES: tuple[Objective, ...] = ("correct", "bits", "bits-per-s")
 

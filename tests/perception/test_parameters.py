@@ -3,7 +3,7 @@ import pytest
 
 from thermicon.circuit.records import Record
 from thermicon.perception import CHANNELS, Observer, Parameter, observer_at, observer_parameters
-from thermicon.perception.parameters import _in_thresholds, latin, parameter_name
+from thermicon.perception.sensation.parameters import _in_thresholds, latin, parameter_name
 
 
 def test_what_is_uncertain_is_what_the_file_says() -> None:

@@ -7,9 +7,9 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, perceive
-from thermicon.perception.distance import smooth
-from thermicon.perception.features import excursion_rate_K_per_s
-from thermicon.perception.parts import PARTS, Part, distance_parts
+from thermicon.perception.comparison.distance_components import PARTS, Part, distance_parts
+from thermicon.perception.identification.distance import smooth
+from thermicon.perception.sensation.features import excursion_rate_K_per_s
 
 Cue = Callable[..., Any]
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, detect, false_alarms
-from thermicon.perception.passage import ResponseTimes, log_survival, response_times
+from thermicon.perception.sensation.first_passage import ResponseTimes, log_survival, response_times
 
 
 def test_nothing_is_answered_as_often_as_false_alarms_say(observer: Observer) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import People, draw_people, people_records
-from thermicon.perception.people import age_factor
+from thermicon.perception.observer.people import age_factor
 
 
 def test_the_first_people_are_the_same_whatever_the_number() -> None:

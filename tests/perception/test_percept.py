@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, Percept, perceive
-from thermicon.perception.percept import uniform_clock
+from thermicon.perception.sensation.percept import uniform_clock
 
 
 def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:

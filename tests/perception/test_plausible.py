@@ -3,10 +3,10 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import false_alarms
-from thermicon.perception.bench import Bench
-from thermicon.perception.plausible import plausible_observers, uncertain_records
-from thermicon.perception.procedures import forced_choice
-from thermicon.perception.variants import VARIANTS, Model, Variable
+from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.validation.plausible import plausible_observers, uncertain_records
+from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)

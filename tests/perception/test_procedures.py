@@ -5,9 +5,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
-from thermicon.perception.bench import Bench
-from thermicon.perception.measured import Measured, crowd_of
-from thermicon.perception.procedures import (
+from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.validation.measured import Measured, crowd_of
+from thermicon.perception.validation.procedures import (
     choice_reaction_time,
     forced_choice,
     method_of_levels,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception.radiant import radiant_warming
+from thermicon.perception.validation.radiant import radiant_warming
 
 LAYER = {
     "name": "dermis",

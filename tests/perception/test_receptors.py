@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, receptor_drive
-from thermicon.perception.observer import Receptor
+from thermicon.perception.observer.observer import Receptor
 
 
 def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:

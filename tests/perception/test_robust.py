@@ -4,8 +4,8 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import ChoiceError, beats, draw_people, survives
-from thermicon.perception.appraise import distances
-from thermicon.perception.robust import drawn_rigs
+from thermicon.perception.selection.appraise import distances
+from thermicon.perception.selection.robust import drawn_rigs
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, RuleResult, icon_rules, load_rules, pair_rules, perceive, rig_rules
-from thermicon.perception.rules import TOLD_APART
+from thermicon.perception.comparison.rules import TOLD_APART
 
 
 def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:

@@ -4,7 +4,7 @@ import pytest
 from thermicon.circuit import Rig, judge_safety, simulate
 from thermicon.icons import IconSet, load_library, parse
 from thermicon.perception import ChoiceError, Searched, appraise, search
-from thermicon.perception.genes import born, drawn, member, value_at
+from thermicon.perception.selection.candidates import born, drawn, member, value_at
 
 SMALL = (
     "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"

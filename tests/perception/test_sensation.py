@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, amplitude_jnd, psi_of_multiple, sensation
-from thermicon.perception.observer import Channel
+from thermicon.perception.observer.observer import Channel
 
 
 @pytest.mark.parametrize("a", [1.0, 5.0, 12.0, 30.0])

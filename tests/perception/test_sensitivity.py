@@ -8,7 +8,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import MissingError, Sensitivity, sensitivity
-from thermicon.perception.stage import NODES, Stage, _parabola, set_stage
+from thermicon.perception.sensitivity.simulation_grid import NODES, Stage, _parabola, set_stage
 
 TWO = """cue 1
 set s { control skin; baseline 32 °C }
@@ -76,8 +76,8 @@ def test_the_same_arguments_give_the_same_numbers(found: Sensitivity, rig: Rig) 
 
 
 def test_total_indices_are_those_of_a_known_function() -> None:
-    from thermicon.perception.designs import total_indices
-    from thermicon.perception.parameters import latin
+    from thermicon.perception.sensation.parameters import latin
+    from thermicon.perception.sensitivity.designs import total_indices
 
     base = 2048
     both = latin(4, base, seed=1)
@@ -91,7 +91,7 @@ def test_total_indices_are_those_of_a_known_function() -> None:
 
 
 def test_morris_finds_the_slopes_of_a_line(rig: Rig) -> None:
-    from thermicon.perception.designs import mean_effects, screened
+    from thermicon.perception.sensitivity.designs import mean_effects, screened
 
     shares = screened(2, 10, seed=0)
     sizes = mean_effects(shares, np.stack([3.0 * shares[:, 0] - shares[:, 1], shares[:, 1]], -1), 0)

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit.records import RecordError, Table
-from thermicon.perception.calibrate import calibrate, to_toml
-from thermicon.perception.observer import DATA, load_thresholds
-from thermicon.perception.targets import Row, Target, load_targets, published_for
+from thermicon.perception.observer.observer import DATA, load_thresholds
+from thermicon.perception.validation.calibrate import calibrate, to_toml
+from thermicon.perception.validation.targets import Row, Target, load_targets, published_for
 
 TARGETS = load_targets()
 

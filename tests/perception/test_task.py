@@ -8,10 +8,10 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
 from thermicon.perception import CarryOver, Choosing, Observer, Ranking, Task, carry_over, rank
-from thermicon.perception.confusion import confuse
-from thermicon.perception.edit import Edit, cheapest_edit
-from thermicon.perception.observer import NORMS
-from thermicon.perception.task import NARROWEST, range_of, reference_range
+from thermicon.perception.identification.confusion import confuse
+from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
+from thermicon.perception.observer.observer import NORMS
+from thermicon.perception.selection.edit import Edit, cheapest_edit
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")
@@ -89,7 +89,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
     from thermicon.perception import differences
-    from thermicon.perception.percept import perceive
+    from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]
     both = Icon("both", [*first.statements, rest(2.0), *second.statements], frame=second.frame)

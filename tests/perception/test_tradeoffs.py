@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from thermicon.perception.tradeoffs import Answers, chance_of_as_few, correlation, trade_offs
+from thermicon.perception.validation.tradeoffs import Answers, chance_of_as_few, correlation, trade_offs
 
 UP = tuple(float(k) for k in range(20))
 DOWN = UP[::-1]

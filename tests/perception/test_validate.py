@@ -13,13 +13,13 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Table
 from thermicon.icons import load_library
 from thermicon.perception import rank
-from thermicon.perception.observer import load_thresholds
-from thermicon.perception.targets import load_targets, published_for
-from thermicon.perception.validate import ValidationReport, answers, assemble, validate, variant_name
-from thermicon.perception.validate_file import report_file
-from thermicon.perception.validate_maps import FIGURES, TRADE_OFF, _codes
-from thermicon.perception.variants import VARIANTS
-from thermicon.perception.waves import GROUPS, LIBRARY, SHAPES, wave_name
+from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.validation.targets import load_targets, published_for
+from thermicon.perception.validation.validate import ValidationReport, answers, assemble, validate, variant_name
+from thermicon.perception.validation.validate_file import report_file
+from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF, _codes
+from thermicon.perception.validation.waves import GROUPS, LIBRARY, SHAPES, wave_name
 
 
 @pytest.fixture(scope="module")

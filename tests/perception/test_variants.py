@@ -7,10 +7,17 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
-from thermicon.perception.bench import Bench, ramp
-from thermicon.perception.observer import Receptor
-from thermicon.perception.procedures import forced_choice
-from thermicon.perception.variants import VARIANTS, Model, Variable, check_variant, receptor_column, receptor_input
+from thermicon.perception.observer.observer import Receptor
+from thermicon.perception.observer.variants import (
+    VARIANTS,
+    Model,
+    Variable,
+    check_variant,
+    receptor_column,
+    receptor_input,
+)
+from thermicon.perception.sensation.bench import Bench, ramp
+from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from thermicon.circuit.records import RecordError
-from thermicon.perception.targets import Published, Row, combined
-from thermicon.perception.verdicts import criterion_of_row, judge_row, value_text
+from thermicon.perception.validation.targets import Published, Row, combined
+from thermicon.perception.validation.verdicts import criterion_of_row, judge_row, value_text
 
 WAS = Published("2 s", "somebody", value=2.0, low=1.0, high=3.0, unit="s")
 

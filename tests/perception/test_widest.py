@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from thermicon.perception.widest import Limits, OutOfBudget, widest, worst
+from thermicon.perception.selection.widest import Limits, OutOfBudget, widest, worst
 
 Array = NDArray[np.float64]
 

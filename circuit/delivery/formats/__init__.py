@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from thermicon.circuit.inputs import nearest
-from thermicon.circuit.delivery.formats.form import Format, FormatError
+from ...inputs import nearest
+from .form import Format, FormatError
 
 MODULES = {
     "csv": "csv_table",

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import re
 
-from thermicon.circuit.delivery.formats.c_player import PLAYER, c_float, player_files
-from thermicon.circuit.delivery.formats.form import (
+from thermicon.icons.model.cleaning import clean_line
+
+from ..realised import Realised
+from .c_player import PLAYER, c_float, player_files
+from .form import (
     PLAYS_SAMPLES,
     PLAYS_TEMPERATURES,
     Column,
@@ -13,8 +16,6 @@ from thermicon.circuit.delivery.formats.form import (
     FormatError,
     samples_of,
 )
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.icons.cleaning import clean_line
 
 A_LINE = 16
 CENTI_K = 0.01

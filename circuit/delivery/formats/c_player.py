@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib import resources
 
-from thermicon.circuit.delivery.formats.form import Played
-from thermicon.circuit.delivery.prevent import MustPrevent
-from thermicon.circuit.delivery.realised import Realised
+from ..prevent import MustPrevent
+from ..realised import Realised
+from .form import Played
 
 PLAYER = "thermicon_player.h"
 

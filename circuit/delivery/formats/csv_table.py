@@ -7,9 +7,9 @@ import io
 
 import numpy as np
 
-from thermicon.circuit.delivery.formats.form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.rig.skin import Array
+from ...rig.skin import Array
+from ..realised import Realised
+from .form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
 
 FIRST = "rest"
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.events import Event, events_of
-from thermicon.circuit.delivery.prevent import MustPrevent
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.samples import Samples
-from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.inputs import InputError
-from thermicon.circuit.solver.inverse import baseline_C
-from thermicon.circuit.solver.steady import hold
+from ...inputs import InputError
+from ...solver.inverse import baseline_C
+from ...solver.steady import hold
+from ..device import Device
+from ..events import Event, events_of
+from ..prevent import MustPrevent
+from ..realised import Realised
+from ..samples import Samples
+from ..setpoints import Setpoints
 
 PLAYS_CURRENT = ("volts", "amperes")
 PLAYS_SAMPLES = ("volts", "amperes", "duty")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realised import Realised
+from ..realised import Realised
+from .form import Column, Format, FormatError, samples_of
 
 FULL = 32767
 DECIMALS, MOST_OFF = 6, 1e-4

@@ -6,12 +6,12 @@ import csv
 import io
 from collections.abc import Sequence
 
-from thermicon.circuit.delivery.formats import csv_table, setpoint_csv, tcs2_serial
-from thermicon.circuit.delivery.formats.c_player import command_for, filled
-from thermicon.circuit.delivery.formats.form import Column, Format, Played, events_in, samples_of
-from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage, volts_of
-from thermicon.circuit.delivery.prevent import MustPrevent
-from thermicon.circuit.delivery.realised import Realised
+from ..prevent import MustPrevent
+from ..realised import Realised
+from . import csv_table, setpoint_csv, tcs2_serial
+from .c_player import command_for, filled
+from .form import Column, Format, Played, events_in, samples_of
+from .setpoint_csv import has_voltage, volts_of
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 FROZEN_S = 5.0

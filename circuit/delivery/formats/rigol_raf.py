@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realised import Realised
+from ..realised import Realised
+from .form import Column, Format, FormatError, samples_of
 
 FULL = 0x3FFF
 

@@ -7,11 +7,11 @@ import io
 
 import numpy as np
 
-from thermicon.circuit.delivery.device import Device
-from thermicon.circuit.delivery.formats.csv_table import marks_of
-from thermicon.circuit.delivery.formats.form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.rig.skin import Array
+from ...rig.skin import Array
+from ..device import Device
+from ..realised import Realised
+from .csv_table import marks_of
+from .form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:

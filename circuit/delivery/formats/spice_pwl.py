@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from thermicon.circuit.delivery.formats.form import PLAYS_CURRENT, Column, Format, command_column
-from thermicon.circuit.delivery.netlist import EDGE_S, points
-from thermicon.circuit.delivery.realised import Realised
+from ..netlist import EDGE_S, points
+from ..realised import Realised
+from .form import PLAYS_CURRENT, Column, Format, command_column
 
 
 def columns(realised: Realised) -> tuple[Column, ...]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.solver.inverse import baseline_C
 from thermicon.icons import Corners
+
+from ...solver.inverse import baseline_C
+from ..realised import Realised
+from .form import PLAYS_SETPOINTS, Column, Format, FormatError
 
 ZONES = (1, 2, 3, 4, 5)
 MOST_OFF = 0.01

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from thermicon.circuit.delivery.formats.form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.delivery.setpoints import Setpoints
+from ..realised import Realised
+from ..setpoints import Setpoints
+from .form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
 
 ZONES = "11111"
 ABOVE_K = 1.0

@@ -5,7 +5,8 @@ from __future__ import annotations
 import io
 from importlib.metadata import version
 
-from thermicon.circuit.delivery.formats.form import (
+from ..realised import Realised
+from .form import (
     PLAYS_SAMPLES,
     PLAYS_TEMPERATURES,
     Column,
@@ -14,8 +15,7 @@ from thermicon.circuit.delivery.formats.form import (
     command_column,
     samples_of,
 )
-from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage, volts_of
-from thermicon.circuit.delivery.realised import Realised
+from .setpoint_csv import has_voltage, volts_of
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1

@@ -11,8 +11,8 @@ import wave
 
 import numpy as np
 
-from thermicon.circuit.delivery.formats.form import Column, Format, FormatError, samples_of
-from thermicon.circuit.delivery.realised import Realised
+from ..realised import Realised
+from .form import Column, Format, FormatError, samples_of
 
 FULL = 32768
 

@@ -1,0 +1,151 @@
+"""Why a cue is not exported: each cause once, the first cause first, with its cure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from ..delivery.setpoints import Setpoints
+from ..inputs import signed
+from ..rig.rig import Rig
+from ..solver.difference import Difference, loss_limit
+from ..solver.inverse import design
+from ..solver.simulate import duration_s
+from ..solver.trace import Outcome
+
+if TYPE_CHECKING:
+    from thermicon.icons import Icon
+
+    from ..delivery.realised import Realised
+    from .export import Verdict
+
+_SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
+
+STRONGEST = 20.0
+"""How many times a driver's limits are raised, at most, to find the current that a cue needs."""
+FINELY_A = 0.05
+"""The needed current is told in steps of this size, rounded up: a limit that a person would type."""
+FREE_V = 1000.0
+"""A compliance voltage that holds nothing back, in V: only the current is asked about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a cue is not exported. What is unsafe cannot be forced."""
+
+    kind: Literal["unsafe", "unreachable", "lossy"]
+    text: str
+
+    @property
+    def forcible(self) -> bool:
+        """Whether a person may insist."""
+        return self.kind != "unsafe"
+
+    def __str__(self) -> str:
+        return f"{_SAID[self.kind]}: {self.text}"
+
+
+def refusals_of(realised: Realised, verdict: Verdict, apart: Difference) -> tuple[Refusal, ...]:
+    """Return the causes that speak against exporting a cue, what cannot be forced first.
+
+    A consequence is not listed beside its cause: what a device with too small a range misses or loses is told with the
+    range, and nothing is said of losses where the drive is not safe anyway.
+    """
+    found, narrowed = [], realised.narrowed
+    if verdict.colour == "red":
+        found.append(Refusal("unsafe", verdict.reason or "the gate says red"))
+    lost = lost_text(apart)
+    if realised.outcome is not None and not realised.outcome.reached:
+        found.append(Refusal("unreachable", _out_of_reach(realised, realised.outcome)))
+        lost = "" if narrowed else lost
+    elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
+        found.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
+        lost = ""
+    if lost and verdict.colour != "red":
+        found.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(realised, lost)))
+    return tuple(found)
+
+
+def needed_A(icon: Icon, rig: Rig) -> float | None:
+    """Return the smallest current limit in A with which a rig reaches a cue's target, rounded up to 0.05 A.
+
+    Both directions grow together. None where no current does, where the cue prescribes none, or where the rig has a
+    loop of its own, whose gains matter more. The compliance voltage is left out.
+
+    >>> from thermicon.icons import load_library
+    >>> needed_A(load_library("cooling-step-skin")["cooling-step"], Rig.load("shani2021"))
+    1.9
+    """
+    if icon.frame.control == "current" or rig.controller is not None:
+        return None
+    most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
+
+    def reaches(limit_A: float) -> bool:
+        wide = rig.with_(
+            **{
+                "driver.current_limit_A": limit_A,
+                "driver.current_min_A": least * limit_A / most,
+                "driver.voltage_limit_V": FREE_V,
+            }
+        )
+        outcome = design(icon, wide, end).outcome
+        return outcome is not None and outcome.reached
+
+    low, high = most, most * STRONGEST
+    if not reaches(high):
+        return None
+    while high - low > 0.1 * FINELY_A:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if reaches(middle) else (middle, high)
+    return round(FINELY_A * -(-high // FINELY_A), 2)
+
+
+def lost_text(apart: Difference) -> str:
+    """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
+    limit = loss_limit("receptor difference")
+    lost = [one for one in apart.places if "receptor" in one.place and one.rms_K > limit]
+    if not lost:
+        return ""
+    first, *others = sorted(lost, key=lambda one: -one.rms_K)
+    beside = "".join(f" (the {one.place} by {one.rms_K:.3f} K)" for one in others)
+    return (
+        f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{beside}, over the stated {limit:g} K"
+    )
+
+
+def _out_of_reach(realised: Realised, outcome: Outcome) -> str:
+    """The rig's own shortfall, with what it would take."""
+    text = outcome.reason or "the target is missed"
+    if realised.drives is None:  # a thermode, which has neither driver nor module
+        return f"{text}; ask for a slower or smaller change, or use a thermode that can"
+    rig, driver = realised.rig, realised.rig.driver
+    held = [name for name, _ in outcome.limits]
+    if not held or rig.controller is not None:
+        return f"{text}; ask for a slower or smaller change"
+    if held == ["compliance voltage"]:
+        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or ask for a slower change"
+    needed = needed_A(realised.icon, rig)
+    if needed is None:
+        return f"{text}; no current of this module reaches it: ask for a slower or smaller change"
+    narrow = ""
+    if realised.narrowed:
+        narrow = f" and {realised.device.name} plays at most {realised.narrowed.most_A:g} A"
+    return (
+        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: ask for a "
+        f"slower or smaller change, or raise the limit if driver and module can"
+    )
+
+
+def _lossy(realised: Realised, lost: str) -> str:
+    """What is lost, why, and what would lose less."""
+    device, played = realised.device, realised.played
+    if isinstance(played, Setpoints):
+        why = f"its set-points have steps of {played.step_K:g} K"
+    elif realised.warnings:
+        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in realised.warnings)
+    elif realised.rate_Hz < 0.9 * realised.requested_Hz:
+        why = f"it plays {realised.rate_Hz:.3g} of the {realised.requested_Hz:g} updates a second"
+    else:
+        unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
+        why = f"its steps are {signed(played.scale.step, '.3g')}{unit}"
+    return f"{lost}; {device.name}: {why}; use a device that is finer or faster there"

@@ -1,0 +1,181 @@
+"""The sidecar of an exported drive: what it is, what made it, what it will do, what is known against it, as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+from ..delivery.device import Device
+from ..delivery.formats.form import Format, events_in
+from ..delivery.realised import Realised
+from ..delivery.samples import Samples
+from ..delivery.setpoints import Setpoints
+from ..delivery.spread import OpenLoopSpread
+from ..delivery.thermode import lag_of
+from ..program import own_version, this_program
+from ..records import Record
+from ..safety.summary import summarise
+from ..solver.difference import Difference, loss_table
+from .digests import digest, digest_of_content, plain
+
+NO_CLEARANCE = (
+    "Limits were held against a simulation. This is not a medical or ethical clearance. Hardware that touches people "
+    "needs a temperature cut-off of its own that works without any software."
+)
+
+
+def sidecar(
+    realised: Realised,
+    form: Format,
+    apart: Difference,
+    safety: Mapping[str, object],
+    felt: Mapping[str, object] | None,
+    forced: Sequence[str],
+    *,
+    demanded: Mapping[str, object],
+    drive: bytes,
+    set_files: Mapping[str, bytes],
+    spread: OpenLoopSpread | None = None,
+) -> dict[str, Any]:
+    """Return all there is to know of one exported drive; units are in the names.
+
+    `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
+    that was not, `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes of the files that
+    belong to it, named here by their digests. `spread` is what a module that was not measured may do
+    under an open loop.
+    """
+    icon, rig, outcome, device = realised.icon, realised.rig, realised.outcome, _device(realised.device)
+    text, told = str(icon), [*rig.warnings, *realised.told]
+    if not realised.device.played:
+        told.append(f"{realised.device.name}: no such device was ever driven by thermicon")
+    return {
+        "thermicon": own_version(),
+        "program": this_program(),
+        "what_it_is_not": NO_CLEARANCE,
+        "format": {
+            **{"name": form.name, "source": form.source, "how_to_play": form.how},
+            **(form.facts(realised) if form.facts else {}),
+        },
+        "file": form.file_name(realised),
+        "drive_sha256": digest(drive),
+        "set_files": {name: digest(content) for name, content in set_files.items()},
+        "columns": [asdict(column) for column in form.columns(realised)],
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "rig_sha256": digest(rig.document.encode("utf-8")),
+        "rig": {
+            "name": rig.name,
+            "content_hash": digest(rig.document.encode("utf-8")),
+            "changes": list(rig.changes),
+            "document": json.loads(rig.document),
+        },
+        "device_sha256": digest_of_content(device),
+        "device": device,
+        "update_rate_Hz": {"requested": realised.requested_Hz, "realised": realised.rate_Hz},
+        "played": _played(realised),
+        "events": [_event(event, icon.frame.control) for event in events_in(realised)],
+        "reached": None if outcome is None else outcome.reached,
+        "reason": None if outcome is None else outcome.reason,
+        "predicted": _predicted(realised),
+        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "open_loop_spread": None if spread is None else spread.to_dict(),
+        "perception": None if felt is None else dict(felt),
+        "stated_losses": [_record(record) for record in loss_table()],
+        "safety": dict(safety),
+        "hardware_must_prevent": dict(demanded),
+        "warnings": told,
+        "forced": bool(forced),
+        "forced_over": list(forced),
+        "seed": None,
+    }
+
+
+def sidecar_text(content: Mapping[str, Any]) -> bytes:
+    """Return a sidecar as JSON; what does not exist is null, never NaN.
+
+    >>> sidecar_text({"a": float("nan")})
+    b'{\\n  "a": null\\n}\\n'
+    """
+    return (json.dumps(plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
+
+
+def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a sidecar with the SHA-256 of its own text, which is that of the file without this key.
+
+    >>> sealed({"a": 1})["sidecar_sha256"][:8]
+    '5e36b656'
+    """
+    bare = {key: value for key, value in content.items() if key != "sidecar_sha256"}
+    return {**bare, "sidecar_sha256": digest(sidecar_text(bare))}
+
+
+def _event(event: Any, control: str) -> dict[str, object]:
+    unit = "level_A" if control == "current" else "level_C"
+    return {"name": event.name, "time_s": event.time_s, unit: event.level}
+
+
+def _played(realised: Realised) -> dict[str, object]:
+    played = realised.played
+    if isinstance(played, Setpoints):
+        return {
+            "segments": len(played.segments),
+            "tick_s": played.tick_s,
+            "step_K": played.step_K,
+            "baseline_C": float(played.level_C[0]),
+            "least_level_C": float(played.level_C.min()),
+            "greatest_level_C": float(played.level_C.max()),
+            "icon_begins_at_s": 0.0,
+            "duration_s": realised.file_s,
+            "cue_ends_at_s": played.cue_s,
+            "lag_s": lag_of(realised.device),
+            "clock": (
+                "times count from the start command; the display follows with the lag, which is a delay and not "
+                "counted as a miss or a loss"
+            ),
+        }
+    return _samples(played, realised.lead_s)
+
+
+def _predicted(realised: Realised) -> dict[str, object]:
+    found: dict[str, object] = dict(summarise(realised.trace).to_dict())
+    if not isinstance(realised.played, Setpoints):
+        return found
+    return {**found, "duration_s": realised.file_s}
+
+
+def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
+    scale = samples.scale
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
+    ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
+    return {
+        "samples": len(samples.codes),
+        "icon_begins_at_s": lead_s,
+        "duration_s": float(samples.time_s[-1]),
+        f"offset_{unit}": scale.offset,
+        f"step_{unit}": scale.step,
+        "lowest_code": scale.lowest,
+        "highest_code": scale.highest,
+        f"low_level_{unit}": ends[0],
+        f"high_level_{unit}": ends[1],
+        f"rest_{unit}": float(samples.command[0]),
+        f"least_command_{unit}": float(samples.command.min()),
+        f"greatest_command_{unit}": float(samples.command.max()),
+    }
+
+
+def _device(device: Device) -> dict[str, object]:
+    named = {field.name: getattr(device, field.name) for field in fields(device) if field.name != "records"}
+    return {**named, "records": [_record(record) for record in device.records]}
+
+
+def _record(record: Record) -> dict[str, object]:
+    known = {
+        key: getattr(record, key)
+        for key in ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
+    }
+    return {key: value for key, value in known.items() if value not in (None, "")}
+
+
+def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
+    return {name: value for name, value in content.items() if name != key}

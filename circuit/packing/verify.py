@@ -1,0 +1,212 @@
+"""Whether the files of an export belong together: sidecars, drives, set files, rig, device, icon and program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from ..program import code_digest, own_version
+from .claims import Claims, claims_of, table_of
+from .digests import digest, digest_of_content
+from .readback import Figures, Told, differences, read_back
+from .sidecar import sealed, sidecar_text
+
+AGAIN = "export the icon again"
+RESTORE = "put the file back as it was exported, or export the icon again"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What is to be said of a file: `wrong` where it does not belong to the others, else `told`; with the cure."""
+
+    file: str
+    kind: Literal["wrong", "told"]
+    text: str
+    cure: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.file}: {self.text}" + (f"; {self.cure}" if self.cure else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A sidecar with the drive that it names, and what was read back from that drive, if its format is read."""
+
+    sidecar: str
+    drive: str
+    icon: str
+    figures: Figures | None
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """The pairs of a folder and all findings; `well` where nothing is wrong."""
+
+    pairs: tuple[Pair, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def well(self) -> bool:
+        """Whether everything belongs together."""
+        return all(finding.kind != "wrong" for finding in self.findings)
+
+    def wrong(self, *names: str) -> bool:
+        """Whether something is wrong with one of these files."""
+        return any(finding.kind == "wrong" and finding.file in names for finding in self.findings)
+
+
+def verify(files: Mapping[str, bytes]) -> Verification:
+    """Return what does and does not belong together among the files of a folder, by their names.
+
+    A program of another version or code is told and is not wrong, since its drives stay what they are.
+
+    >>> verify({"a.csv": b"1"}).well
+    False
+    """
+    claims = {name: each for name, content in files.items() if (each := _claims(name, content)) is not None}
+    if not claims:
+        return Verification((), (Finding(".", "wrong", "holds no sidecar", "give a folder that was exported"),))
+    pairs, findings = [], []
+    for name, each in sorted(claims.items()):
+        about = table_of(files[name]) or {}
+        findings += [*_own(name, files[name], about), *_names(name, each, claims), *_parts(name, about)]
+        findings += _bound(name, each, files)
+        found, unit, problems = _figures(each.drive, files, about)
+        findings += problems
+        icon = about.get("icon")
+        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", found, unit))
+    findings += _extra(files, claims)
+    return Verification(tuple(pairs), tuple(dict.fromkeys(findings)))
+
+
+def _claims(name: str, content: bytes) -> Claims | None:
+    return claims_of(content) if name.endswith(".json") else None
+
+
+def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Finding]:
+    """The sidecar against its own digest, byte for byte."""
+    if "sidecar_sha256" not in about:
+        yield Finding(name, "wrong", "holds no digest of itself (sidecar_sha256)", AGAIN)
+    elif sealed(about)["sidecar_sha256"] != about["sidecar_sha256"]:
+        yield Finding(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
+    elif sidecar_text(about) != content:
+        yield Finding(name, "wrong", "says the same but is laid out differently than it was exported", RESTORE)
+
+
+def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[Finding]:
+    """The sidecar's name against that of its drive, and against other sidecars of the same drive."""
+    if not claims.drive.startswith(name.removesuffix("json")):
+        yield Finding(
+            name,
+            "wrong",
+            f"describes {claims.drive}, which this name does not go with",
+            "rename it back, or export again",
+        )
+    if twice := sorted(each for each, other in others.items() if other.drive == claims.drive and each != name):
+        yield Finding(name, "wrong", f"describes {claims.drive}, as {twice[0]} does", "remove the one that is a copy")
+
+
+def _bound(name: str, claims: Claims, files: Mapping[str, bytes]) -> Iterator[Finding]:
+    """Drive and set files against the digests that the sidecar holds of them."""
+    for file, known in claims.digests.items():
+        kind = "drive" if file == claims.drive else "set's file"
+        if not known:
+            yield Finding(name, "wrong", f"holds no digest of {file}", AGAIN)
+        elif file not in files:
+            yield Finding(file, "wrong", f"is missing; {name} belongs to it", RESTORE)
+        elif digest(files[file]) != known:
+            yield Finding(file, "wrong", f"is not the {kind} that {name} was written for: its digest differs", RESTORE)
+
+
+def _parts(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
+    """Rig, device, icon and program as the sidecar holds them, against their digests and against this program."""
+    rig, device = about.get("rig"), about.get("device")
+    document = rig.get("document") if isinstance(rig, dict) else None
+    known = about.get("rig_sha256")
+    if not isinstance(rig, dict) or not digest_of_content(document) == rig.get("content_hash") == known:
+        yield Finding(name, "wrong", "holds another rig than the one of its digest (rig_sha256)", RESTORE)
+    elif text := _other_shipped(rig, str(known)):
+        yield Finding(name, "told", text)
+    if digest_of_content(device) != about.get("device_sha256"):
+        yield Finding(name, "wrong", "holds another device than the one of its digest (device_sha256)", RESTORE)
+    yield from _icon(name, about.get("icon"))
+    made = about.get("program")
+    made = made if isinstance(made, dict) else {}
+    if made.get("version") != own_version() or about.get("thermicon") != made.get("version"):
+        other = f"thermicon {about.get('thermicon')}, this is {own_version()}"
+        yield Finding(name, "told", f"was exported by {other}; exported anew, the drive may differ")
+    elif made.get("code_sha256") != code_digest():
+        yield Finding(
+            name, "told", f"was exported by other code of version {own_version()}; anew, the drive may differ"
+        )
+
+
+def _other_shipped(rig: Mapping[str, Any], known: str) -> str:
+    """A word where the shipped rig of this name has changed since."""
+    from ..rig.rig import Rig, rig_names
+
+    name = rig.get("name")
+    if name not in rig_names() or rig.get("changes"):
+        return ""
+    now = digest(Rig.load(str(name)).document.encode("utf-8"))
+    return "" if now == known else f"was exported for a rig called {name} that is not the shipped one of today"
+
+
+def _icon(name: str, icon: object) -> Iterator[Finding]:
+    """The icon's text, parsed again, against its content hash."""
+    from thermicon.icons import parse
+
+    if not isinstance(icon, dict):
+        yield Finding(name, "wrong", "holds no icon", RESTORE)
+        return
+    try:
+        found = parse(str(icon.get("text"))).find(str(icon.get("name")))
+    except ValueError:
+        yield Finding(name, "told", "holds an icon that this version cannot read")
+        return
+    if found is None or found.content_hash != icon.get("content_hash"):
+        yield Finding(name, "wrong", "holds another icon than the one of its content_hash", RESTORE)
+
+
+def _figures(
+    drive: str, files: Mapping[str, bytes], about: Mapping[str, Any]
+) -> tuple[Figures | None, str, tuple[Finding, ...]]:
+    """What is read back from a drive, and where it differs from what its sidecar says."""
+    if drive not in files:
+        return None, "", ()
+    try:
+        told = Told.of(about)
+    except (LookupError, TypeError, ArithmeticError, ValueError, StopIteration, AttributeError):
+        return None, "", (Finding(drive, "told", "is not compared in length and extremes: its sidecar has no figures"),)
+    try:
+        found = read_back(files[drive], about)
+    except ValueError as problem:
+        return None, told.unit, (Finding(drive, "wrong", f"cannot be read as its format ({problem})", RESTORE),)
+    apart = () if found is None else differences(found, told)
+    return found, told.unit, tuple(Finding(drive, "wrong", f"{text}, as its sidecar says", RESTORE) for text in apart)
+
+
+def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator[Finding]:
+    """Files that no sidecar names: wrong where they look like a drive or a sidecar, since somebody might play them."""
+    known = {*claims, *(name for each in claims.values() for name in each.digests)}
+    ends = _suffixes()
+    for name in sorted(set(files) - known):
+        if name.endswith(".json"):
+            if table_of(files[name]) is None:
+                yield Finding(name, "wrong", "cannot be read as JSON, so it is a sidecar of nothing", RESTORE)
+            else:
+                yield Finding(name, "told", "is no sidecar and is not looked into")
+        elif name.lower().endswith(ends):
+            yield Finding(
+                name, "wrong", "has no sidecar, so nothing says what it is", "remove it, or export its icon again"
+            )
+        else:
+            yield Finding(name, "told", "does not belong to an export and is not looked into")
+
+
+def _suffixes() -> tuple[str, ...]:
+    from ..delivery.formats import format_names, load_format
+
+    return tuple({load_format(name).suffix.lower() for name in format_names()})

@@ -1,0 +1,166 @@
+"""The gate of safety for what a device delivers: how each kind of device meets the corners of a rig's uncertainty.
+
+Volts and amperes are played open loop, so the gain of the current source counts. A bridge switches its full current,
+so its rest and its last value are means. A thermode shows its own set-points at its own tick: they are judged as they
+stand, with its lag and without, and neither module nor driver nor heat sink of a rig take part. A controller around
+the rig's module is judged both ways: the display exactly at its set-points, and the module that follows in each corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..delivery.realised import Realised
+from ..delivery.samples import Samples
+from ..delivery.setpoints import Setpoints
+from ..delivery.temperatures import follow_samples
+from ..delivery.thermode import display_of, lag_of
+from ..rig.rigfile import RigError
+from ..safety.checks import Check, worst_of
+from ..safety.corners import corners_of
+from ..safety.demands import Demands
+from ..safety.ensemble import Ensemble
+from ..safety.gate import Gate, gate_set
+from ..safety.single import Single
+from ..safety.single_faults import Faulty
+from ..safety.thermode import Shown
+from ..safety.thermode_gate import gate_shown
+from ..solver.drive import Drive
+
+AT_ONCE, LAGGED, HELD = "followed at once", "followed with its lag", "every set-point reached"
+
+RIPPLES_BELOW_HZ = 100.0
+"""A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
+
+SETTLED_LAGS = 12.0
+"""After so many lags a display has arrived within 1e-5 of its last step."""
+
+
+def worst_case(realised: Realised, pause_s: float | None = None) -> Gate:
+    """Check what a device delivers against every rule of safety, once and again and again with a pause.
+
+    See `gate`. Raises PauseError for a pause that cannot be.
+
+    >>> from thermicon.circuit import Device, Rig, realise
+    >>> from thermicon.icons import load_library
+    >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
+    >>> worst_case(realise(icon, rig, Device.load("dac-12")))
+    Gate(green: 22 rules in 195 scenarios on thenar)
+    >>> worst_case(realise(icon, rig, Device.load("qst-tcs2")))
+    Gate(green: 21 rules in 20 scenarios on thenar)
+    """
+    return worst_cases([realised], pause_s)[0]
+
+
+def worst_cases(realised: Sequence[Realised], pause_s: float | None = None) -> tuple[Gate, ...]:
+    """Check what one device delivers of several cues on one rig, which may be played again and again in any order."""
+    device, rig = realised[0].device, realised[0].rig
+    if device.driven_by == "set-points":
+        stuck = device.interval("set-point range")
+        return gate_shown([ways_of(one) for one in realised], rig, stuck_C=stuck, pause_s=pause_s)
+    if device.driven_by == "temperatures":
+        return _controlled(realised, pause_s)
+    if device.driven_by == "duty":
+        return _bridged(realised, pause_s)
+    assert device.driven_by in ("volts", "amperes"), f"no gate for a device driven by {device.driven_by}"
+    drives = [(one.delivered, float(one.delivered.current_A[0])) for one in realised]
+    return gate_set(drives, rig, pause_s=pause_s)
+
+
+def _bridged(realised: Sequence[Realised], pause_s: float | None) -> tuple[Gate, ...]:
+    """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
+    device, rig = realised[0].device, realised[0].rig
+    low, high = device.interval("output range")
+    peak, averaged = min(-low, high), device.most("carrier frequency") >= RIPPLES_BELOW_HZ
+    drives = []
+    for one in realised:
+        samples = samples_of(one)
+        means = Drive(samples.time_s, samples.command * peak, held=True)
+        drives.append((means if averaged else one.delivered, float(samples.command[0]) * peak))
+    return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
+
+
+def ways_of(realised: Realised) -> tuple[Shown, ...]:
+    """The display of a thermode in each way in which it may follow its set-points, at its own tick."""
+    played, device = realised.played, realised.device
+    assert isinstance(played, Setpoints)
+    found = [Shown(AT_ONCE, *display_of(played, device, lagged=False))]
+    if lag_of(device) > 0:
+        settling = SETTLED_LAGS * lag_of(device)
+        step, display = display_of(played, device, lagged=True, end_s=float(played.time_s[-1]) + settling)
+        display = np.append(display[:-1], played.level_C[-1])
+        found.append(Shown(LAGGED, step, display, step * (len(display) - 1) - float(played.time_s[-1])))
+    return tuple(found)
+
+
+def samples_of(realised: Realised) -> Samples:
+    """The samples of a drive whose device plays samples."""
+    assert isinstance(realised.played, Samples)
+    return realised.played
+
+
+def _controlled(realised: Sequence[Realised], pause_s: float | None) -> tuple[Gate, ...]:
+    """A controller around the rig's module: the display at its set-points, and the module that follows in each corner.
+
+    No module jumps as a set-point does, so rates are those of the module; a display that is exactly at its set-points
+    bounds the temperatures of repetition.
+    """
+    rig, shows = realised[0].rig, [(_held(one),) for one in realised]
+    stuck = (_stuck_C(realised[0], False), _stuck_C(realised[0], True))
+    verdicts = gate_shown(shows, rig, stuck_C=stuck, pause_s=pause_s, rates=False, module=True)
+    found = []
+    for one, verdict in zip(realised, verdicts, strict=True):
+        checks, faulty = _followed(one)
+        found.append(
+            replace(
+                verdict,
+                scenarios=verdict.scenarios + len(corners_of(rig)),
+                checks=worst_of([checks, verdict.checks]),
+                once=worst_of([checks, verdict.once]),
+                demands=_demands(verdict, faulty),
+            )
+        )
+    return tuple(found)
+
+
+def _held(realised: Realised) -> Shown:
+    """A display that is exactly where the controller is told to hold it, from one update to the next."""
+    samples = samples_of(realised)
+    return Shown(HELD, 1.0 / samples.rate_Hz, samples.command)
+
+
+def _followed(realised: Realised) -> tuple[tuple[Check, ...], Faulty]:
+    """Every rule for the rig's module that follows the set-points, in each corner; and its single faults as given."""
+    samples, rig, judged = samples_of(realised), realised.rig, []
+    for corner in corners_of(rig):
+        own = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
+        try:
+            drive = follow_samples(own.rig, samples)
+            judged.append(Single.of(Ensemble.on(rig, (own,), None), drive, float(drive.current_A[0]), rig.limits))
+        except RigError:  # a corner whose module cannot hold the baseline shows less than is asked of it
+            continue
+    first = judged[0]
+    faulty = Faulty(first.ensemble, first.drive, first.rest_A, first.start, rig.limits)
+    return worst_of(single.checks for single in judged), faulty
+
+
+def _demands(verdict: Gate, faulty: Faulty) -> Demands:
+    """What set-points demand, and what a loop that loses its sensor or has its poles swapped does to the module."""
+    cut = verdict.demands.cut_off_display_C
+    cut_off, stuck = faulty.cut_off((cut.low + 1.0, cut.high - 1.0))
+    polarity, _ = faulty.polarity()
+    lost = replace(stuck, fault="sensor lost or poles swapped: the loop runs to the driver's limit")
+    return replace(
+        verdict.demands,
+        cut_off_display_C=cut_off,
+        polarity_check=replace(polarity, needed=True),
+        faults=(*verdict.demands.faults[:1], lost),
+    )
+
+
+def _stuck_C(realised: Realised, warm: bool) -> float:
+    low, high = realised.device.interval("set-point range")
+    return high if warm else low

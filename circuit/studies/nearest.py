@@ -1,0 +1,124 @@
+"""The nearest cue that a rig can reach, for one that it cannot: the same shape slower, or smaller."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from thermicon.icons import Change, Icon, Play, Pulse, Repeat, Return, Statement, Step, Total, Wave
+from thermicon.icons.model.statements import Broken
+
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
+from ..solver.inverse import baseline_C
+from ..solver.simulate import simulate
+
+SLOWEST = 64.0
+SMALLEST = 1.0 / 64.0
+STEPS = 14
+
+
+@dataclass(frozen=True, slots=True)
+class Nearest:
+    """A reachable cue: the cue with its ramps `slower` times as slow, or its changes `smaller` times as large.
+
+    One of the two is 1; of both ways the one with the smaller ratio was taken.
+    """
+
+    icon: Icon
+    slower: float
+    smaller: float
+
+    @property
+    def sentence(self) -> str:
+        """What to change, in one sentence."""
+        if self.slower > 1:
+            return f"it is reached with its ramps {self.slower:.3g} times as slow"
+        return f"it is reached with its changes {self.smaller:.3g} times as large, in the same time"
+
+
+def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
+    """Return the nearest cue that the rig reaches; None where the cue is reached itself, or where no such cue exists.
+
+    Looked for by bisection, to about 1 %, along two ways: slower ramps between the same levels, and smaller changes
+    in the same time. A cue that prescribes current is not changed.
+
+    >>> from thermicon.icons import load_library
+    >>> cue = load_library("cooling-step-skin").icons[0]
+    >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
+    'it is reached with its changes 0.8 times as large, in the same time'
+    """
+    if icon.frame.control == "current" or _reached(icon, rig):
+        return None
+    base = baseline_C(icon, rig)
+    slower = _least(lambda by: _reached(changed(icon, base, slower=by), rig), SLOWEST)
+    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), rig), 1.0 / SMALLEST)
+    if slower is None and smaller is None:
+        return None
+    if smaller is None or (slower is not None and slower <= smaller):
+        assert slower is not None
+        return Nearest(changed(icon, base, slower=slower), slower, 1.0)
+    least = _three_digits(1.0 / smaller, math.floor)  # never rounded towards what is not reached
+    return Nearest(changed(icon, base, smaller=least), 1.0, least)
+
+
+def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 1.0) -> Icon:
+    """Return the cue with ramps that take `slower` times as long and changes `smaller` times as large.
+
+    With `smaller`, a ramp keeps its duration, so that its rate shrinks as its change does.
+    """
+
+    def all_of(body: Sequence[Statement | Broken]) -> tuple[Statement, ...]:
+        # A total is what the cue was meant to last: slower, it would only be in the way.
+        return tuple(one(part) for part in body if not isinstance(part, Total | Broken))
+
+    def one(statement: Statement) -> Statement:
+        if isinstance(statement, Repeat):
+            return replace(statement, body=all_of(statement.body))
+        if isinstance(statement, Play):
+            return Repeat(1, all_of(statement.icon.statements))
+        if isinstance(statement, Wave):
+            period, time = statement.period_s * slower, statement.duration_s * slower
+            return replace(statement, by_K=smaller * (statement.by_K or 0.0), period_s=period, duration_s=time)
+        if isinstance(statement, Step | Pulse):
+            if isinstance(statement, Step) and statement.to_C is not None:
+                return replace(statement, to_C=base_C + smaller * (statement.to_C - base_C))
+            return replace(statement, by_K=smaller * (statement.by_K or 0.0))
+        if isinstance(statement, Change):
+            to = None if statement.to_C is None else base_C + smaller * (statement.to_C - base_C)
+            by = None if statement.by_K is None else smaller * statement.by_K
+            rate = None if statement.rate_K_per_s is None else statement.rate_K_per_s * smaller / slower
+            span = None if statement.duration_s is None else statement.duration_s * slower
+            return replace(statement, by_K=by, to_C=to, rate_K_per_s=rate, duration_s=span)
+        if isinstance(statement, Return):
+            rate = None if statement.rate_per_s is None else statement.rate_per_s * smaller / slower
+            span = None if statement.duration_s is None else statement.duration_s * slower
+            return replace(statement, rate_per_s=rate, duration_s=span)
+        return statement
+
+    return replace(icon, statements=all_of(icon.statements))
+
+
+def _reached(icon: Icon, rig: Rig) -> bool:
+    try:
+        return simulate(icon, rig, rate_Hz=10).reachable
+    except RigError:
+        return False
+
+
+def _least(works: Callable[[float], bool], most: float) -> float | None:
+    """Least factor above 1 that works, with three digits; None where not even the most does."""
+    if not works(most):
+        return None
+    low, high = 0.0, math.log(most)
+    for _ in range(STEPS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if works(math.exp(middle)) else (middle, high)
+    return _three_digits(math.exp(high), math.ceil)
+
+
+def _three_digits(value: float, towards: Callable[[float], int]) -> float:
+    """A value with three digits, rounded up or down."""
+    digits = 10.0 ** (2 - math.floor(math.log10(value)))
+    return towards(value * digits - 1e-9 if towards is math.ceil else value * digits + 1e-9) / digits

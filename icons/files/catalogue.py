@@ -1,0 +1,117 @@
+"""The catalogue of errors: for every code what it means, a file that makes it with what is said, and one put right."""
+
+import tomllib
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+from ..model.errors import TITLES, CueErrors
+
+_HEADINGS = {"E0": "The file as a whole", "E1": "Words, numbers and units", "E2": "Meaning"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One code: what it means, a wrong text and a right one, or, where no text can show it, what to do.
+
+    ``form`` is "cue", or "json" for what concerns sets in JSON.
+    """
+
+    code: str
+    meaning: str
+    wrong: str = ""
+    right: str = ""
+    cure: str = ""
+    form: str = "cue"
+
+    @property
+    def title(self) -> str:
+        """The short name of the error."""
+        return TITLES[self.code]
+
+    def message(self) -> str:
+        """Return what is printed for the wrong text, or "" where there is none."""
+        if not self.wrong:
+            return ""
+        from ..language.parse import parse
+        from .exchange import from_json
+
+        try:
+            (from_json if self.form == "json" else parse)(self.wrong, f"alerts.{self.form}")
+        except CueErrors as found:
+            return str(found)
+        raise ValueError(f"{self.code}: nothing is wrong with its example")
+
+
+@cache
+def catalogue() -> dict[str, Entry]:
+    """Return the entries by code, in the order of the codes."""
+    text = resources.files("thermicon.icons").joinpath("data/mistakes.toml").read_text(encoding="utf-8")
+    entries = {code: Entry(code=code, **values) for code, values in tomllib.loads(text).items()}
+    return {code: entries[code] for code in sorted(entries)}
+
+
+def explain(code: str) -> str:
+    """Return the entry for a code as plain text; ValueError, with the nearest codes, for one that does not exist.
+
+    >>> print(explain("E205").split("\\n\\n")[0])
+    E205 rest away from baseline
+    `rest` is a pause at baseline, and the icon is somewhere else. To stay at a level, `hold`.
+    >>> explain("missing units")
+    Traceback (most recent call last):
+      ...
+    ValueError: there is no error missing units; the nearest are E102 missing unit, E117 missing text
+    """
+    wanted = code.strip().upper()
+    wanted = f"E{wanted}" if wanted.isdigit() else wanted
+    entry = catalogue().get(wanted)
+    if entry is None:
+        near = ", ".join(f"{other} {TITLES[other]}" for other in _nearest(wanted))
+        raise ValueError(f"there is no error {code.strip()[:40]}; the nearest are {near}")
+    parts = [f"{entry.code} {entry.title}\n{entry.meaning}"]
+    if entry.cure:
+        parts.append(entry.cure)
+    if entry.wrong:
+        parts += [f"Wrong:\n\n{_indented(entry.wrong)}", f"What is said:\n\n{_indented(entry.message())}"]
+    if entry.right:
+        parts.append(f"Right:\n\n{_indented(entry.right)}")
+    return "\n\n".join(parts)
+
+
+def page() -> str:
+    """Return the catalogue as Markdown: what docs/errors.md holds."""
+    lines = [
+        "# Errors",
+        "",
+        "Everything that can be wrong with a cue file has a code. All errors of a file are told in one go, each with",
+        "its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
+        "",
+        "Made from `icons/data/mistakes.toml` by `python tests/icons/test_catalogue.py`, which runs every example.",
+    ]
+    part = ""
+    for entry in catalogue().values():
+        heading = _HEADINGS[entry.code[:2]]
+        if heading != part:
+            lines += ["", f"## {heading}"]
+            part = heading
+        lines += ["", f"### {entry.code} {entry.title}", "", entry.meaning]
+        if entry.cure:
+            lines += ["", entry.cure]
+        if entry.wrong:
+            lines += ["", f"```{entry.form}", entry.wrong.strip("\n"), "```"]
+            lines += ["", "```text", entry.message(), "```"]
+        if entry.right:
+            lines += ["", "Right:", "", f"```{entry.form}", entry.right.strip("\n"), "```"]
+    return "\n".join(lines) + "\n"
+
+
+def _nearest(wanted: str) -> list[str]:
+    from difflib import get_close_matches
+
+    titles = {title.upper(): code for code, title in TITLES.items()}
+    by_title = [titles[title] for title in get_close_matches(wanted, list(titles), n=2)]
+    return by_title or get_close_matches(wanted, list(TITLES), n=2, cutoff=0.0)
+
+
+def _indented(text: str) -> str:
+    return "\n".join(f"  {line}".rstrip() for line in text.strip("\n").split("\n"))

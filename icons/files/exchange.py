@@ -1,0 +1,162 @@
+"""A cue set as JSON, for other programs, and back without loss; the schema is ``data/cue.schema.json``."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+from ..model.errors import MOST_ERRORS, CueErrors
+from ..model.family import Family
+from ..model.frame import Metadata
+from ..model.icon import Icon
+from ..model.iconset import IconSet
+from ..model.parameter import Parameter
+from ..model.statements import Hold, Play, Repeat, Return, Statement
+from ..model.units import decimal_text
+
+_WIDE = 110
+_SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
+Path = tuple[int, ...]
+Holes = Mapping[tuple[Path, str], str]
+
+
+def to_json(icons: IconSet) -> str:
+    """Return a set as JSON text: units stand in the names of the keys, ``from_json`` gives an equal set.
+
+    >>> from thermicon.icons import parse
+    >>> print(to_json(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return over 2 s }")))
+    {
+      "format": "thermicon cue",
+      "version": 1,
+      "set": {"control": "skin"},
+      "icons": [
+        {
+          "name": "dip",
+          "statements": [
+            {"do": "cool", "by_K": 6, "rate_K_per_s": 3},
+            {"do": "return", "duration_s": 2}
+          ]
+        }
+      ]
+    }
+    <BLANKLINE>
+    """
+    frame = icons.frame
+    head = {"name": icons.name or None, "title": icons.title or None, "site": frame.site, "control": frame.control}
+    document = {
+        "format": "thermicon cue",
+        "version": 1,
+        "set": _given({**head, "baseline_C": frame.baseline_C, **_metadata(icons.metadata)}),
+        "icons": [_icon(entry) for entry in icons.entries],
+    }
+    return _laid_out(document, "") + "\n"
+
+
+def from_json(text: str | bytes, file: str = "<json>") -> IconSet:
+    """Return the set in a JSON text; ``file`` is the name that errors show.
+
+    Raises CueErrors, and nothing else, with everything that is wrong: E011 when the text is not JSON, E012 when it is
+    not a cue set, and the codes of cue files for what they have in common. Places are lines and columns of the JSON.
+
+    >>> try:
+    ...     from_json('{"format": "thermicon cue", "version": 1, "icon": []}', "a.json")
+    ... except CueErrors as found:
+    ...     print(found.errors[0].code, found.errors[0].what)
+    E012 the file: "icons" is missing
+    """
+    from pydantic import ValidationError
+
+    from ..language.source import Source
+    from .json_messages import finding
+    from .json_reader import Reader
+    from .json_schema import CueTable
+    from .jsonplaces import decode_json, read_json
+
+    source = Source(file, decode_json(text, file))
+    document, places = read_json(source)
+    try:
+        table = CueTable.model_validate(document)
+    except ValidationError as error:
+        told = error.errors(include_url=False)
+        findings = sorted((finding(each, document, places) for each in told), key=lambda one: one.start)
+    else:
+        reader = Reader(source, places, table)
+        icons = reader.icons()
+        if icons is not None:
+            return icons
+        findings = sorted(reader.findings, key=lambda one: one.start)
+    errors = tuple(source.error(each) for each in findings[:MOST_ERRORS])
+    raise CueErrors(errors, len(findings) - len(errors))
+
+
+def _icon(entry: Icon | Family) -> dict[str, Any]:
+    head = {"name": entry.name, **_metadata(entry.metadata)}
+    if isinstance(entry, Icon):
+        return _given({**head, "statements": [_statement(part, {}, entry) for part in entry.statements]})
+    holes = {(slot.path, slot.field): slot.parameter for slot in entry.slots}
+    body = [_statement(part, holes, entry, (n,)) for n, part in enumerate(entry.template)]
+    return _given({**head, "parameters": [_parameter(each) for each in entry.parameters], "statements": body})
+
+
+def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path = ()) -> dict[str, Any]:
+    values = {field.name: getattr(part, field.name) for field in fields(part) if field.name != "span"}
+    values = {name: value for name, value in values.items() if value is not None}
+    values.update({name: {"parameter": holes[path, name]} for name in values if (path, name) in holes})
+    kind = type(part).__name__.lower()
+    if isinstance(part, Repeat):
+        inner = [_statement(each, holes, owner, (*path, n)) for n, each in enumerate(part.body)]  # type: ignore[arg-type]
+        return {"do": kind, "count": values["count"], "statements": inner}
+    if isinstance(part, Play):
+        return {"do": kind, "icon": part.icon.name}
+    if isinstance(part, Return) and "rate_per_s" in values:
+        rate = "rate_A_per_s" if owner.frame.control == "current" else "rate_K_per_s"
+        return {"do": kind, rate: values["rate_per_s"]}
+    if kind == "change":
+        return {"do": values.pop("direction"), **values}
+    if kind == "wave":
+        kind = values.pop("shape")
+    if isinstance(part, Hold):
+        kind = "hold"
+    return {"do": kind, **{name: value for name, value in values.items() if _SAME_AS_LEFT_OUT.get(name) != value}}
+
+
+def _parameter(parameter: Parameter) -> dict[str, Any]:
+    head = {"name": parameter.name, "unit": parameter.unit or None}
+    if parameter.span is None:
+        return _given({**head, "values": list(parameter.listed)})
+    return _given({**head, **dict(zip(("low", "high", "step"), parameter.span, strict=True))})
+
+
+def _metadata(metadata: Metadata) -> dict[str, Any]:
+    found = {field.name: getattr(metadata, field.name) for field in fields(metadata)}
+    return {**found, "tags": list(metadata.tags) or None}
+
+
+def _given(values: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _laid_out(value: Any, indent: str) -> str:
+    """JSON with what is short on one line: a statement reads like one."""
+    line = _line(value)
+    inner = indent + "  "
+    nested = isinstance(value, dict) and ("statements" in value or "icons" in value)
+    nested |= isinstance(value, list) and any(isinstance(each, dict) and "do" in each for each in value)
+    if not nested and (len(line) + len(indent) <= _WIDE or not isinstance(value, (dict, list))):
+        return line
+    if isinstance(value, dict):
+        parts = [f"{_line(key)}: {_laid_out(each, inner)}" for key, each in value.items()]
+    else:
+        parts = [_laid_out(each, inner) for each in value]
+    marks = "{}" if isinstance(value, dict) else "[]"
+    return f"{marks[0]}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{marks[1]}"
+
+
+def _line(value: Any) -> str:
+    if isinstance(value, float):
+        return decimal_text(value)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_line(key)}: {_line(each)}" for key, each in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_line, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)

@@ -1,0 +1,101 @@
+"""Read cue files and the icon sets that ship with the package."""
+
+import errno
+from importlib import resources
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from ..language.parse import parse
+from ..language.source import MOST_BYTES, MOST_JSON_BYTES
+from ..model.errors import whole_file
+from ..model.iconset import IconSet
+from ..model.words import nearest
+from .input_files import NotRegular, TooLarge, read_limited
+
+
+def library_names() -> tuple[str, ...]:
+    """Return the names of the shipped sets, sorted.
+
+    >>> library_names()[0]
+    'cooling-step-skin'
+    """
+    return tuple(
+        sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
+    )
+
+
+def load_library(name: str) -> IconSet:
+    """Return a shipped set by its name; CueErrors, with the nearest names, when there is none.
+
+    >>> len(load_library("six-icons"))
+    6
+    """
+    names = library_names()
+    if name not in names:
+        close = nearest(name, names)
+        hint = f"did you mean {close}? " if close else ""
+        help = f"{hint}shipped sets are: {', '.join(names)}"
+        raise whole_file(
+            "E001", name if name.isprintable() else repr(name), "neither a file nor a shipped set has this name", help
+        )
+    return parse(_folder().joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
+
+
+def read_cue(source: str | Path) -> IconSet:
+    """Return the set in a ``.cue`` or ``.json`` file, or the shipped set of this name; an existing path wins.
+
+    Raises CueErrors when the file is missing, a folder, unreadable, too large or not a sound cue text or JSON.
+
+    >>> read_cue("six-icons").frame.control
+    'display'
+    """
+    name = str(source)
+    data = file_bytes(source)
+    if data is not None and is_json(source):
+        from .exchange import from_json
+
+        return from_json(data, name)
+    return load_library(name) if data is None else parse(data, name)
+
+
+def is_json(source: str | Path) -> bool:
+    """Tell whether a name is that of a JSON file."""
+    return Path(source).suffix.lower() == ".json"
+
+
+def file_bytes(source: str | Path) -> bytes | None:
+    """Return what is in a file, or None when there is none of this name.
+
+    Raises CueErrors when it is a folder (but not one with the name of a shipped set), unreadable or too large.
+
+    >>> file_bytes("six-icons") is None
+    True
+    """
+    name = str(source)
+    path = Path(source)
+    most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
+    try:
+        if path.is_dir() and name in library_names():
+            return None
+        return read_limited(path, most)
+    except FileNotFoundError:
+        return None
+    except NotRegular as found:
+        if found.kind == "folder":
+            help = f"name a .cue file in it, such as {path / 'my-set.cue'}"
+            raise whole_file("E002", name, "a set is one file", help) from None
+        raise whole_file("E003", name, str(found), "save what it gives as a file, and name that") from None
+    except TooLarge as found:
+        help = f"a cue file has at most {most:,} bytes; split the set"
+        raise whole_file("E004", name, str(found), help) from None
+    except OSError as error:
+        if error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG):
+            return None
+        help = "check that it is there and that you may read it"
+        raise whole_file("E003", name, f"the system says: {error.strerror or error}", help) from None
+    except ValueError:  # a zero byte in the name
+        return None
+
+
+def _folder() -> Traversable:
+    return resources.files("thermicon.icons").joinpath("library")

@@ -1,0 +1,1 @@
+"""Cue text to icons: grammar, recovery after a mistake, diagnosis in words, assembly."""

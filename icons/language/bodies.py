@@ -1,0 +1,285 @@
+"""From the tree to statements: the body of one icon or family, in which parameters may stand for numbers."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+from ..model.expand import HOLE
+from ..model.frame import Metadata
+from ..model.icon import Icon
+from ..model.parameter import Parameter
+from ..model.shapes import Pulse, Shape, Start, Step, Wave
+from ..model.slots import Path, Slot, value_fault
+from ..model.statements import (
+    Bound,
+    Broken,
+    Change,
+    Direction,
+    Drive,
+    Hold,
+    Play,
+    Repeat,
+    Rest,
+    Return,
+    Statement,
+    Total,
+)
+from ..model.units import UNITS, Kind
+from ..model.words import nearest
+from .build import Builder, Place, rule_of, short, span
+from .family_parameters import Over, parameters_of
+from .source import Edit
+
+_USES: dict[str, tuple[Kind, ...]] = {
+    "by_use": ("change", "current"),
+    "to_use": ("absolute", "current"),
+    "at_use": ("rate", "current_rate"),
+    "over_use": ("time",),
+    "for_use": ("time",),
+    "every_use": ("time",),
+    "count_use": ("count",),
+}
+# Which rate a ramp takes; that of a return is told by what the set controls.
+_RATES: dict[str, tuple[Kind, ...]] = {"change": ("rate",), "shift": ("rate",), "drive": ("current_rate",)}
+# Which rule gives which value of a statement; what a parameter may stand for is among them.
+_VALUES = {
+    **dict.fromkeys(("difference", "signed"), "by_K"),
+    **{"absolute": "to_C", "current": "to_A", "current_change": "by_A"},
+    **{"rate": "rate", "current_rate": "rate", "at_use": "rate", "period": "period", "every_use": "period"},
+    **dict.fromkeys(("time", "over_use", "for_use"), "time"),
+}
+Resolve = Callable[[str, Place], Icon | None]
+
+
+@dataclass(frozen=True, slots=True)
+class IconDraft:
+    """An icon or family as written: name (None when unreadable), its place, metadata, statements.
+
+    ``over`` holds the parameters of a family, and is None for an icon; ``slots`` says where they stand in the body.
+    """
+
+    name: str | None
+    place: Place
+    metadata: Metadata
+    body: tuple[Statement | Broken, ...]
+    over: Over | None = None
+    slots: tuple[Slot, ...] = ()
+
+
+def icon_draft(builder: Builder, tree: Any, resolve: Resolve) -> IconDraft:
+    """Return an icon or a family from its tree; an empty one is a finding.
+
+    ``resolve`` finds the icon that a ``play`` names, or adds a finding and returns None.
+    """
+    head, *parts = tree.children
+    name = str(head) if head.type == "NAME" else None
+    keys = [part for part in parts if rule_of(part) == "metadata"]
+    listed = [part for part in parts if rule_of(part) == "parameters"]
+    place = span(head) if name else span(tree)
+    over = parameters_of(builder, listed[0]) if listed else None
+    scope = _Scope(builder, resolve, over, known=name is not None)
+    body = scope.body([part for part in parts if rule_of(part) not in ("metadata", "parameters")], ())
+    if not body:
+        what = "there is nothing between the braces"
+        builder.add("E217", place, what, 'an icon needs a statement, such as "cool by 6 °C at 3 °C/s"')
+    metadata = builder.metadata(keys)
+    if over is not None:
+        scope.finish(over, keys, metadata)
+    return IconDraft(name, place, metadata, body, over, tuple(scope.slots))
+
+
+@dataclass(slots=True)
+class _Scope:
+    builder: Builder
+    resolve: Resolve
+    over: Over | None
+    known: bool
+    slots: list[Slot] = field(default_factory=list)
+    used: set[str] = field(default_factory=set)
+    broken: bool = False
+
+    def body(self, parts: Iterable[Any], path: Path) -> tuple[Statement | Broken, ...]:
+        """Return statements in order, with Broken for each that could not be read."""
+        return tuple(self.statement(part, (*path, place)) for place, part in enumerate(parts))
+
+    def statement(self, tree: Any, path: Path) -> Statement | Broken:
+        """Return one statement, and remember the places of its parts."""
+        builder, place = self.builder, span(tree)
+        made: Statement | Broken | None
+        if rule_of(tree) == "repeat":
+            made = self.repeat(tree, path)
+        elif rule_of(tree) == "play":
+            icon = self.resolve(str(tree.children[0]), span(tree.children[0]))
+            made = Play(icon, builder.at(place)) if icon else None
+        elif rule_of(tree):
+            made = self.leaf(tree, path)
+        else:
+            made = None
+        self.broken |= made is None
+        made = Broken(builder.at(place)) if made is None else made
+        builder.kept.append(made)
+        builder.places[id(made)] = builder.parts(tree, place)
+        return made
+
+    def leaf(self, tree: Any, path: Path) -> Statement | None:
+        """Return the statement for a tree, or None, and findings, when its numbers are not all in order."""
+        builder, rule = self.builder, rule_of(tree)
+        words = {child.type: str(child) for child in tree.children if not rule_of(child)}
+        values: dict[str, float] = {}
+        for part in tree.children:
+            if rule_of(part):
+                name, value = self.value(part, tree, path, words)
+                if value != value:
+                    values["broken"] = value
+                values[name] = value
+        if "broken" in values:
+            return None
+        by, to, amperes = values.get("by_K"), values.get("to_C"), values.get("to_A")
+        rate, time, by_A = values.get("rate"), values.get("time"), values.get("by_A")
+        at = builder.at(span(tree))
+        direction = cast(Direction, words.get("DIRECTION", "change"))
+        match rule:
+            case "change" | "shift":
+                return Change(direction, by, to, rate, time, at)
+            case "drive":
+                return Drive(cast(float, amperes), rate, time, at)
+            case "return":
+                return Return(rate, time, at)
+            case "hold":
+                return Hold(values["time"], at)
+            case "rest":
+                return Rest(values["time"], at)
+            case "step":
+                return Step(direction, by, to, by_A, amperes, at)
+            case "pulse":
+                return Pulse(direction, by, by_A, values["time"], at)
+            case "total":
+                bound = "at most" if "MOST" in words else "at least" if "LEAST" in words else "exactly"
+                return Total(values["time"], cast(Bound, bound), at)
+        return self.wave(tree, words, values)
+
+    def wave(self, tree: Any, words: dict[str, str], values: dict[str, float]) -> Wave | None:
+        """Return a wave; None, and a finding, for an amplitude or a start that does not fit."""
+        by_K, by_A, start = values.get("by_K"), values.get("by_A"), words.get("START")
+        if by_A is not None and by_A <= 0:
+            self.builder.add("E202", span(tree.children[1]), "an amplitude is positive", 'add "starting down"')
+            return None
+        up, down = ("warm", "cool") if by_A is None else ("up", "down")
+        if start not in (None, up, down):
+            token = next(child for child in tree.children if getattr(child, "type", "") == "START")
+            other = {"warm": "up", "cool": "down", "up": "warm", "down": "cool"}[str(token)]
+            what = f'"{token}" is no way to start a wave in {"A" if by_A is not None else "°C"}'
+            self.builder.add("E210", span(token), what, f'"{up}" or "{down}"', Edit(*span(token), other))
+            return None
+        at = self.builder.at(span(tree))
+        shape = cast(Shape, words["SHAPE"])
+        return Wave(shape, by_K, by_A, values["period"], values["time"], cast(Start | None, start), "CUT" in words, at)
+
+    def value(self, part: Any, tree: Any, path: Path, words: dict[str, str]) -> tuple[str, float]:
+        """Return which value of a statement a part of it is, and the value; NaN, and a finding, when it cannot be."""
+        rule = rule_of(part)
+        if rule not in _USES:
+            return _VALUES[rule], self.builder.quantity(part, wave=rule_of(tree) == "wave")
+        signed = rule_of(tree) in ("shift", "step", "pulse") and "DIRECTION" not in words
+        kind, value = self.use(part, tree, signed)
+        if kind is None:
+            return "broken", value
+        if rule in ("by_use", "to_use"):
+            name = rule[:3] + ("A" if kind == "current" else "C" if kind == "absolute" else "K")
+            slot = name
+        else:
+            name = _VALUES[rule]
+            slot = _field(rule_of(tree), name, kind)
+        self.slots.append(Slot(path, slot, kind, str(part.children[0])))
+        return name, value
+
+    def use(self, part: Any, tree: Any, signed: bool) -> tuple[Kind | None, float]:
+        """Return kind and first value of a parameter where it is used; None and NaN, with a finding, when it fails."""
+        token = part.children[0]
+        own = self.parameter(token)
+        if own is None:
+            self.broken = True
+            return None, float("nan")
+        kinds = _RATES.get(rule_of(tree), _USES[rule_of(part)]) if rule_of(part) == "at_use" else _USES[rule_of(part)]
+        kind = next((kind for kind in kinds if own.unit in UNITS[kind]), kinds[0])
+        kind = "difference" if kind == "change" and not signed else kind
+        found = value_fault(own, kind)
+        if kind == "current" and rule_of(part) == "by_use" and not found:
+            negative = min(own.si(0, kind), own.si(len(own) - 1, kind), *own.listed) < 0 and rule_of(tree) == "wave"
+            if negative or own.place("0") is not None:
+                found = "E202", "an amplitude is positive" if negative else "a change of nothing is no change"
+        if found:
+            what, help = f"{own.name}: {found[1]}", f"its values: {str(own)[:80]}"
+            if found[0] == "E104":
+                what = found[1]
+                help = f"the unit stands once, behind the values: {own.name} in [...] {next(iter(UNITS[kind]))}".strip()
+            elif found[0] == "E202" and rule_of(tree) == "wave":
+                what = f"{own.name}: an amplitude is positive"
+            self.builder.add(found[0], span(token), what, help)
+            return None, float("nan")
+        return kind, own.si(0, kind)
+
+    def parameter(self, token: Any) -> Parameter | None:
+        """Return the parameter of this name; None when it could not be read."""
+        name = str(token)
+        known = {} if self.over is None else self.over.named
+        self.used.add(name)
+        return known.get(name)
+
+    def repeat(self, tree: Any, path: Path) -> Repeat | None:
+        """Return a repeat; an impossible count counts as one, so that its body is checked."""
+        head, *parts = tree.children
+        body = self.body(parts, path)
+        count = 1
+        self.broken |= getattr(head, "type", "") == "BROKEN"
+        if rule_of(head):
+            kind, value = self.use(head, tree, signed=False)
+            if kind is not None:
+                self.slots.append(Slot(path, "count", kind, str(head.children[0])))
+                count = int(value)
+        elif head.type == "NUMBER":
+            digits = str(head).removeprefix("+")
+            count = int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 10 else 0
+            if not 1 <= count <= 1_000_000_000:
+                large = digits.isascii() and digits.isdigit() and digits.strip("0") != ""
+                wrong = "too large: at most 1,000,000,000" if large else "not a positive whole number"
+                what = f'"{short(head)}" is {wrong}'
+                self.builder.add("E207", span(head), what, "a repeat has a count from 1, such as: repeat 3 { ... }")
+                count = 1
+        for part, inside in zip(parts, body, strict=True):
+            if isinstance(inside, Total):
+                help = "put it directly between the braces of the icon"
+                self.builder.add("E229", span(part), "a total concerns the whole icon, not a repeat", help)
+        body = tuple(Broken() if isinstance(part, Total) else part for part in body)
+        if not body and getattr(head, "type", "") == "BROKEN":
+            return None
+        if not body:
+            what = "there is nothing between the braces of this repeat"
+            self.builder.add("E217", span(tree), what, "put the statements that repeat between them")
+            return None
+        return Repeat(count, body, self.builder.at(span(tree)))
+
+    def finish(self, over: Over, keys: list[Any], metadata: Metadata) -> None:
+        """Tell which parameters are never used, and which names in the intent are none."""
+        for name, place in over.places.items():
+            if name in over.named and name not in self.used and not self.broken:
+                what = f"{name} is never used, so that members would be equal"
+                self.builder.add("E227", place, what, "use it in the body, or take it away")
+        for hole in HOLE.findall(metadata.means or ""):
+            if hole not in over.named and not over.unread:
+                token = next(tree.children[1] for tree in keys if str(tree.children[0]) == "means")
+                help = f"in the intent of a family, {{...}} names one of: {', '.join(over.named)}"
+                start = span(token)[0] + str(token).find(f"{{{hole}}}")
+                close = nearest(hole, list(over.named)) or (next(iter(over.named)) if len(over.named) == 1 else None)
+                place = (start, start + len(hole) + 2)
+                cures = (Edit(*place, f"{{{close}}}"),) if close else ()
+                self.builder.add("E226", place, f'"{short(hole)}" is not a parameter', help, *cures)
+
+
+def _field(rule: str, name: str, kind: Kind) -> str:
+    """Return the field of a statement for a value that a parameter gives."""
+    if name == "rate":
+        if rule == "return":
+            return "rate_per_s"
+        return "rate_A_per_s" if kind == "current_rate" else "rate_K_per_s"
+    return "period_s" if name == "period" else "duration_s"

@@ -1,0 +1,104 @@
+"""One statement that stopped making sense, as the rules of diagnosis see it, and how they say what they found."""
+
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+from ..model.words import DASHES
+from .source import Edit, Finding, Piece
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A statement as ``pieces`` that broke at ``pieces[index]``, or at its end; ``at`` is the offset.
+
+    ``accepts`` are the terminals that the grammar could take there, ``where`` is "file", "set", "icon" or "repeat".
+    ``names`` are the parameters of the icon around it, None when they could not be read; ``listing`` says that it
+    broke between the parentheses of a family, where pieces are cut finer.
+    """
+
+    pieces: list[Piece]
+    index: int
+    at: int
+    accepts: frozenset[str]
+    where: str
+    names: AbstractSet[str] | None = frozenset()
+    listing: bool = False
+
+    @property
+    def bad(self) -> Piece:
+        """The piece that does not fit; at the end of the statement an empty one."""
+        if self.index < len(self.pieces):
+            return self.pieces[self.index]
+        before = self.before
+        end = before.end if before is not None else self.at
+        return Piece("end", "", end, end)
+
+    @property
+    def before(self) -> Piece | None:
+        """The piece before it."""
+        return self.pieces[self.index - 1] if self.index else None
+
+    @property
+    def first(self) -> str:
+        """The word that the statement begins with."""
+        return self.pieces[0].text if self.pieces else ""
+
+    @property
+    def rest(self) -> list[Piece]:
+        """The pieces behind the one that does not fit."""
+        return self.pieces[self.index + 1 :]
+
+    def next(self, count: int = 1) -> str:
+        """Return the text of a piece behind the one that does not fit, or ""."""
+        place = self.index + count
+        return self.pieces[place].text if place < len(self.pieces) else ""
+
+    def quantity(self, place: int) -> tuple[float, str] | None:
+        """Return number and unit that stand at a place, or None."""
+        if place + 1 >= len(self.pieces) or self.pieces[place].kind != "number":
+            return None
+        try:
+            return float(self.pieces[place].text.replace("−", "-")), self.pieces[place + 1].text
+        except ValueError:
+            return None
+
+    def find(self, word: str) -> int | None:
+        """Return the place of a word in the statement, or None."""
+        return next((place for place, piece in enumerate(self.pieces) if piece.text == word), None)
+
+    def said(self, start: int, end: int | None = None) -> str:
+        """Return pieces as text with one blank between them."""
+        return " ".join(piece.text for piece in self.pieces[start:end])
+
+
+def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Finding:
+    """Return a finding under the whole of a piece."""
+    return Finding(code, piece.start, max(piece.end, piece.start + 1), what, help, cures)
+
+
+def signed(case: Case) -> Finding | None:
+    """A sign that is none, or that stands apart from its number: the cure keeps it."""
+    bad, number = case.bad, case.rest[0] if case.rest else None
+    if bad.text not in (*DASHES, "+") or number is None or number.kind != "number" or number.text[0] in "+-−":
+        return None
+    what = f'"{bad.text}" (U+{ord(bad.text):04X}) is no minus sign'
+    if bad.text in "+-−":
+        what = "a blank stands between the sign and its number"
+    cure = Edit(bad.start, number.end, ("+" if bad.text == "+" else "-") + number.text)
+    help = 'a minus sign is a plain hyphen, "-", right before the digits'
+    return Finding("E106", bad.start, number.end, what, help, (cure,))
+
+
+def swap(piece: Piece, text: str) -> Edit:
+    """Return the edit that puts a text in the place of a piece."""
+    return Edit(piece.start, piece.end, text)
+
+
+def short(text: str) -> str:
+    """Return a text as messages quote it."""
+    return text if len(text) <= 30 else text[:29] + "…"
+
+
+def either(words: list[str]) -> str:
+    """Return words in quotation marks with "or" between them."""
+    return " or ".join(f'"{word}"' for word in words)

@@ -1,0 +1,78 @@
+"""Cue text in, icon set out: or everything that is wrong with it, each with a corrected line that was tried out."""
+
+from ..model.errors import MOST_ERRORS, CueError, CueErrors
+from ..model.iconset import IconSet
+from .assemble import analyse
+from .source import Edit, Finding, Source, decode
+
+# Suggestions cost a parse each; beyond this many characters read again, errors come without one.
+_TRIES = 150_000
+# An error takes as long to describe as some forty characters to read.
+_AN_ERROR = 40
+_LONGEST_LINE = 200
+_MOST_CURES = 4
+
+
+def parse(text: str | bytes, file: str = "<text>") -> IconSet:
+    """Return the icons of a cue text; ``file`` is the name that errors show.
+
+    Raises CueErrors, and nothing else, with everything that is wrong, in the order of the text.
+
+    >>> parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }")["dip"].lower().time_s
+    (0.0, 2.0, 6.0, 8.0)
+    >>> try:
+    ...     parse("cue 1; icon dip { cool by 6 at 3 °C/s }", "dip.cue")
+    ... except CueErrors as found:
+    ...     print(found)
+    dip.cue:1:27  E102 missing unit
+      1 | cue 1; icon dip { cool by 6 at 3 °C/s }
+        |                           ^ this number has no unit
+      a difference such as "6 °C" or "6 K"
+      did you mean:  cue 1; icon dip { cool by 6 °C at 3 °C/s }
+    """
+    source = Source(file, decode(text, file))
+    analysis = analyse(source)
+    if analysis.icons is not None:
+        return analysis.icons
+    findings = analysis.findings[:MOST_ERRORS]
+    more = analysis.more + len(analysis.findings) - len(findings)
+    raise CueErrors(_Suggester(source, len(analysis.findings)).errors(findings), more)
+
+
+class _Suggester:
+    """Tries cures out until their budget of characters is spent."""
+
+    def __init__(self, source: Source, count: int) -> None:
+        self.source = source
+        self.count = count
+        self.budget = _TRIES
+
+    def errors(self, findings: tuple[Finding, ...]) -> tuple[CueError, ...]:
+        return tuple(self.source.error(finding, self.cured(self.source, finding, 0)) for finding in findings)
+
+    def cured(self, source: Source, finding: Finding, depth: int) -> str | None:
+        """Return the corrected line, or None: no cure leaves the line without an error and the file no worse."""
+        line = 1 if finding.code == "E009" else source.place(finding.start)[0]
+        if len(source.lines[line - 1]) > _LONGEST_LINE:
+            return None
+        for cure in finding.cures:
+            if self.budget < len(source.text):
+                return None
+            if not _within(source, cure, line) or (depth and "\n" in cure.text):
+                continue
+            self.budget -= len(source.text)
+            text = source.text[: cure.start] + cure.text + source.text[cure.end :]
+            tried = Source(source.file, text)
+            analysis = analyse(tried)
+            self.budget -= _AN_ERROR * (len(analysis.findings) + analysis.more)
+            left = [found for found in analysis.findings if tried.place(found.start)[0] == line]
+            if not left and len(analysis.findings) + analysis.more <= self.count:
+                return tried.lines[line - 1].strip() or None
+            if left and depth < _MOST_CURES and (deeper := self.cured(tried, left[0], depth + 1)) is not None:
+                return deeper
+        return None
+
+
+def _within(source: Source, cure: Edit, line: int) -> bool:
+    """Tell whether a cure changes one line only, the one that is shown."""
+    return source.place(cure.start)[0] == line and "\n" not in source.text[cure.start : cure.end]

@@ -1,0 +1,366 @@
+"""Run the grammar over a whole file and carry on behind every error, so that all of them are found in one go."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from importlib import resources
+from itertools import islice
+from typing import TYPE_CHECKING, Any
+
+from ..model.errors import MOST_ERRORS, MOST_READ
+from .diagnose import VOCABULARY, diagnose
+from .failed_statement import Case
+from .source import Edit, Finding, Piece, Source
+
+if TYPE_CHECKING:
+    from lark import Lark, Token, Tree
+
+DEEPEST = 20
+_OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
+_BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
+_CELL = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?")
+_NAMED = re.compile(r"icon\s+([^\W\d][\w-]*)")
+_WIDE = 2000
+_FORMATS = {
+    "%pdf-": "this is a PDF document",
+    "{\\rtf": "this is a document of a word processor (RTF)",
+    "<!doctype": "this is a web page",
+    "<html": "this is a web page",
+    "<?xml": "this is XML",
+}
+_HEADER = re.compile(r"(icon|set)\b[^\n;{}]*\{")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """A tree with BROKEN in place of what could not be read, the errors by offset, and how many more there were."""
+
+    tree: "Tree[Any]"
+    findings: tuple[Finding, ...]
+    more: int
+
+
+@cache
+def grammar() -> "Lark":
+    """Return the parser made of ``grammar.lark``; made once, on first use."""
+    from lark import Lark
+
+    text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
+    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False)
+
+
+def read(source: Source) -> Reading:
+    """Parse a source; never raises, whatever the text."""
+    if found := _other_format(source):
+        from lark import Token, Tree
+
+        return Reading(Tree("start", [Token("BROKEN", "")]), (found,), 0)
+    return _Reader(source).run()
+
+
+def _other_format(source: Source) -> Finding | None:
+    """What is plainly another format, told once instead of line by line."""
+    said = ((n, line) for n, line in enumerate(source.lines) if line.strip() and not line.startswith(("#", "sep=")))
+    rows = list(islice(said, 2))
+    if not rows:
+        return None
+    place, line = rows[0]
+    head = line[:_WIDE].lstrip().casefold()
+    what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), None)
+    help = "a cue file is plain text; save it as such, in UTF-8"
+    tables = [[cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])] for _, row in rows]
+    if any(len(cells) > 1 and all(map(_CELL.fullmatch, cells)) for cells in tables) or (
+        "time_s" in tables[0] and not head.startswith("cue")
+    ):
+        what = "this is a table, perhaps a recording"
+        help = "thermicon convert makes an icon of a recording in CSV"
+    if what is None:
+        return None
+    return Finding("E101", source.starts[place], source.starts[place] + len(line), what, help)
+
+
+class _Reader:
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.text = source.text
+        self.findings: list[Finding] = []
+        self.more = 0
+        self.blocks: list[tuple[str, int, int]] = []
+        self.opener = "icon"
+        self.begin = 0
+        self.line = (0, 0)
+        self.fresh = True
+        self.heading = self.listing = False
+        # The parameters of the icon that is being read; None when they could not be.
+        self.names: set[str] | None = set()
+        self.last = ""
+        self.parser: Any = grammar().parse_interactive(source.text)
+        self.tokens: Iterator[Token] = iter(())
+
+    def run(self) -> Reading:
+        from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
+        self.jump(0)
+        while len(self.findings) + self.more < MOST_READ:
+            try:
+                token = next(self.tokens, None)
+            except (UnexpectedCharacters, UnexpectedToken) as error:
+                self.recover(self.seen(error.pos_in_stream or 0))
+                continue
+            if token is None:
+                break
+            start = self.seen(token.start_pos or 0)
+            if self.runs_on(token) or self.unnamed(token):
+                self.recover(start)
+            elif token.type == "LBRACE" and len(self.blocks) >= DEEPEST:
+                self.refuse_depth(start)
+            else:
+                try:
+                    self.parser.feed_token(token)
+                except UnexpectedToken:
+                    self.recover(start)
+                else:
+                    self.follow(token.type, start)
+                    self.collect(token)
+        self.finish()
+        return Reading(self.parser.feed_eof(), tuple(self.findings), self.more)
+
+    # -- following the text ---------------------------------------------------------------------------------------
+
+    def seen(self, offset: int) -> int:
+        if self.fresh and self.text[offset] != "\n":
+            self.begin, self.fresh = offset, False
+        return offset
+
+    def runs_on(self, token: "Token") -> bool:
+        # The lexer takes "to" out of "tox" and "1" out of "1,5": a reader would not.
+        if token.type == "_NEWLINE":
+            return False
+        after = self.text[token.end_pos or 0]
+        if token.type == "NUMBER":
+            if self.listing:  # the values of a parameter: 1..3, or [1,2]
+                return after == "_" or after.isdigit()
+            return after in ".,_" or after.isdigit()
+        last = token[-1]
+        return (last.isalnum() or last == "-") and (after.isalnum() or after in "_-/°")
+
+    def unnamed(self, token: "Token") -> bool:
+        # The grammar lets any name stand for a number; only the names of parameters do.
+        if token.type != "NAME" or self.names is None or self.listing or not self.blocks:
+            return False
+        return token not in self.names and self.takes("NUMBER")
+
+    def collect(self, token: "Token") -> None:
+        """Keep the names between the parentheses of a family."""
+        if token.type == "ICON":
+            self.names = set()
+        elif token.type in ("LPAR", "RPAR"):
+            self.listing = token.type == "LPAR"
+        elif self.listing and token.type == "IN" and self.names is not None:
+            self.names.add(self.last)
+        self.last = str(token)
+
+    def follow(self, kind: str, offset: int) -> None:
+        if kind in _OPENERS:
+            self.opener = _OPENERS[kind]
+            self.heading = True
+        elif kind == "LBRACE":
+            self.blocks.append((self.opener, self.begin, offset))
+            self.fresh, self.heading = True, False
+        elif kind == "RBRACE":
+            self.blocks.pop()
+        elif kind in ("_NEWLINE", "SEMICOLON") and not self.heading:
+            self.fresh = True
+
+    def jump(self, offset: int) -> None:
+        self.parser.lexer_thread.state.line_ctr.char_pos = offset
+        self.tokens = self.parser.lexer_thread.lex(self.parser.parser_state)
+
+    def called(self) -> str:
+        """Return the name in a header that could not be read, so that a ``play`` of it draws no further error."""
+        found = _NAMED.match(self.text, self.begin)
+        return found[1] if found else ""
+
+    def feed(self, *kinds: str, at: int, text: str = "") -> None:
+        from lark import Token
+
+        for kind in kinds:
+            self.parser.feed_token(Token(kind, text, at, 1, 1, 1, 1, at))
+            self.last = "}" if kind == "RBRACE" else ""
+            self.follow(kind, at)
+
+    # -- behind an error ------------------------------------------------------------------------------------------
+
+    def recover(self, at: int) -> None:
+        where = self.blocks[-1][0] if self.blocks else "file"
+        if self.text[at] == "}" and not self.blocks:
+            self.report(
+                Finding("E110", at, at + 1, "no block is open here", 'take this "}" away', (Edit(at, at + 1, ""),))
+            )
+            self.jump(at + 1)
+            return
+        if self.blocks and at == self.begin and _HEADER.match(self.text, at):
+            self.unclosed(at)
+            self.feed(*["RBRACE"] * len(self.blocks), "_NEWLINE", at=at)
+            self.fresh = True
+            self.jump(at)
+            return
+        braces = self.listing and self.text[at] == "{" and self.takes("LSQB")
+        pieces = self.source.pieces(self.begin, at, self.listing, braces)
+        stop = self.source.stop_listing(at, braces) if self.listing else self.stop(at)
+        index = next((i for i, piece in enumerate(pieces) if piece.end > at and piece.start < stop), len(pieces))
+        word = pieces[index].text if index < len(pieces) else ""
+        header = self.takes("LBRACE")
+        inside = self.opener if header else where
+        if self.listing and self.text[at] == "\n":
+            pieces.insert(index, Piece("newline", "", at, at))
+        closed = self.last == "}"  # a whole block stands before: what was read of it stays
+        braced = None if header or self.listing or closed else _BRACED.match(self.text, at)
+        if braced and where in ("icon", "repeat"):
+            help = "a parameter stands without braces between statements, with them in a text"
+            edit = Edit(at, braced.end(), braced[1])
+            self.report(Finding("E105", at, braced.end(), "these braces have no meaning here", help, (edit,)))
+            self.resume(self.stop(braced.end()), where)
+            return
+        code = self.report_statement(pieces, index, at, where)
+        if header and word in VOCABULARY[inside] and word not in VOCABULARY["header"]:
+            self.feed("LBRACE", at=at)
+            self.jump(at)
+            return
+        if (
+            not header
+            and not self.listing
+            and self.takes("_NEWLINE")
+            and (closed or not self.spoilt(code, pieces, word, where))
+        ):
+            # The statement is complete: keep it, and read what follows as if it stood on a line of its own.
+            begin = self.begin
+            self.feed("_NEWLINE", at=at)
+            self.begin, self.fresh = at, False
+            if at != begin and (word in VOCABULARY[where] or self.text[stop] != "{"):
+                self.jump(at if word in VOCABULARY[where] else stop)
+                return
+        self.resume(stop, where)
+
+    def spoilt(self, code: str, pieces: list[Piece], word: str, where: str) -> bool:
+        # Complete, but something else was meant: kept, it would draw further errors.
+        first = pieces[0].text if pieces else ""
+        return code == "E104" or (first in ("play", "step", "total") and word not in VOCABULARY[where])
+
+    def resume(self, stop: int, where: str) -> None:
+        """Put BROKEN in the place of the statement, or of the header of a block, and go on at ``stop``."""
+        header = self.unwind()
+        if header and (self.opener == "icon" or self.listing):
+            self.names = None
+        self.listing = False
+        brace = stop < len(self.text) and self.text[stop] == "{"
+        if header:
+            self.feed("BROKEN", at=self.begin, text=self.called())
+            if not brace and self.text[self.begin : stop].rstrip().endswith("{"):
+                self.feed("LBRACE", at=stop - 1)  # swallowed by a text that was never closed
+            elif not brace:
+                self.feed("LBRACE", "BROKEN", "RBRACE", at=self.begin)
+        elif brace and where == "set":
+            self.feed("BROKEN", at=self.begin)
+            stop = min(self.source.close(stop) + 1, len(self.text) - 1)
+        elif brace:
+            opener = "REPEAT" if self.blocks else ("SET" if self.text.startswith("se", self.begin) else "ICON")
+            self.names = self.names if self.blocks else None
+            self.feed(opener, "BROKEN", at=self.begin)
+        else:
+            self.feed("BROKEN", at=self.begin)
+        self.jump(stop)
+
+    def stop(self, at: int) -> int:
+        # Remembered, as many errors may share one endless line.
+        if not self.line[0] <= at <= self.line[1] or self.line[1] == 0:
+            self.line = (at, self.source.stop(at))
+        return self.line[1]
+
+    def unwind(self) -> bool:
+        """Drop what was read of the broken part; true when a header, not a whole statement, is to be replaced."""
+        state = self.parser.parser_state
+        while not self.takes("BROKEN"):
+            state.state_stack.pop()
+            state.value_stack.pop()
+        return not self.takes("_NEWLINE")
+
+    def accepts(self) -> frozenset[str]:
+        """Return the kinds of tokens that the parser could take now."""
+        return _accepted(tuple(self.parser.parser_state.state_stack))
+
+    def takes(self, kind: str) -> bool:
+        """Tell whether the parser could take a token of this kind now."""
+        return _takes(self.parser.parser_state.state_stack, kind)
+
+    def refuse_depth(self, brace: int) -> None:
+        what = f"blocks are nested more than {DEEPEST} deep"
+        self.report(Finding("E115", brace, brace + 1, what, "repeat counts multiply: merge inner repeats"))
+        self.feed("LBRACE", "BROKEN", "RBRACE", at=brace)
+        self.jump(min(self.source.close(brace) + 1, len(self.text) - 1))
+
+    def finish(self) -> None:
+        end = len(self.text) - 1
+        if len(self.findings) + self.more >= MOST_READ:
+            self.feed(*["LBRACE"] * self.takes("LBRACE"), "_NEWLINE", at=end)
+            self.feed(*["RBRACE"] * len(self.blocks), at=end)
+            return
+        if self.takes("LBRACE") or self.listing:
+            pieces = self.source.pieces(self.begin, end, self.listing)
+            self.report_statement(pieces, len(pieces), end, "file")
+            self.resume(end, "file")
+            self.feed("_NEWLINE", at=end)
+        if self.blocks:
+            self.unclosed(end)
+            self.feed(*["RBRACE"] * len(self.blocks), at=end)
+
+    # -- telling --------------------------------------------------------------------------------------------------
+
+    def unclosed(self, at: int) -> None:
+        _, start, brace = self.blocks[0]
+        line, _ = self.source.place(at)
+        where = "the end of the file" if at >= len(self.text) - 1 else f"line {line}"
+        what = f'this block still lacks a "}}" at {where}'
+        self.report(Finding("E109", start, brace + 1, what, 'every "{" needs a "}" of its own, icons do not nest'))
+
+    def report(self, finding: Finding) -> None:
+        if len(self.findings) < MOST_ERRORS:
+            self.findings.append(finding)
+        else:
+            self.more += 1
+
+    def report_statement(self, pieces: list[Piece], index: int, at: int, where: str) -> str:
+        """Add what is wrong with a statement; returns the code."""
+        if len(self.findings) >= MOST_ERRORS:
+            self.more += 1
+            return ""
+        finding = diagnose(Case(pieces, index, at, self.accepts(), where, self.names, self.listing))
+        self.findings.append(finding)
+        return finding.code
+
+
+@lru_cache(maxsize=4096)
+def _accepted(stack: tuple[int, ...]) -> frozenset[str]:
+    """Kinds of tokens that a stack of parser states could take: as lark's ``accepts``, without copies of the parser."""
+    entries = _states()[stack[-1]]
+    return frozenset(kind for kind in entries if kind.isupper() and _takes(stack, kind))
+
+
+def _takes(stack: Sequence[int], kind: str) -> bool:
+    states = _states()
+    left = list(stack)
+    while (entry := states[left[-1]].get(kind)) is not None:
+        rule = entry[1]
+        if isinstance(rule, int):
+            return True
+        if rule.expansion:
+            del left[-len(rule.expansion) :]
+        left.append(states[left[-1]][rule.origin.name][1])
+    return False
+
+
+@cache
+def _states() -> Any:
+    """The table of the parser: what each state does with each kind of token."""
+    return grammar().parse_interactive("").parser_state.parse_conf.states

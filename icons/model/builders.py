@@ -1,0 +1,276 @@
+"""Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C and A."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from .arguments import amperes, given, number, one_of
+from .shapes import Pulse, Shape, Start, Step, Wave
+from .statements import (
+    Bound,
+    Change,
+    Direction,
+    Drive,
+    Hold,
+    Play,
+    Repeat,
+    Rest,
+    Return,
+    Statement,
+    Total,
+)
+
+if TYPE_CHECKING:
+    from .icon import Icon
+
+
+def cool(
+    *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
+) -> Change:
+    """Cool by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
+
+    Raises ValueError unless one of each pair is given and lies within what the language takes.
+
+    >>> cool(by=6, at=3) == Change("cool", by_K=6, rate_K_per_s=3)
+    True
+    """
+    return _change("cool", "cool", by, to, at, over)
+
+
+def warm(
+    *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
+) -> Change:
+    """Warm by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s); ValueError as ``cool``.
+
+    >>> warm(to=38, over=2) == Change("warm", to_C=38, duration_s=2)
+    True
+    """
+    return _change("warm", "warm", by, to, at, over)
+
+
+def ramp(
+    *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
+) -> Change:
+    """``change``: by a signed difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
+
+    Raises ValueError as ``cool`` does.
+
+    >>> ramp(by=-6, at=3) == Change("change", by_K=-6, rate_K_per_s=3)
+    True
+    """
+    return _change("ramp", "change", by, to, at, over)
+
+
+def drive(*, to: float, at: float | None = None, over: float | None = None) -> Drive:
+    """``to`` under control current: to a current (A), at a rate (A/s) or over a time (s); ValueError as ``cool``.
+
+    >>> drive(to=0.5, at=1) == Drive(0.5, rate_A_per_s=1)
+    True
+    """
+    one_of("drive", {"at": at, "over": over})
+    rate, time = number("drive", "at", at, "current_rate"), number("drive", "over", over, "time")
+    return Drive(given("drive", "to", to, "current"), rate, time)
+
+
+def hold(duration: float) -> Hold:
+    """Stay at the present level for a time (s); ValueError unless it lies between 1 µs and an hour.
+
+    >>> hold(4) == Hold(duration_s=4)
+    True
+    """
+    return Hold(given("hold", "duration", duration, "time"))
+
+
+def rest(duration: float) -> Rest:
+    """Stay at baseline for a time (s); ValueError unless it lies between 1 µs and an hour.
+
+    >>> rest(1) == Rest(duration_s=1)
+    True
+    """
+    return Rest(given("rest", "duration", duration, "time"))
+
+
+def back(*, at: float | None = None, over: float | None = None) -> Return:
+    """``return``: go back to baseline at a rate (K/s, A/s under control current) or over a time (s).
+
+    Raises ValueError unless one of them is given, and positive.
+
+    >>> back(at=3) == Return(rate_per_s=3), back(over=2) == Return(duration_s=2)
+    (True, True)
+    """
+    one_of("back", {"at": at, "over": over})
+    return Return(number("back", "at", at, "rate"), number("back", "over", over, "time"))
+
+
+def step(
+    *, by: float | None = None, to: float | None = None, by_A: float | None = None, to_A: float | None = None
+) -> Step:
+    """Step as fast as the driver can: by a signed difference (K, A) or to a level (°C, A).
+
+    Raises ValueError unless exactly one is given and lies within what the language takes.
+
+    >>> step(by=-6) == Step(by_K=-6), step(to_A=0.5) == Step(to_A=0.5)
+    (True, True)
+    """
+    one_of("step", {"by": by, "to": to, "by_A": by_A, "to_A": to_A})
+    by, to = number("step", "by", by, "change"), number("step", "to", to, "absolute")
+    amount = amperes("step", by_A)
+    return Step("change", by, to, amount, number("step", "to_A", to_A, "current"))
+
+
+def pulse(*, by: float | None = None, by_A: float | None = None, duration: float) -> Pulse:
+    """Step by a signed difference (K, or A), hold for a time (s) and step back; ValueError as ``step``.
+
+    >>> pulse(by=-3, duration=0.5) == Pulse(by_K=-3, duration_s=0.5)
+    True
+    """
+    one_of("pulse", {"by": by, "by_A": by_A})
+    by, amount = number("pulse", "by", by, "change"), amperes("pulse", by_A)
+    return Pulse("change", by, amount, given("pulse", "duration", duration, "time"))
+
+
+def sine(
+    *,
+    by: float | None = None,
+    every: float,
+    duration: float,
+    starting: Start | None = None,
+    cut: bool = False,
+    by_A: float | None = None,
+) -> Wave:
+    """A sine about the present level: amplitude (K, or A), period (s) and duration (s).
+
+    The duration holds whole periods unless ``cut``. ``starting`` is "warm" or "cool", with amperes "up" or "down".
+    Raises ValueError for anything else and for numbers outside what the language takes.
+
+    >>> sine(by=3, every=4, duration=12, starting="cool")
+    Wave(shape='sine', by_K=3.0, by_A=None, period_s=4.0, duration_s=12.0, start='cool', cut=False)
+    """
+    return _wave("sine", by, every, duration, starting, cut, by_A)
+
+
+def square(
+    *,
+    by: float | None = None,
+    every: float,
+    duration: float,
+    starting: Start | None = None,
+    cut: bool = False,
+    by_A: float | None = None,
+) -> Wave:
+    """A square wave about the present level; arguments and errors as those of ``sine``.
+
+    >>> square(by=3, every=4, duration=10, cut=True) == Wave("square", by_K=3, period_s=4, duration_s=10, cut=True)
+    True
+    """
+    return _wave("square", by, every, duration, starting, cut, by_A)
+
+
+def triangle(
+    *,
+    by: float | None = None,
+    every: float,
+    duration: float,
+    starting: Start | None = None,
+    cut: bool = False,
+    by_A: float | None = None,
+) -> Wave:
+    """A triangle wave about the present level; arguments and errors as those of ``sine``.
+
+    >>> triangle(by=3, every=4, duration=8) == Wave("triangle", by_K=3, period_s=4, duration_s=8)
+    True
+    """
+    return _wave("triangle", by, every, duration, starting, cut, by_A)
+
+
+def sawtooth(
+    *,
+    by: float | None = None,
+    every: float,
+    duration: float,
+    starting: Start | None = None,
+    cut: bool = False,
+    by_A: float | None = None,
+) -> Wave:
+    """A wave that rises slowly and falls in a step, or the other way; arguments and errors as those of ``sine``.
+
+    >>> sawtooth(by_A=0.5, every=1, duration=3, starting="down").start
+    'down'
+    """
+    return _wave("sawtooth", by, every, duration, starting, cut, by_A)
+
+
+def repeat(count: int, *body: Statement) -> Repeat:
+    """Play statements ``count`` times over; ValueError without a statement or a positive whole count.
+
+    >>> repeat(3, hold(1), pulse(by=2, duration=1)).count
+    3
+    """
+    if not body:
+        raise ValueError("repeat() needs statements behind the count, such as repeat(3, hold(1))")
+    return Repeat(int(given("repeat", "count", count, "count")), _statements(body))
+
+
+def play(icon: "Icon") -> Play:
+    """Play all statements of another icon, which begins at baseline; ValueError for anything but an icon.
+
+    >>> from thermicon.icons import Icon
+    >>> play(Icon("wait", (rest(1),))).icon.name
+    'wait'
+    """
+    if not hasattr(icon, "statements"):
+        raise ValueError(f"play() needs an Icon, not {icon!r}")
+    return Play(icon)
+
+
+def total(duration: float, bound: Bound = "exactly") -> Total:
+    """How long (s) the whole icon must last, "exactly", "at most" or "at least": checked, nothing is filled up.
+
+    Raises ValueError for another bound, and unless the time lies between 1 µs and an hour.
+
+    >>> total(10, "at most") == Total(10, "at most")
+    True
+    """
+    if bound not in ("exactly", "at most", "at least"):
+        raise ValueError(f'total(bound={bound!r}): "exactly", "at most" or "at least" is needed')
+    return Total(given("total", "duration", duration, "time"), bound)
+
+
+def _change(
+    call: str, direction: Direction, by: float | None, to: float | None, at: float | None, over: float | None
+) -> Change:
+    one_of(call, {"by": by, "to": to})
+    one_of(call, {"at": at, "over": over})
+    size = number(call, "by", by, "change" if direction == "change" else "difference")
+    target = number(call, "to", to, "absolute")
+    return Change(direction, size, target, number(call, "at", at, "rate"), number(call, "over", over, "time"))
+
+
+def _wave(
+    shape: Shape,
+    by: float | None,
+    every: float,
+    duration: float,
+    starting: Start | None,
+    cut: bool,
+    by_A: float | None,
+) -> Wave:
+    one_of(shape, {"by": by, "by_A": by_A})
+    size, amount = number(shape, "by", by, "difference"), amperes(shape, by_A)
+    ways = ("warm", "cool") if by_A is None else ("up", "down")
+    if amount is not None and amount < 0:
+        raise ValueError(f'{shape}(by_A={by_A!r}): an amplitude is positive; to begin downwards, say starting="down"')
+    if starting not in (None, *ways):
+        raise ValueError(f'{shape}(starting={starting!r}): "{ways[0]}" or "{ways[1]}" is needed')
+    if not isinstance(cut, bool):
+        raise ValueError(f"{shape}(cut={cut!r}): True or False is needed")
+    period, time = given(shape, "every", every, "time"), given(shape, "duration", duration, "time")
+    return Wave(shape, size, amount, period, time, starting, cut)
+
+
+def _statements(parts: Sequence[object]) -> tuple[Statement, ...]:
+    """Return parts that are all statements; ValueError names the first that is none."""
+    for part in parts:
+        if not isinstance(part, Statement) or isinstance(part, Total):
+            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is no statement"
+            raise ValueError(f"repeat(): {what}")
+    return tuple(part for part in parts if isinstance(part, Statement))

@@ -1,0 +1,198 @@
+"""A family: one icon text with parameters, that stands for as many icons as they have values, made when asked for."""
+
+import random
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import prod
+from typing import TYPE_CHECKING, Any
+
+from .errors import CueErrors
+from .expand import HOLE, Expander, trusted
+from .frame import Frame, Metadata, name_fault
+from .icon import Icon, problem_error
+from .parameter import Parameter
+from .slots import Slot, in_order, slot_fault
+from .statements import Statement
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+MOST_MEMBERS = 10_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is no step.
+
+    The rate of a sine is that of the curve, and a level between two steps in one moment counts.
+    """
+
+    shortest_s: float
+    longest_s: float
+    lowest: float
+    highest: float
+    steepest_per_s: float
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Family:
+    """Icons that differ in the values of their parameters; ``template`` is the first of them, ``slots`` what varies.
+
+    A family is a sequence: ``len``, ``family[3]``, iteration and ``in`` work without expanding it. Members are named
+    after their values, as in ``ramp_amount=-6_rate=1``. Raises ValueError for a bad name, parameter or slot, and
+    CueErrors when a member cannot be run.
+
+    >>> from thermicon.icons import parse
+    >>> text = "cue 1; icon dip(size in [3, 6] K) means \\"{size} down\\" { cool by size at 3 K/s; return at 3 K/s }"
+    >>> family = parse(text).families[0]
+    >>> family
+    <Family dip: 2 icons over size in [3, 6] K, control skin>
+    >>> [(icon.name, icon.metadata.means) for icon in family]
+    [('dip_size=3', '3 K down'), ('dip_size=6', '6 K down')]
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    template: tuple[Statement, ...]
+    slots: tuple[Slot, ...]
+    frame: Frame = field(default_factory=Frame)
+    metadata: Metadata = field(default_factory=Metadata)
+    _expander: Expander = field(init=False, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        for name in ("parameters", "template"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        object.__setattr__(self, "slots", in_order(self.slots))
+        wrong = name_fault(self.name) or ("a member's name is no family's name" if "_" in self.name else None)
+        if wrong:
+            raise ValueError(f"family: {wrong}")
+        if wrong := self._fault():
+            raise ValueError(f"family {self.name}: {wrong}")
+        object.__setattr__(self, "_expander", Expander(self.parameters, self.template, self.slots, self.metadata))
+        from .sweep import sweep
+
+        found = sweep(self)
+        if found.problem is not None:
+            raise CueErrors((problem_error(found.problem, self.name, self.frame),))
+
+    @classmethod
+    def unproven(cls, values: dict[str, Any]) -> "Family":
+        """Return a family of these fields without its proof, which the caller runs."""
+        slots = in_order(values["slots"])
+        made = Expander(values["parameters"], values["template"], slots, values["metadata"])
+        return trusted(cls, {**values, "slots": slots, "_expander": made})
+
+    def _fault(self) -> str | None:
+        names = [parameter.name for parameter in self.parameters]
+        if not names or len(set(names)) < len(names):
+            return "parameters are needed, each with a name of its own"
+        if len(self) > MOST_MEMBERS:
+            return f"{len(self):,} members; a family has at most {MOST_MEMBERS:,}"
+        for parameter in self.parameters:
+            slots = [slot for slot in self.slots if slot.parameter == parameter.name]
+            if not slots:
+                return f"parameter {parameter.name} is never used"
+            for slot in slots:
+                if wrong := slot_fault(self.template, slot, parameter, self.frame.control):
+                    return f"parameter {parameter.name}: {wrong}"
+        if unknown := next((slot.parameter for slot in self.slots if slot.parameter not in names), None):
+            return f"no parameter is called {unknown}, which a slot names"
+        if len({(slot.path, slot.field) for slot in self.slots}) < len(self.slots):
+            return "two parameters stand in one place"
+        if hole := next((hole for hole in HOLE.findall(self.metadata.means or "") if hole not in names), None):
+            return f"{{{hole}}} in the intent names no parameter"
+        return None
+
+    def __len__(self) -> int:
+        return prod(len(parameter) for parameter in self.parameters)
+
+    def __getitem__(self, index: int) -> Icon:
+        count = len(self)
+        if not -count <= index < count:
+            raise IndexError(f"family {self.name} has {count} members, so there is none at {index}")
+        return self._at(self._expander.places(index % count))
+
+    def __iter__(self) -> Iterator[Icon]:
+        frame, made, name = self.frame, self._expander, self.name
+        for index in range(len(self)):
+            places = made.places(index)
+            yield trusted(
+                Icon,
+                {
+                    "name": name + made.suffix(places),
+                    "statements": made.statements(places),
+                    "frame": frame,
+                    "metadata": made.metadata(places),
+                },
+            )
+
+    def __contains__(self, item: object) -> bool:
+        name = item.name if isinstance(item, Icon) else item
+        found = self.find(name) if isinstance(name, str) else None
+        return found is not None and (not isinstance(item, Icon) or item == found)
+
+    def find(self, name: str) -> Icon | None:
+        """Return the member of this name, or None."""
+        head, *rest = name.split("_")
+        pairs = [part.partition("=")[::2] for part in rest]
+        if head != self.name or [pair[0] for pair in pairs] != [parameter.name for parameter in self.parameters]:
+            return None
+        places = [own.place(text) for own, (_, text) in zip(self.parameters, pairs, strict=True)]
+        known = [place for place in places if place is not None]
+        if len(known) < len(places):
+            return None
+        icon = self._at(known)
+        return icon if icon.name == name else None
+
+    def member(self, values: Mapping[str, float]) -> Icon:
+        """Return the member with these values, each in its parameter's unit; ValueError when there is none."""
+        places = []
+        for own in self.parameters:
+            place = own.place(repr(float(values[own.name]))) if own.name in values else None
+            if place is None:
+                raise ValueError(f"family {self.name}: {own.name} = {values.get(own.name)} is not in {own}")
+            places.append(place)
+        return self._at(places)
+
+    def sample(self, count: int, seed: int = 0) -> tuple[Icon, ...]:
+        """Return ``count`` different members drawn at random, in the family's order; all where it has no more."""
+        size = len(self)
+        drawn = sorted(random.Random(seed).sample(range(size), min(count, size)))
+        return tuple(self[index] for index in drawn)
+
+    def summary(self, start: float | None = None) -> Summary:
+        """Return durations, extremes and steepest rate over all members; ``start`` and errors as in ``Icon.lower``."""
+        from .sweep import sweep
+
+        found = sweep(self, start)
+        if found.problem is not None:
+            raise CueErrors((problem_error(found.problem, found.member or self.name, self.frame),))
+        return found.summary
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw up to 24 members, evenly chosen, over one another; returns the Axes."""
+        from ..pictures.draw import plot_family
+
+        return plot_family(self, ax)
+
+    def __str__(self) -> str:
+        from .format import icon_text
+
+        return icon_text(self)
+
+    def __repr__(self) -> str:
+        over = ", ".join(map(str, self.parameters))
+        return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.frame.control}>"
+
+    def _repr_html_(self) -> str:
+        from ..pictures.picture import picture
+
+        return picture(self)
+
+    def _at(self, places: list[int]) -> Icon:
+        made = self._expander
+        values = {"name": self.name + made.suffix(places), "statements": made.statements(places)}
+        return trusted(Icon, {**values, "frame": self.frame, "metadata": made.metadata(places)})
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Family, (self.name, self.parameters, self.template, self.slots, self.frame, self.metadata)

@@ -1,0 +1,202 @@
+"""Canonical text: a model object written as cue text that reads back to an equal object."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from .shapes import Pulse, Step, Wave
+from .statements import Broken, Change, Drive, Hold, Play, Repeat, Rest, Statement, Total
+from .units import Kind, quantity
+from .value_limits import Control
+
+if TYPE_CHECKING:
+    from .family import Family
+    from .frame import Frame, Metadata
+    from .icon import Icon
+    from .iconset import IconSet
+
+Path = tuple[int, ...]
+Holes = Mapping[tuple[Path, str], str]
+_GOALS: tuple[tuple[str, Kind], ...] = (
+    ("by_K", "change"),
+    ("to_C", "absolute"),
+    ("by_A", "current"),
+    ("to_A", "current"),
+)
+WIDEST = 120
+"""Headers longer than this take several lines."""
+
+
+def statement_text(
+    statement: Statement | Broken, control: Control, indent: str = "", holes: Holes | None = None, path: Path = ()
+) -> str:
+    """Return one statement as cue text, without a newline at its end; repeats take several lines.
+
+    ``holes`` names the parameter that stands in a field of the statement at a path; ``path`` is this statement's.
+
+    >>> from thermicon.icons.model.statements import Return
+    >>> statement_text(Repeat(2, (Change("warm", by_K=1, duration_s=0.5), Return(1))), "skin")
+    'repeat 2 {\\n  warm by 1 °C over 0.5 s\\n  return at 1 °C/s\\n}'
+    """
+    writer = _Writer(control, holes or {})
+    return writer.statement(statement, indent, path)
+
+
+class Wording:
+    """How amounts and paces of statements are written; a parameter stands in for a number where ``holes`` names one."""
+
+    def __init__(self, control: Control, holes: Holes) -> None:
+        self.control = control
+        self.holes = holes
+
+    def goal(self, part: object, path: Path) -> str:
+        """Return where a statement leads, such as ``by 6 °C`` or ``to 0.5 A``."""
+        name, kind = next(pair for pair in _GOALS if getattr(part, pair[0], None) is not None)
+        return f"{name[:2]} {self.value(part, path, name, kind)}"
+
+    def pace(self, part: object, path: Path) -> str:
+        """Return how fast a statement is, or how long it takes: ``at 3 °C/s`` or ``over 2 s``."""
+        rates: tuple[tuple[str, Kind], ...] = (
+            ("rate_K_per_s", "rate"),
+            ("rate_A_per_s", "current_rate"),
+            ("rate_per_s", "current_rate" if self.control == "current" else "rate"),
+        )
+        for name, kind in rates:
+            if getattr(part, name, None) is not None:
+                return f"at {self.value(part, path, name, kind)}"
+        return f"over {self.value(part, path, 'duration_s', 'time')}"
+
+    def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
+        """Return the number in a field with its unit, or the parameter that stands there."""
+        hole = self.holes.get((path, name))
+        return quantity(float(getattr(part, name)), kind) if hole is None else hole
+
+
+class _Writer(Wording):
+    def statement(self, part: Statement | Broken, indent: str, path: Path) -> str:
+        if isinstance(part, Repeat):
+            lines = (self.statement(inner, indent + "  ", (*path, n)) for n, inner in enumerate(part.body))
+            count = self.value(part, path, "count", "count")
+            return f"{indent}repeat {count} {{\n{chr(10).join(lines)}\n{indent}}}"
+        return indent + self.line(part, path)
+
+    def line(self, part: Statement | Broken, path: Path) -> str:
+        match part:
+            case Change(direction=word):
+                return f"{word} {self.goal(part, path)} {self.pace(part, path)}"
+            case Drive():
+                return f"{self.goal(part, path)} {self.pace(part, path)}"
+            case Hold():
+                return f"hold for {self.value(part, path, 'duration_s', 'time')}"
+            case Rest():
+                return f"rest for {self.value(part, path, 'duration_s', 'time')}"
+            case Total():
+                bound = "" if part.bound == "exactly" else f"{part.bound} "
+                return f"total {bound}{self.value(part, path, 'duration_s', 'time')}"
+            case Play():
+                return f"play {part.icon.name}"
+            case Step():
+                return f"step {_word(part.direction)}{self.goal(part, path)}"
+            case Pulse():
+                time = self.value(part, path, "duration_s", "time")
+                return f"pulse {_word(part.direction)}{self.goal(part, path)} for {time}"
+            case Wave():
+                period, time = (self.value(part, path, name, "time") for name in ("period_s", "duration_s"))
+                start = "" if part.start in ("warm", "up") else f" starting {part.start}"
+                cut = " cut" if part.cut else ""
+                return f"{part.shape} {self.goal(part, path)} every {period} for {time}{start}{cut}"
+            case Broken() | Repeat():
+                raise ValueError("a statement that could not be read has no text")
+        return f"return {self.pace(part, path)}"
+
+
+def icon_text(icon: "Icon | Family") -> str:
+    """Return the complete text of a file that holds this icon or family, after the icons that it plays."""
+    return _file(_set_lines("", "", icon.frame, None), [*_needed(icon, {}).values(), icon])
+
+
+def set_text(icons: "IconSet") -> str:
+    """Return the complete text of the file of a set."""
+    return _file(_set_lines(icons.name, icons.title, icons.frame, icons.metadata), icons.entries)
+
+
+def quoted(text: str) -> str:
+    """Return a text in quotation marks, with what stands in its way escaped.
+
+    >>> print(quoted('say "hot"'))
+    "say \\"hot\\""
+    """
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{escaped}"'
+
+
+def _needed(icon: "Icon | Family", found: "dict[str, Icon]") -> "dict[str, Icon]":
+    """Icons that an icon plays, each after those that it plays itself."""
+    from .icon import played_icons
+
+    for played in played_icons(_body(icon)):
+        if played.name not in found:
+            _needed(played, found)
+            found[played.name] = played
+    return found
+
+
+def _body(icon: "Icon | Family") -> tuple[Statement, ...]:
+    from .icon import Icon
+
+    return icon.statements if isinstance(icon, Icon) else icon.template
+
+
+def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
+    blocks = ["cue 1"]
+    if set_lines:
+        blocks.append("\n".join(set_lines))
+    for icon in icons:
+        slots = getattr(icon, "slots", ())
+        parameters = list(map(str, getattr(icon, "parameters", ())))
+        header = header_lines(f"icon {icon.name}", parameters, metadata_texts(icon.metadata))
+        holes = {(slot.path, slot.field): slot.parameter for slot in slots}
+        body = [statement_text(part, icon.frame.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
+        blocks.append("\n".join([*header, *body, "}"]))
+    return "\n\n".join(blocks) + "\n"
+
+
+def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> list[str]:
+    """Return the header of an icon, its brace included: one line, or one for each part where that is too long.
+
+    >>> header_lines("icon dip", ["size in [3, 6] K"], ['means "{size} down"'])
+    ['icon dip(size in [3, 6] K) means "{size} down" {']
+    """
+    listed = f"{head}({', '.join(parameters)})" if parameters else head
+    whole = " ".join([listed, *keys, "{"])
+    if len(whole) <= WIDEST or len(parameters) + len(keys) < 2:
+        return [whole]
+    rows = [listed]
+    if len(listed) > WIDEST and len(parameters) > 1:
+        rows = [f"{head}(", *(f"  {text}," for text in parameters[:-1]), f"  {parameters[-1]}", ")"]
+    if keys:
+        return [*rows, *(f"  {key}" for key in keys), "{"]
+    return [*rows[:-1], f"{rows[-1]} {{"]
+
+
+def _set_lines(name: str, title: str, frame: "Frame", metadata: "Metadata | None") -> list[str]:
+    lines = [f"  site {frame.site}"] if frame.site is not None else []
+    if frame.control != "skin":
+        lines.append(f"  control {frame.control}")
+    if frame.baseline_C is not None:
+        lines.append(f"  baseline {quantity(frame.baseline_C, 'absolute')}")
+    lines += [f"  {line}" for line in metadata_texts(metadata)] if metadata else []
+    if not (lines or name or title):
+        return []
+    header = " ".join(part for part in ("set", name, quoted(title) if title else "", "{") if part)
+    return [header, *lines, "}"]
+
+
+def metadata_texts(metadata: "Metadata") -> list[str]:
+    """Return each key of metadata with its text, in canonical order."""
+    keys = ("means", "by", "doi", "licence")
+    found = [f"{key} {quoted(value)}" for key in keys if (value := getattr(metadata, key)) is not None]
+    return [*found, f"tags {quoted(', '.join(metadata.tags))}"] if metadata.tags else found
+
+
+def _word(direction: str) -> str:
+    return "" if direction == "change" else f"{direction} "

@@ -1,0 +1,192 @@
+"""The icons of one file, families among them: a set that counts its members without making them."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
+
+from .family import Family, Summary
+from .format import set_text
+from .frame import Frame, Metadata, name_fault, text_fault
+from .icon import Icon, content_hash, played_icons
+from .units import quantity
+from .words import nearest
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MOST_NAMES = 50
+
+
+class UnknownIcon(KeyError):
+    """A set has no icon of this name; the message lists those that it has, nearest first."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+@dataclass(frozen=True, slots=True)
+class Members(Sequence[Icon]):
+    """All icons of a set in its order, members of families among them, made when asked for."""
+
+    entries: tuple[Icon | Family, ...]
+
+    def __len__(self) -> int:
+        return sum(len(entry) if isinstance(entry, Family) else 1 for entry in self.entries)
+
+    @overload
+    def __getitem__(self, index: int) -> Icon: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Icon, ...]: ...
+    def __getitem__(self, index: int | slice) -> Icon | tuple[Icon, ...]:
+        if isinstance(index, slice):
+            return tuple(self[place] for place in range(*index.indices(len(self))))
+        place = index + len(self) if index < 0 else index
+        for entry in self.entries:
+            count = len(entry) if isinstance(entry, Family) else 1
+            if 0 <= place < count:
+                return entry[place] if isinstance(entry, Family) else entry
+            place -= count
+        raise IndexError(f"there is no icon at {index}: the set has {len(self)}")
+
+    def __iter__(self) -> Iterator[Icon]:
+        for entry in self.entries:
+            if isinstance(entry, Family):
+                yield from entry
+            else:
+                yield entry
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class IconSet:
+    """Icons and families with the frame they share; ``set["name"]`` is one of them, or a member of a family.
+
+    ``entries`` is what the file lists, ``icons`` every icon with the members of families, ``families`` the families.
+    Raises ValueError without icons, for two of one name, when a frame is not the set's, or when an icon plays one that
+    the set does not have.
+
+    >>> from thermicon.icons import read_cue
+    >>> read_cue("cooling-step-skin")
+    <IconSet cooling-step-skin: 1 icon, 8 s, control skin, baseline 32 °C>
+    """
+
+    name: str
+    title: str
+    frame: Frame
+    metadata: Metadata
+    entries: tuple[Icon | Family, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "entries", tuple(self.entries))
+        if self.name and (wrong := name_fault(self.name)):
+            raise ValueError(f"set: {wrong}")
+        if self.title and (wrong := text_fault(self.title)):
+            raise ValueError(f"title: {wrong}")
+        if not self.entries:
+            raise ValueError("a set needs at least one icon")
+        known: dict[str, Icon | Family] = {}
+        for entry in self.entries:
+            if entry.name in known:
+                raise ValueError(f"two icons are called {entry.name}")
+            if entry.frame != self.frame:
+                raise ValueError(
+                    f"the frame of icon {entry.name} is not that of the set: {entry.frame} and {self.frame}"
+                )
+            known[entry.name] = entry
+        for entry in self.entries:
+            head, mark, _ = entry.name.partition("_")
+            if mark and isinstance(family := known.get(head), Family) and entry.name in family:
+                raise ValueError(f"icon {entry.name} has the name of a member of family {head}")
+            for played in played_icons(entry.template if isinstance(entry, Family) else entry.statements):
+                own = known.get(played.name, known.get(played.name.partition("_")[0]))
+                if own != played and not (isinstance(own, Family) and played in own):
+                    raise ValueError(f"icon {entry.name} plays {played.name}, which is not in the set")
+
+    @property
+    def icons(self) -> Members:
+        """Every icon, with the members of families, as a sequence that makes them when asked for."""
+        return Members(self.entries)
+
+    @property
+    def families(self) -> tuple[Family, ...]:
+        """The families, in the order of the file."""
+        return tuple(entry for entry in self.entries if isinstance(entry, Family))
+
+    @property
+    def content_hash(self) -> str:
+        """SHA-256 of the canonical text, as 64 hexadecimal digits: equal sets have equal hashes, everywhere."""
+        return content_hash(str(self))
+
+    def summary(self, start: float | None = None) -> Summary:
+        """Return durations, extremes and steepest rate over all icons; ``start`` as in ``Icon.lower``."""
+        found = []
+        for entry in self.entries:
+            if isinstance(entry, Family):
+                found.append(entry.summary(start))
+            else:
+                one = entry.lower(start)
+                found.append(Summary(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
+        return Summary(
+            min(part.shortest_s for part in found),
+            max(part.longest_s for part in found),
+            min(part.lowest for part in found),
+            max(part.highest for part in found),
+            max(part.steepest_per_s for part in found),
+        )
+
+    def __len__(self) -> int:
+        return len(self.icons)
+
+    def __iter__(self) -> Iterator[Icon]:
+        return iter(self.icons)
+
+    def __contains__(self, item: object) -> bool:
+        if isinstance(item, Icon):
+            return self.find(item.name) == item
+        return item in self.entries if isinstance(item, Family) else isinstance(item, str) and bool(self.find(item))
+
+    def __getitem__(self, name: str) -> Icon:
+        found = self.find(str(name))
+        if found is not None:
+            return found
+        names = [entry.name for entry in self.entries]
+        family = next((entry for entry in self.families if str(name).partition("_")[0] == entry.name), None)
+        if family is not None:
+            help = f"{family.name} is a family of {len(family):,}, with members such as {family[0].name}"
+            raise UnknownIcon(f"no icon is called {name!r}; {help}")
+        close = nearest(str(name), names)
+        hint = f"did you mean {close}? " if close else ""
+        more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+        raise UnknownIcon(f"no icon is called {name!r}; {hint}the set has: {', '.join(names[:_MOST_NAMES])}{more}")
+
+    def find(self, name: str) -> Icon | None:
+        """Return the icon, or the member of a family, of this name; None when there is none."""
+        for entry in self.entries:
+            if isinstance(entry, Icon) and entry.name == name:
+                return entry
+            if isinstance(entry, Family) and (member := entry.find(name)) is not None:
+                return member
+        return None
+
+    def plot(self, ax: "Axes | None" = None) -> "Axes":
+        """Draw up to 24 icons, evenly chosen, over one another against time, and return the Axes."""
+        from ..pictures.draw import plot_set
+
+        return plot_set(self, ax)
+
+    def __str__(self) -> str:
+        return set_text(self)
+
+    def __repr__(self) -> str:
+        found = self.summary()
+        count = f"{len(self):,} icon" + ("s" if len(self) > 1 else "")
+        length = f"{found.shortest_s:.6g}"
+        if found.longest_s > found.shortest_s:
+            length += f" to {found.longest_s:.6g}"
+        baseline = self.frame.baseline_C
+        rest = f", baseline {quantity(baseline, 'absolute')}" if baseline is not None else ""
+        return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.frame.control}{rest}>"
+
+    def _repr_html_(self) -> str:
+        from ..pictures.picture import picture
+
+        return picture(self)

@@ -1,0 +1,1 @@
+"""References and the methods paragraph of a paper."""

@@ -1,0 +1,176 @@
+"""The bibliography that ships with the icon sets, and which of it a set cites."""
+
+import re
+import tomllib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from functools import cache
+from importlib import resources
+
+from ..model.frame import Metadata
+from ..model.iconset import IconSet
+from ..model.words import nearest
+
+TYPES = ("article", "inproceedings", "book", "phdthesis", "misc")
+_DOI = re.compile(r"10\.[0-9]{4,9}/\S+")
+_YEAR = re.compile(r"\b(?:19|20)[0-9]{2}\b")
+_RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECASE)
+
+
+class BibliographyError(ValueError):
+    """A bibliography that cannot be; the message names the file, the entry, the key and the cure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A publication: BibTeX fields as texts, where they were ``seen``, and what of them is ``unverified``.
+
+    Raises BibliographyError for an unknown type, an empty text, a year or a DOI that is none.
+    """
+
+    key: str
+    type: str
+    author: str
+    title: str
+    year: int
+    seen: str
+    journal: str | None = None
+    booktitle: str | None = None
+    volume: str | None = None
+    number: str | None = None
+    pages: str | None = None
+    doi: str | None = None
+    unverified: str | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name == "year" or value is None:
+                continue
+            if not isinstance(value, str) or not value.strip():
+                raise BibliographyError(f"{self.key}: {field.name} = {value!r} must be a text that is not empty")
+        if isinstance(self.year, bool) or not isinstance(self.year, int) or not 1800 <= self.year <= 2100:
+            raise BibliographyError(f"{self.key}: year = {self.year!r} must be a whole number from 1800 to 2100")
+        if self.type not in TYPES:
+            raise BibliographyError(f"{self.key}: type = {self.type!r} must be one of {', '.join(TYPES)}")
+        if self.doi is not None and not _DOI.fullmatch(self.doi):
+            raise BibliographyError(f"{self.key}: doi = {self.doi!r} is no DOI, such as 10.3390/bioengineering10101156")
+
+    @property
+    def surnames(self) -> tuple[str, ...]:
+        """The last names of the authors, in order."""
+        return tuple(author.split()[-1] for author in self.author.split(" and "))
+
+
+@dataclass(frozen=True, slots=True)
+class Cited:
+    """What a set cites: publications of the bibliography, and texts with DOIs (or None) that are not in it.
+
+    ``undated`` holds the keys of publications that were cited without a year.
+    """
+
+    references: tuple[Reference, ...]
+    unknown: tuple[tuple[str, str | None], ...]
+    undated: frozenset[str]
+
+
+@cache
+def references() -> tuple[Reference, ...]:
+    """Return the bibliography that ships.
+
+    >>> next(each.doi for each in references() if each.key == "shani-lineykin-2025")
+    '10.3390/bioengineering12020209'
+    """
+    file = resources.files("thermicon.icons").joinpath("data/references.toml")
+    return read_references(file.read_text(encoding="utf-8"), "references.toml")
+
+
+def read_references(text: str, where: str) -> tuple[Reference, ...]:
+    """Return the publications of a TOML text; BibliographyError names the file, the entry, the key and the cure."""
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise BibliographyError(f"{where}: not a valid TOML file: {problem}") from None
+    entries = document.pop("reference", None)
+    if document or not isinstance(entries, list):
+        raise BibliographyError(f"{where}: holds [[reference]] tables and nothing else")
+    known = [field.name for field in fields(Reference)]
+    found: dict[str, Reference] = {}
+    for place, entry in enumerate(entries, start=1):
+        name = f"{where}: reference {place}"
+        for key in entry:
+            if key not in known:
+                raise BibliographyError(f"{name}: unknown key {key}; did you mean {nearest(key, known) or known}?")
+        for key in ("key", "type", "author", "title", "year", "seen"):
+            if key not in entry:
+                raise BibliographyError(f"{name}: {key} is missing; without it an entry does not load")
+        try:
+            made = Reference(**entry)
+        except BibliographyError as problem:
+            raise BibliographyError(f"{where}: {problem}") from None
+        if made.key in found:
+            raise BibliographyError(f"{name}: the key {made.key} stands twice")
+        found[made.key] = made
+    return tuple(found.values())
+
+
+def sources(icons: IconSet) -> tuple[tuple[str | None, str | None], ...]:
+    """Return the different pairs of ``by`` and ``doi`` of a set and its icons, in order."""
+    pairs = ((each.by, each.doi) for each in _metadata(icons) if each.by or each.doi)
+    return tuple(dict.fromkeys(pairs))
+
+
+def cited(icons: IconSet, known: Iterable[Reference] | None = None) -> Cited:
+    """Return what a set cites of a bibliography, by default the one that ships.
+
+    A DOI names a publication; so do the first author's last name and a year in ``by``. Without a year the first two
+    last names must be there: publications that the set cites with a year are then meant, or else all of theirs.
+
+    >>> from thermicon.icons import read_cue
+    >>> [each.key for each in cited(read_cue("six-icons")).references]
+    ['singhal-jones-2015', 'singhal-jones-2018']
+    """
+    listed = references() if known is None else tuple(known)
+    found: dict[str, Reference] = {}
+    unknown: list[tuple[str, str | None]] = []
+    undated: dict[str, Reference] = {}
+    for by, doi in sources(icons):
+        if doi is not None:
+            same = [each for each in listed if each.doi and each.doi.lower() == plain_doi(doi).lower()]
+            dated = bool(same)
+        else:
+            dated = bool(_YEAR.search(by or ""))
+            same = [each for each in listed if _names(by or "", each)]
+        (found if dated else undated).update({each.key: each for each in same})
+        if not same and (doi is not None or (by or "").strip().lower() != "thermicon"):
+            unknown.append((by or "", doi))
+    meant = {key: each for key, each in undated.items() if each.surnames[:2] not in _pairs(found.values())}
+    only = frozenset(meant.keys() - found.keys())
+    found.update(meant)
+    return Cited(tuple(sorted(found.values(), key=lambda each: each.key)), tuple(unknown), only)
+
+
+def plain_doi(text: str) -> str:
+    """Return a DOI without the address of a resolver.
+
+    >>> plain_doi("https://doi.org/10.1145/2858036.2858205")
+    '10.1145/2858036.2858205'
+    """
+    return _RESOLVER.sub("", text.strip())
+
+
+def _pairs(listed: Iterable[Reference]) -> set[tuple[str, ...]]:
+    return {each.surnames[:2] for each in listed}
+
+
+def _names(text: str, each: Reference) -> bool:
+    years = {int(year) for year in _YEAR.findall(text)}
+    needed = each.surnames[: 1 if years else 2]
+    said = all(re.search(rf"\b{re.escape(name)}\b", text, re.IGNORECASE) for name in needed)
+    return said and (not years or each.year in years)
+
+
+def _metadata(icons: IconSet) -> Iterator[Metadata]:
+    yield icons.metadata
+    for entry in icons.entries:
+        yield entry.metadata

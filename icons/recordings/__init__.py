@@ -1,0 +1,1 @@
+"""A recorded course of temperature to the few corner points of an icon."""

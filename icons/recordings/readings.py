@@ -1,0 +1,219 @@
+"""The door for recordings: a CSV file as times and temperatures, or what is wrong with it, where, and what helps."""
+
+import csv
+import io
+import math
+import re
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from ..files.input_files import NotRegular, TooLarge, read_limited
+from ..model.errors import whole_file
+from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
+from ..model.words import nearest
+
+TIME = "time_s"
+CONTROL_OF: dict[str, Control | None] = {
+    "temperature_C": None,
+    "target_C": None,
+    "setpoint_C": None,
+    "display_C": "display",
+    "skin_C": "skin",
+}
+"""Columns that a recording may have, and what the icon then controls; None where the column does not tell."""
+
+MOST_ROWS, MOST_MB = 1_000_000, 200
+_FEW = 8
+# Comments, and the line by which spreadsheets tell one another the separator.
+_ASIDE = ("#", "sep=")
+
+
+@dataclass(frozen=True, slots=True)
+class Readings:
+    """A recording: its ``file`` and ``column``, times (s) from 0 that rise or stand twice, temperatures (°C).
+
+    ``first_row`` is where the first reading stands in the file.
+    """
+
+    file: str
+    column: str
+    time_s: tuple[float, ...]
+    level_C: tuple[float, ...]
+    first_row: int
+
+
+def read_readings(path: str | Path, column: str | None = None) -> Readings:
+    """Return the recording in a CSV file; `column` names its temperatures, where the header does not tell.
+
+    Raises ValueError that says what is wrong with the file, and in which row.
+    """
+    file = str(path)
+    chosen, times, levels, rows = _read(Path(path), file, column)
+    _check_times(file, times, rows)
+    _check_levels(file, chosen, levels, rows)
+    return Readings(file, chosen, _from_zero(times), tuple(levels), rows[0])
+
+
+def _read(path: Path, file: str, column: str | None) -> tuple[str, list[float], list[float], list[int]]:
+    """Return the column's name, times (s), levels (°C) and the rows in which these stand in the file."""
+    text = _text(path, file)
+    lines = csv.reader(io.StringIO(text, newline=""), delimiter=(mark := _separator(text)))
+    header: list[str] = []
+    times, levels, rows = list[float](), list[float](), list[int]()
+    try:
+        for cells in lines:
+            if not any(cell.strip() for cell in cells) or cells[0].startswith(_ASIDE):
+                continue
+            place = f"{file}:{lines.line_num}"
+            if not header:
+                header = [cell.strip() for cell in cells]
+                chosen = _column(place, header, column)
+                at = header.index(TIME), header.index(chosen)
+                continue
+            if len(cells) > len(header) and any(cell.strip() for cell in cells[len(header) :]):
+                what = f"{len(cells)} cells, where the first line names {len(header)}"
+                help = "write decimal points, not commas; or put semicolons between the cells"
+                raise whole_file("E013", place, what, help)
+            first = not rows
+            times.append(_number(place, TIME, cells, at[0], mark, first))
+            levels.append(_number(place, chosen, cells, at[1], mark, first))
+            rows.append(lines.line_num)
+            if len(rows) > MOST_ROWS:
+                raise whole_file("E004", file, f"more than {MOST_ROWS:,} rows", "keep every tenth row, or cut the file")
+    except csv.Error as problem:
+        raise whole_file(
+            "E013", f"{file}:{lines.line_num}", f"this row cannot be read ({problem})", "save it as CSV"
+        ) from None
+    if not header:
+        raise whole_file("E013", file, "no line names the columns", f"the first line is such as: {TIME},temperature_C")
+    if len(rows) < 2:
+        what = f"{len(rows) or 'no'} row{'s' * (not rows)} below the names of the columns"
+        raise whole_file("E013", file, what, "at least two are needed, a start and an end")
+    return chosen, times, levels, rows
+
+
+def _text(path: Path, file: str) -> str:
+    try:
+        data = read_limited(path, MOST_MB * 1_000_000)
+    except NotRegular as found:
+        if found.kind == "folder":
+            raise whole_file("E002", file, "a recording is one file", "name a .csv file in it") from None
+        raise whole_file("E003", file, str(found), "save what it gives as a file, and name that") from None
+    except TooLarge as found:
+        help = f"at most {MOST_MB} MB are read; keep every tenth row"
+        raise whole_file("E004", file, f"{found.size / 1e6:,.0f} MB", help) from None
+    except FileNotFoundError:
+        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling") from None
+    except (OSError, ValueError) as problem:
+        said = getattr(problem, "strerror", None) or problem
+        raise whole_file("E003", file, f"the system says: {said}", "check that you may read it") from None
+    if b"\0" in data:
+        what = f"a zero byte at byte offset {data.index(0)}"
+        raise whole_file("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        what = f"byte 0x{data[problem.start]:02X} is not UTF-8"
+        raise whole_file("E007", f"{file}:{line}", what, "save the file as CSV in UTF-8") from None
+    if not text.strip():
+        raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
+    return text
+
+
+def _separator(text: str) -> str:
+    head = next((line for line in io.StringIO(text) if line.strip() and not line.startswith(_ASIDE)), "")
+    marks = (",", ";", "\t")
+    return next((mark for mark in marks if TIME in [cell.strip(' "\r\n') for cell in head.split(mark)]), ",")
+
+
+def _column(place: str, header: list[str], column: str | None) -> str:
+    """Return the column with the temperatures."""
+    found = f"the columns are {', '.join(header[:_FEW])}{', …' if len(header) > _FEW else ''}"
+    if TIME not in header:
+        if all(re.fullmatch(r"[-+\d.,;eE\s]+", cell) for cell in header):
+            what, help = "this line holds numbers, not the names of columns", f"put {TIME},temperature_C above it"
+            raise whole_file("E013", place, what, help)
+        close = nearest(TIME, header) or next((cell for cell in header if cell.lower().startswith("t")), None)
+        hint = f"is it {close!r}? Its name must say that it is in seconds: " if close else "the time in s has the name "
+        raise whole_file("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
+    known = [cell for cell in header if cell in CONTROL_OF]
+    if column is None and len(known) > 1:
+        what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
+        raise whole_file("E013", place, what, f'say which: --column {known[0]} (column="{known[0]}" in Python)')
+    if column is None and not known:
+        others = [cell for cell in header if cell != TIME]
+        meant = next((pair for pair in ((cell, _meant(cell)) for cell in others) if pair[1]), None)
+        hint = f"rename {meant[0]!r} to {meant[1]} if it is in °C, or say" if meant else "say"
+        what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
+        first = (others or ["name"])[0]
+        said = f'--column "{first}"' if " " in first else f"--column {first}"
+        raise whole_file("E013", place, what, f'{hint} which is meant: {said} (column="{first}" in Python)')
+    chosen = column or known[0]
+    if chosen not in header or chosen == TIME:
+        close = nearest(chosen, [cell for cell in header if cell != TIME])
+        help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
+        raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
+    for cell in (TIME, chosen):
+        if header.count(cell) > 1:
+            raise whole_file("E013", place, f"the column {cell} is there twice", "rename or remove one of them")
+    return chosen
+
+
+def _meant(cell: str) -> str | None:
+    return "temperature_C" if cell.lower().startswith(("temp", "t_")) else nearest(cell, CONTROL_OF)
+
+
+def _number(place: str, column: str, cells: list[str], at: int, mark: str, first: bool) -> float:
+    cell = cells[at].strip() if at < len(cells) else ""
+    plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
+    try:
+        value = math.nan if "_" in plain else float(plain)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        what = f"{column} is {cell[:30]!r}, not a finite number" if cell else f"{column} is empty"
+        help = "fill it in, or remove the row; what lies between readings counts as straight"
+        if first and cell:
+            help = "units belong in the names of the columns; remove this row"
+        raise whole_file("E014", place, what, help)
+    return value
+
+
+def _check_times(file: str, times: list[float], rows: list[int]) -> None:
+    for n, (before, time) in enumerate(pairwise(times), start=1):
+        if time < before:
+            what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
+            raise whole_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording a file")
+        if n > 1 and time == times[n - 2]:
+            help = "two readings at one time are a step; write more decimals of the time"
+            raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
+    length = times[-1] - times[0]
+    if length == 0:
+        raise whole_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
+    if length > LONGEST_S:
+        help = f"an icon lasts at most {LONGEST_S:g} s; divide by 1000 if these are milliseconds, or cut the file"
+        raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
+
+
+def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) -> None:
+    out = next((n for n, level in enumerate(levels) if not LOWEST_C <= level <= HIGHEST_C), None)
+    if out is None:
+        return
+    middle = sorted(levels)[len(levels) // 2]
+    help = "correct or remove the reading, if it is a fault of the sensor"
+    if 200 < middle < 400:
+        help = "these look like kelvin: convert the column to °C"
+    elif HIGHEST_C < middle < 150:
+        help = "these look like °F: convert the column to °C"
+    elif not LOWEST_C <= middle <= HIGHEST_C:
+        help = "check the unit: the column must be in °C"
+    what = f"{column} is {levels[out]:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
+    raise whole_file("E219", f"{file}:{rows[out]}", what, help)
+
+
+def _from_zero(times: list[float]) -> tuple[float, ...]:
+    """Return times from 0 s, without the stray digits that differences of large times have."""
+    digits = min(9, math.floor(-math.log10(math.ulp(max(abs(times[0]), abs(times[-1]))))))
+    return tuple(round(time - times[0], digits) for time in times)

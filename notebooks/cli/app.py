@@ -1,0 +1,51 @@
+"""The group of commands: how errors, interrupts and closed pipes end the program."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from ..text.messages import fail, interrupted, into_nowhere, is_ours
+
+
+class Commands(TyperGroup):
+    """A group of commands that ends with a message and an exit code, never with a traceback for a wrong input."""
+
+    def make_context(self, *arguments: Any, **extra: Any) -> Any:
+        """Read the command line; Ctrl-C exits with 130."""
+        # Python's workers, and every server that is started from here, import nothing from where they are started.
+        os.environ.setdefault("PYTHONSAFEPATH", "1")
+        try:
+            return super().make_context(*arguments, **extra)
+        except KeyboardInterrupt:
+            raise interrupted() from None
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
+        try:
+            result = super().invoke(ctx)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            raise interrupted() from None
+        except BrokenPipeError:
+            into_nowhere(sys.stdout)
+            raise typer.Exit(0) from None
+        except MemoryError:
+            fail("not enough memory for this; ask for fewer people, fewer rows a second or a shorter tail")
+        except OSError as error:
+            place = f"{error.filename}: " if error.filename else ""
+            fail(f"{place}{error.strerror or error}")
+        except RecursionError:
+            fail("this is nested too deeply to be read")
+        except Exception as error:
+            if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
+                fail(f"a path cannot be followed, its links lead in a circle: {str(error).partition('from ')[2]}")
+            if isinstance(error, typer.BadParameter) or not is_ours(error):
+                raise
+            fail(str(error))
+        else:
+            return result

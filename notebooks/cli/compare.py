@@ -1,0 +1,137 @@
+"""``thermicon compare``: two rigs, icons, sets, or a trace and a log, as one table of differences and one figure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..figures.differences import Aligned, align, differences, quantity, with_unit
+from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
+from ..files.trace_files import Curves, LogError, curves_of, read_curves
+from ..text.messages import load_rig, note, usage
+from ..text.tables import show, table
+from .cues import pick, read_set
+from .duel import duel_of
+from .sides import Request, check_request, kind_of_both
+from .simulate import headline
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """One pair of curves with a title, how A and B went, and what is said after the table."""
+
+    title: str
+    both: Aligned
+    told: tuple[str, str] = ("", "")
+    after: str = ""
+
+
+def compare(first: str, second: str, request: Request, figure: Path | None) -> None:
+    """Compare two things of one kind: a table for each pair on stdout, and a figure where it was asked for."""
+    kind = kind_of_both(first, second)
+    check_request(kind, request)
+    if figure is not None:
+        check_output(figure, FIGURE_SUFFIXES, "a figure")
+    made = {"rig": _rigs, "icon": _icons, "set": _sets, "table": _tables}[kind](first, second, request)
+    if figure is not None:
+        from ..figures.compare_figure import compare_figure
+
+        with complete_or_absent(figure) as draft:
+            compare_figure([(each.title, each.both) for each in made]).savefig(draft, dpi=130)
+    for place, each in enumerate(made):
+        if place:
+            show("")
+        show_comparison(each)
+    if figure is not None:
+        note(f"wrote {figure}")
+
+
+def show_comparison(made: Comparison) -> None:
+    """Print one table of differences with what is A, what is B, and at which times they were compared."""
+    both = made.both
+    rows = table("B − A", "largest", "at", "rms", "mean", numbers=("largest", "at", "rms", "mean"))
+    for _, row in differences(both).iterrows():
+        written = [with_unit(float(row[name]), row["unit"]) for name in ("largest", "rms", "mean")]
+        rows.add_row(quantity(row["column"]), written[0], f"{row['largest_s']:.2f} s", *written[1:])
+    sides = zip("AB", (both.name_a, both.name_b), made.told, strict=True)
+    heads = [f"{letter}  {name}{f': {told}' if told else ''}" for letter, name, told in sides]
+    after = ["", made.after] if made.after else []
+    show(*([made.title] if made.title else []), *heads, "", rows, "", both.said, *after)
+
+
+def _rigs(first: str, second: str, request: Request) -> list[Comparison]:
+    file = request.file or DEFAULT_SET
+    icons = pick(read_set([file]), request.icon or (DEFAULT_ICON if request.file is None else None))
+    rigs = [load_rig(name, request.changes) for name in (first, second)]
+    return [_played(icon.name, (icon, icon), (rigs[0], rigs[1]), (first, second)) for icon in icons]
+
+
+def _icons(first: str, second: str, request: Request) -> list[Comparison]:
+    rig, icons = load_rig(request.rig, request.changes), []
+    for option, text in (("A", first), ("B", second)):
+        file, _, name = text.rpartition(":")
+        if not name:
+            raise usage(f"{text} ends with a colon; put the name of an icon behind it", option)
+        icons.append(pick(read_set([file]), name)[0])
+    return [_played("", (icons[0], icons[1]), (rig, rig), (first, second))]
+
+
+def _sets(first: str, second: str, request: Request) -> list[Comparison]:
+    sets = [read_set([name]) for name in (first, second)]
+    names = [[icon.name for icon in icons] for icons in sets]
+    known = set(names[1])
+    common = [name for name in names[0] if name in known]
+    if request.icon is not None:
+        common = [pick(icons, request.icon)[0].name for icons in sets][:1]
+    if not common:
+        few = [", ".join(own[:20] + ["…"] * (len(own) > 20)) for own in names]
+        has = "; ".join(f"{file} has {own}" for file, own in zip((first, second), few, strict=True))
+        raise LogError(f"no icon has the same name in both sets: {has}; compare two icons as FILE:ICON")
+    alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]
+    if alone and request.icon is None:
+        note(f"only in one of the two: {', '.join(alone)}")
+    rig = load_rig(request.rig, request.changes)
+    pairs = [(pick(sets[0], name)[0], pick(sets[1], name)[0]) for name in common]
+    made = [_played(pair[0].name, pair, (rig, rig), (first, second)) for pair in pairs]
+    said = duel_of(sets[0], sets[1], rig) if request.icon is None else None
+    return [*made[:-1], replace(made[-1], after=said or "")]
+
+
+def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:
+    """Play two icons, the shorter with a tail at its baseline so that both are equally long, and compare."""
+    traces = _equally_long(icons, rigs)
+    told = (headline(traces[0]).partition(": ")[2], headline(traces[1]).partition(": ")[2])
+    curves = [curves_of(trace, name) for trace, name in zip(traces, _short(names), strict=True)]
+    return Comparison(title, align(curves[0], curves[1]), told)
+
+
+def _short(names: tuple[str, str]) -> tuple[str, str]:
+    """Return the names without their folders, unless the folders are what they differ in."""
+    first, second = (Path(name).name for name in names)
+    return names if first == second else (first, second)
+
+
+def _equally_long(icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig]) -> list[Trace]:
+    from thermicon.circuit import simulate
+
+    traces = [simulate(icon, rig) for icon, rig in zip(icons, rigs, strict=True)]
+    ends = [float(trace.time_s[-1]) for trace in traces]
+    for k in (0, 1):
+        if ends[k] < max(ends):
+            traces[k] = simulate(icons[k], rigs[k], tail_s=max(ends) - ends[k])
+    return traces
+
+
+def _tables(first: str, second: str, request: Request) -> list[Comparison]:
+    read: list[Curves] = [read_curves(path, request.icon) for path in (first, second)]
+    for curves in read:
+        if curves.ignored:
+            note(f"{curves.name}: ignored, since no trace has them: {', '.join(curves.ignored)}")
+    return [Comparison("", align(read[0], read[1]))]

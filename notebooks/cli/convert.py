@@ -1,0 +1,102 @@
+"""``thermicon convert``: icons as cue text, JSON or HJIF, and recordings as icons."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..files.outputs import STDOUT, OutputError, check_output, complete_or_absent
+from ..text.messages import fail, note
+from ..text.number_text import number
+from .cues import pick, read_set
+
+if TYPE_CHECKING:
+    from thermicon.icons import IconSet
+
+SUFFIXES = (".cue", ".json", ".hjif")
+_GIVEN = ("tolerance_K", "name", "column", "control")
+_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#')
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """How a recording becomes an icon: tolerance in K, name, column and control; None leaves it to ``from_csv``."""
+
+    tolerance_K: float | None = None
+    name: str | None = None
+    column: str | None = None
+    control: str | None = None
+
+
+def convert_file(file: str, output: Path, icon: str | None, recording: Recording) -> None:
+    """Read icons from a file of one kind and write them, complete or not at all, as the kind that the ending names."""
+    if output == STDOUT:
+        raise OutputError("the ending of the output says what is written: give a name such as icons.json")
+    check_output(output, SUFFIXES, "a set of icons")
+    if output.exists() and Path(file).exists() and output.samefile(file):
+        raise OutputError(f"cannot write {output}: it is the file that is read; give another name")
+    icons = read(file, recording)
+    if icon is not None:
+        icons = only_icon(icons, icon)
+    suffix = output.suffix.lower()
+    text = written(icons, suffix, icon)
+    with complete_or_absent(output) as draft:
+        draft.write_text(text, encoding="utf-8", newline="\n")
+    count = 1 if suffix == ".hjif" and icon is not None else len(icons)
+    note(f"wrote {output}: {count:,} icon{'' if count == 1 else 's'}")
+    if suffix == ".hjif":
+        from thermicon.icons.files.hjif import EXPERIMENTAL
+
+        note(f"{EXPERIMENTAL}; amplitude x gain is written as the change in K from baseline")
+    if has_comments(file):
+        note(f"the comments of {Path(file).name} are not carried over")
+
+
+def read(file: str, recording: Recording) -> IconSet:
+    """Return the icons of a file, or of a recording in CSV."""
+    if not file.lower().endswith(".csv"):
+        return read_set([file])
+    from thermicon.icons import IconSet, Metadata
+    from thermicon.icons.recordings.recorded import from_csv
+
+    given = {name: value for name in _GIVEN if (value := getattr(recording, name)) is not None}
+    try:
+        icon = from_csv(file, **given)
+    except ValueError as problem:
+        fail(str(problem))
+    corners = icon.lower()
+    note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
+    return IconSet("", "", icon.frame, Metadata(), (icon,))
+
+
+def only_icon(icons: IconSet, name: str) -> IconSet:
+    """Return the set with one of its icons, or of the members of its families, and with what this one plays."""
+    from thermicon.icons import parse
+
+    (found,) = pick(icons, name)
+    return replace(icons, entries=parse(str(found)).entries)
+
+
+def written(icons: IconSet, suffix: str, icon: str | None = None) -> str:
+    """Return a set as the text of a file with this ending; in HJIF, an icon that is named stands alone."""
+    if suffix == ".json":
+        from thermicon.icons.files.exchange import to_json
+
+        return to_json(icons)
+    if suffix == ".hjif":
+        from thermicon.icons.files.hjif import to_hjif
+
+        return to_hjif(icons if icon is None else pick(icons, icon))
+    return str(icons)
+
+
+def has_comments(file: str) -> bool:
+    """Tell whether a cue file has comments, which no set keeps."""
+    from thermicon.icons.files.shipped import file_bytes
+
+    if Path(file).suffix.lower() in (".json", ".csv") or (data := file_bytes(file)) is None:
+        return False
+    text = data.decode("utf-8", errors="replace")
+    return any(match.group() == "#" for match in _TEXT_OR_COMMENT.finditer(text))

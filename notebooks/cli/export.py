@@ -1,0 +1,125 @@
+"""``thermicon export``: icons to drive files and sidecars, or the reasons why not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from ..files.export_folder import check_export_folder
+from ..files.exporting import Ready, others, prepare_icons, write
+from ..text.gate_words import gate_words
+from ..text.messages import REFUSED, note
+from ..text.number_text import number
+from ..text.progress import progress_bar
+from .cues import pick, read_set, warn_of_site
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Realised, Rig
+    from thermicon.circuit.packing.export import Prepared
+
+CAUTION = (
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
+)
+
+
+def export_file(
+    file: str,
+    to: str,
+    device: str | None,
+    icon: str | None,
+    rig: Rig,
+    tail_s: float,
+    force: bool,
+    folder: Path,
+    pause_s: float | None = None,
+) -> None:
+    """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
+    from thermicon.circuit.delivery.formats import load_format
+    from thermicon.circuit.packing.export import check_names
+
+    form = load_format(to)
+    check_export_folder(folder)
+    whole = read_set([file])
+    chosen = pick(whole, icon)
+    check_names([one.name for one in chosen], form)
+    warn_of_site(file, whole, rig)
+    with progress_bar("realising") as progress:
+        rest = others(whole, chosen)
+        ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
+    for warning in ready.warnings:
+        note(warning)
+    tell(ready.prepared)
+    if refused(ready, force):
+        note(CAUTION)
+        note("nothing was written")
+        raise typer.Exit(REFUSED)
+    written = write(ready, folder, overwrite=force, insist=force)
+    count = len(ready.prepared)
+    drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
+    note(f"wrote {drives} into {folder}: {', '.join(_shown(written.names))}")
+    if written.gone:
+        note(f"removed from {folder}, since their sidecars now describe other drives: {', '.join(written.gone)}")
+    note(f"to play: {form.how}")
+    note(CAUTION)
+
+
+def tell(ready: Sequence[Prepared]) -> None:
+    """Say of every icon how it is played and how far that is from the design; of all, what the gate asks of people.
+
+    Where the drives are played open loop, one more line says what a module that was not measured leaves open.
+    """
+    for one in ready:
+        for line in told_of(one):
+            note(line)
+    for about, text in gate_words(ready):
+        note(f"{about}: {text}")
+    spreads = [(one.spread, one.realised.icon.name) for one in ready if one.spread is not None]
+    if spreads:
+        widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
+        note(f"{name}: {widest}")
+
+
+def told_of(one: Prepared) -> Iterator[str]:
+    """How an icon is played and how far that is from the design, then a warning a line."""
+    realised = one.realised
+    receptors = [each for each in one.apart.places if "receptor" in each.place]
+    largest = 1e3 * max(abs(each.largest_K) for each in receptors)
+    rms = 1e3 * max(each.rms_K for each in receptors)
+    yield (
+        f"{realised.icon.name}: {number(realised.file_s, 2)} s {steps_of(realised)} on "
+        f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
+        f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
+    )
+    for warning in one.warnings:
+        yield f"warning: {realised.icon.name}: {warning}"
+
+
+def refused(ready: Ready, force: bool) -> bool:
+    """Say why icons are refused, and whether any is."""
+    found = ready.against
+    for name, refusal in found:
+        stops = not (force and refusal.forcible)
+        note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
+    final = any(not refusal.forcible for _, refusal in found)
+    forcible = any(refusal.forcible for _, refusal in found)
+    if forcible and not force and not final:
+        note("--force exports it as it is, and the sidecar says so")
+    return final or (forcible and not force)
+
+
+def steps_of(realised: Realised) -> str:
+    """How the updates of a drive are told: so many a second, or so many segments."""
+    from thermicon.circuit import Setpoints
+
+    played = realised.played
+    if isinstance(played, Setpoints):
+        return f"in {len(played.segments)} segments"
+    return f"at {number(realised.rate_Hz, 1)} Hz"
+
+
+def _shown(names: Sequence[str], most: int = 6) -> list[str]:
+    return [*names[:most], *([f"and {len(names) - most} more"] if len(names) > most else [])]

@@ -1,0 +1,217 @@
+"""``thermicon lab``: the notebooks in a folder of your own, opened in JupyterLab, or the workbench served as a page."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import resources
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+
+from ..files.outputs import check_folder, stopped_cleanly, write_together
+from ..files.start_folder import VARIABLE
+from ..text.messages import fail, interrupted, note, usage
+
+FOLDER = Path("thermicon-notebooks")
+FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
+"""Endings of files: who gives one wants something else than a folder of that name."""
+FIRST, PAGE = "01_first_icon.ipynb", "workbench.ipynb"
+MOST_BYTES = 200_000_000
+"""Bytes of a notebook that is looked at; with all its pictures one has some millions."""
+STAMP = "thermicon"
+"""The key of a copy's metadata that holds the fingerprint it was written with."""
+ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
+
+State = Literal["new", "current", "older", "changed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Copied:
+    """Names of the notebooks by what became of them: written anew, the same already, or kept as the person has them."""
+
+    written: tuple[str, ...]
+    current: tuple[str, ...]
+    kept: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """What there is to say about them, without where."""
+        said = []
+        if self.written:
+            said.append(f"wrote {_counted(self.written)}")
+        if self.current:
+            said.append(f"{_counted(self.current)} there already" if self.written else "nothing to write, all there")
+        return ", ".join(said)
+
+
+def lab_command(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks, made if missing.")
+    ] = FOLDER,
+    page: Annotated[
+        bool, typer.Option("--page", help="Serve the workbench as a page, with Voila, instead of JupyterLab.")
+    ] = False,
+    files_only: Annotated[
+        bool, typer.Option("--files-only", help="Only put the notebooks there, for a Jupyter of your own.")
+    ] = False,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Print the address and leave the browser to you.")
+    ] = False,
+    port: Annotated[
+        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 for a page]")
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Also replace notebooks that were changed, by those that are shipped.")
+    ] = False,
+) -> None:
+    """Put the notebooks into a folder and open JupyterLab there; Ctrl-C ends it.
+
+    Notebooks that you changed are kept. Those that were only run, and of which thermicon now has another version, are
+    replaced.
+    """
+    if page and files_only:
+        raise usage("opens nothing, so there is no page to serve", "--files-only")
+    if port is not None and not 1 <= port <= 65535:
+        raise usage(f"{port} is outside 1 to 65535", "--port")
+    if folder.suffix.lower() in FILES:
+        raise usage(f"{str(folder)!r} is the name of a file, not of a folder; give one, such as {FOLDER}", "DIR")
+    program = "voila" if page else "jupyterlab"
+    if not files_only and find_spec(program) is None:
+        extra = "thermicon[page]" if page else "jupyterlab"
+        fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
+    tell(copy_notebooks(folder, force), folder)
+    if not files_only:
+        serve(command_of(folder, page, no_browser, port), folder, program)
+
+
+def copy_notebooks(folder: Path, force: bool = False) -> Copied:
+    """Put the shipped notebooks into a folder, which is made if missing: all that are due, or none.
+
+    A notebook there is replaced when its cells are those it was written with (its outputs do not count), or with
+    ``force``. Raises OutputError where the folder cannot be used.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as made:
+    ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
+    ('wrote 8 notebooks', 'nothing to write, all there')
+    """
+    check_folder(folder)
+    shipped = shipped_notebooks()
+    states = {name: _state(folder / name, notebook) for name, notebook in shipped.items()}
+    due = {"new", "older", "changed"} if force else {"new", "older"}
+    written = tuple(name for name, state in states.items() if state in due)
+    write_together({name: _stamped(shipped[name]) for name in written}, folder, replace=True)
+    return Copied(
+        written,
+        tuple(name for name, state in states.items() if state == "current"),
+        tuple(name for name, state in states.items() if state == "changed" and not force),
+    )
+
+
+def shipped_notebooks() -> dict[str, dict[str, Any]]:
+    """The notebooks of this version by name, in order.
+
+    >>> list(shipped_notebooks())[0], PAGE in shipped_notebooks()
+    ('01_first_icon.ipynb', True)
+    """
+    found = [path for path in resources.files("thermicon.notebooks").iterdir() if path.name.endswith(".ipynb")]
+    return {path.name: json.loads(path.read_text("utf-8")) for path in sorted(found, key=lambda path: path.name)}
+
+
+def tell(copied: Copied, folder: Path) -> None:
+    """Say what was written and what was kept."""
+    if copied.text:
+        note(f"{folder}: {copied.text}")
+    for name in copied.kept:
+        note(f"{folder / name}: kept, since you changed it; --force replaces it")
+
+
+def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> list[str]:
+    """The command that opens JupyterLab on the first notebook, or the page's server on the workbench, in a folder.
+
+    With -P, Python imports nothing from the folder that it is started in.
+
+    >>> command_of(Path("/mine"), True, False, 9000)[1:]
+    ['-P', '-m', 'thermicon.notebooks.pages.page_server', '/mine/workbench.ipynb', '--port=9000']
+    """
+    module, notebook = ("thermicon.notebooks.pages.page_server", PAGE) if page else ("jupyterlab", FIRST)
+    words = [sys.executable, "-P", "-m", module, str(folder.resolve() / notebook)]
+    words += ["--no-browser"] if no_browser else []
+    return words + ([f"--port={port}"] if port is not None else [])
+
+
+def serve(command: list[str], folder: Path, program: str) -> None:
+    """Run a server on a folder until it ends or Ctrl-C ends it; it is given the time to stop its kernels.
+
+    It runs in an empty folder, since servers of Jupyter take settings, which are programs, from where they are started;
+    kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
+    """
+    note("Ctrl-C ends it")
+    own = {**os.environ, "PYTHONSAFEPATH": "1"}
+    if program == "voila":
+        own[VARIABLE] = str(folder.resolve())
+    # Without a terminal to ask at, a server ends at once on Ctrl-C, which reaches it as well as this process.
+    with (
+        stopped_cleanly(),
+        tempfile.TemporaryDirectory(prefix="thermicon-", ignore_cleanup_errors=True) as empty,
+        subprocess.Popen(command, cwd=empty, env=own, stdin=subprocess.DEVNULL) as server,
+    ):
+        try:
+            code = server.wait()
+        except KeyboardInterrupt:
+            _end(server)
+            raise interrupted() from None
+    if code != 0:
+        fail(f"{program} ended with an error (exit code {code}); what it says is above")
+
+
+def _end(server: subprocess.Popen[bytes]) -> None:
+    with suppress(subprocess.TimeoutExpired):
+        server.wait(ENDS_ITSELF_S)
+        return
+    server.terminate()
+    with suppress(subprocess.TimeoutExpired):
+        server.wait(TIDIES_UP_S)
+        return
+    server.kill()
+
+
+def _state(path: Path, shipped: Mapping[str, Any]) -> State:
+    """What there is at a path, held against what is shipped under its name."""
+    if not path.exists():
+        return "new"
+    try:
+        there = json.loads(read_limited(path, MOST_BYTES))
+        found, stamp = _fingerprint(there), there.get("metadata", {}).get(STAMP)
+    except (ValueError, AttributeError, KeyError, TypeError, RecursionError, NotRegular, TooLarge):
+        return "changed"  # no notebook at all: the person's
+    if found == _fingerprint(shipped):
+        return "current"
+    return "older" if found == stamp else "changed"
+
+
+def _fingerprint(notebook: Mapping[str, Any]) -> str:
+    """Hash of kinds and texts of the cells: what a person writes, without what running and saving adds."""
+    cells = [[cell["cell_type"], "".join(cell["source"])] for cell in notebook["cells"]]
+    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()[:16]
+
+
+def _stamped(notebook: Mapping[str, Any]) -> bytes:
+    metadata = {**notebook["metadata"], STAMP: _fingerprint(notebook)}
+    return (json.dumps({**notebook, "metadata": metadata}, indent=1, ensure_ascii=False) + "\n").encode()
+
+
+def _counted(names: tuple[str, ...]) -> str:
+    return "1 notebook" if len(names) == 1 else f"{len(names)} notebooks"

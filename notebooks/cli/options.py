@@ -1,0 +1,84 @@
+"""Arguments and options that several commands take, and the checks of their values."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..text.messages import usage
+
+LONGEST_GAP_S, MOST_BIAS = 600.0, 5.0
+"""The ends of `thermicon.perception.Task`, here without its imports."""
+
+Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
+CueFiles = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files of your own.")]
+OneFile = Annotated[str, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")]
+IconName = Annotated[str | None, typer.Option("--icon", metavar="NAME", help="Only this icon of the file.")]
+RigName = Annotated[
+    str | None, typer.Option("--rig", metavar="RIG", help="A shipped rig or a .toml file.  [default: thenar]")
+]
+Changes = Annotated[
+    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be repeated.")
+]
+ReportPage = Annotated[
+    Path | None,
+    typer.Option("--report", metavar="OUT.html", readable=False, help="Write one page with everything, to mail."),
+]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Cores to work on.  [default: all of this machine]")
+]
+Cluster = Annotated[
+    str | None,
+    typer.Option("--cluster", metavar="ADDRESS", help="Work on a dask cluster instead: its scheduler's address."),
+]
+Keep = Annotated[
+    Path | None,
+    typer.Option(
+        "--keep",
+        metavar="DIR",
+        readable=False,
+        help="Keep finished parts in DIR.  [default: in the user's cache, until a long run is done]",
+    ),
+]
+Context = Annotated[
+    float,
+    typer.Option("--context", metavar="SHARE", help="Share of memory noise that follows the range of the set, 0 to 1."),
+]
+Gap = Annotated[
+    float | None,
+    typer.Option("--gap", metavar="S", help="Time from one icon to the next.  [default: long, all has faded]"),
+]
+Bias = Annotated[
+    float, typer.Option("--bias", metavar="SD", help="Spread of how much people favour names (log likelihood).")
+]
+Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Time after the last corner.")]
+
+
+def check_task(context: float, gap_s: float | None, bias: float) -> None:
+    """Fail with a usage error where icons cannot be asked for so."""
+    for option, value, most, unit in (
+        ("--context", context, 1.0, ""),
+        ("--gap", gap_s, LONGEST_GAP_S, " s"),
+        ("--bias", bias, MOST_BIAS, ""),
+    ):
+        if value is not None and not 0.0 <= value <= most:
+            raise usage(f"{value:g}{unit} is outside 0 to {most:g}{unit}", option)
+
+
+def check_tail(tail_s: float | None) -> None:
+    """Fail with a usage error for a tail that is no time."""
+    if tail_s is not None and not (math.isfinite(tail_s) and tail_s >= 0):
+        raise usage(f"{tail_s:g} is not a time in seconds of 0 or more", "--tail")
+
+
+LONGEST_PAUSE_S = 600.0
+"""The longest pause between plays, as in `thermicon.circuit.safety.repeated`, here without its imports."""
+
+
+def check_pause(pause_s: float | None) -> None:
+    """Fail with a usage error for a pause that is no time between 0 and 10 min."""
+    if pause_s is not None and not 0 <= pause_s <= LONGEST_PAUSE_S:
+        raise usage(f"{pause_s:g} is not a time between plays of 0 to {LONGEST_PAUSE_S:g} s", "--pause")

@@ -1,0 +1,134 @@
+"""``thermicon rank``: predicted detection, confusions and information of one set, as table, JSON and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
+from ..text.messages import note, usage
+from ..text.progress import progress_bar
+from ..text.rank_text import show_ranking
+from .cache import kept
+from .cues import MOST_ICONS, read_set, warn_of_frames
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+    from thermicon.perception import Ranking
+    from thermicon.perception.selection.request import Choosing
+
+PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What ``rank`` was asked for: people, seed, tracking (None: by the icons' control), norm, trials, by what.
+
+    ``parameters`` observers are drawn for the intervals that the observer's parameters leave open; 0 draws none.
+    ``choosing`` asks for the best few, ``edits`` for the cheapest edit of the ``worst`` pair or of ``all`` not apart.
+    ``context``, ``gap`` (s) and ``bias`` say how icons are asked for, as in ``thermicon.perception.Task``.
+    ``workers`` are cores, ``cluster`` is the address of a scheduler to use instead, ``keep`` a folder of done parts.
+    """
+
+    people: int = 200
+    seed: int = 0
+    tracking: str | None = None
+    norm: str = "max"
+    trials: int = 48
+    by: str = "model"
+    parameters: int = 128
+    choosing: Choosing | None = None
+    edits: str = "worst"
+    context: float = 0.0
+    gap: float | None = None
+    bias: float = 0.0
+    workers: int | None = None
+    cluster: str | None = None
+    keep: Path | None = None
+
+
+def rank_files(
+    files: Sequence[str],
+    rig: Rig,
+    request: Request,
+    json_out: Path | None,
+    figures: Path | None,
+    report_out: Path | None = None,
+) -> None:
+    """Rank the joined icons of some files on the rig: the table on stdout, the rest where it was asked for."""
+    from thermicon.perception import NORMS, Task, rank
+    from thermicon.perception.ranking.rank_file import ranking_file
+
+    if request.norm not in NORMS:
+        raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
+    if json_out is not None:
+        check_output(json_out, (), "JSON")
+    if report_out is not None:
+        check_output(report_out, (".html", ".htm"), "a report")
+        if report_out == STDOUT:
+            raise usage("- is no file; give the name of a page, such as report.html", "--report")
+    if figures is not None:
+        if not figures.is_dir() and (figures.exists() or figures.suffix.lower() in PICTURES):
+            hint = figures.with_suffix("") if figures.suffix else "figures"
+            raise usage(f"{figures} is the name of a file; give a folder, such as {hint}, for all figures", "--figure")
+        check_folder(figures)
+    icons = read_set(files)
+    if len(icons) > MOST_ICONS:
+        what = f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} are ranked at once"
+        raise usage(f"{what}; narrow a family, or name its best members in a set of their own", "FILE")
+    warn_of_frames(files, icons, rig)
+    what = f"{icons}\0{rig.document}\0{request}"
+    with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
+        ranking = rank(
+            icons,
+            rig,
+            people=request.people,
+            seed=request.seed,
+            trials=request.trials,
+            tracking=request.tracking,
+            norm=request.norm,
+            by=request.by,
+            parameters=request.parameters,
+            choosing=request.choosing,
+            edits=request.edits if request.by == "model" else "none",
+            task=Task(request.context, request.gap, request.bias),
+            workers=request.workers,
+            cluster=request.cluster,
+            keep=keep,
+            progress=progress,
+        )
+    if json_out is not None and json_out != STDOUT:
+        with complete_or_absent(json_out) as draft:
+            draft.write_text(ranking.to_json() + "\n", encoding="utf-8")
+        note(f"wrote {json_out}")
+    if figures is not None:
+        from ..figures.set_figures import write_figures
+
+        write_figures(ranking, icons, rig, figures)
+    near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
+    if report_out is not None:
+        from ..pages.report import report
+        from .command_line import command_text
+
+        made = report(ranking, icons, rig, command_text(files, rig, request), near)
+        with complete_or_absent(report_out) as draft:
+            draft.write_text(made, encoding="utf-8", newline="\n")
+        note(f"wrote {report_out}")
+    if json_out == STDOUT:
+        typer.echo(ranking.to_json())
+    else:
+        show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+
+
+def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
+    """Return by name how each icon that the rig does not reach could be changed so that it does."""
+    from thermicon.circuit import nearest_reachable
+
+    missed = {score.name for score in ranking.icons if not score.reachable}
+    near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
+    return {name: found.sentence for name, found in near.items() if found is not None}

@@ -1,0 +1,133 @@
+"""``thermicon search``: a better set out of the families of a file, as a cue file and a table of before and after."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..files.outputs import STDOUT, check_output, complete_or_absent
+from ..text.choices import OBJECTIVES
+from ..text.messages import check_changes, load_rig, note, usage
+from .options import Changes, OneFile, RigName
+
+if TYPE_CHECKING:
+    from thermicon.perception import Searched
+
+TRACKING = ("replay", "display", "ideal")
+
+
+def search_command(
+    file: OneFile,
+    choose: Annotated[
+        int | None,
+        typer.Option("--choose", metavar="K", help="So many icons in all, of any family.  [default: one of each]"),
+    ] = None,
+    objective: Annotated[
+        str, typer.Option("--objective", metavar="NAME", help="worst (pair), correct, bits, or bits-per-s.")
+    ] = "worst",
+    evaluations: Annotated[
+        int, typer.Option("--evaluations", metavar="N", help="Icons to try: more take longer and find more.")
+    ] = 2000,
+    people: Annotated[
+        int, typer.Option("--people", metavar="N", help="Virtual people that judge what is found.")
+    ] = 200,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of search and people.")] = 0,
+    tracking: Annotated[
+        str | None,
+        typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
+    ] = None,
+    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="OUT.cue", readable=False, help="The found set, or - for stdout."),
+    ] = None,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Better a set over the continuous parameters of its families; icons that are no families stay as they are.
+
+    What is found is the best for the model, which it was searched on: measure it on people before it is used.
+    """
+    check_changes(changes or [])
+    bounds = (
+        ("--choose", choose if choose is not None else 2, 2, 64),
+        ("--evaluations", evaluations, 10, 1_000_000),
+        ("--people", people, 1, 100_000),
+        ("--seed", seed, 0, 2**32 - 1),
+    )
+    for option, value, least, most in bounds:
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+    if objective not in OBJECTIVES:
+        raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
+    if tracking is not None and tracking not in TRACKING:
+        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+    if norm not in ("max", "rms", "integral"):
+        raise usage(f"{norm!r} is none of max, rms, integral", "--norm")
+    if output is not None:
+        check_output(output, (".cue",), "a set of icons")
+    from thermicon.perception import search
+
+    from ..text.progress import progress_bar
+    from .cues import read_set, warn_of_frames
+
+    icons, where = read_set([file]), load_rig(rig, changes or [])
+    warn_of_frames([file], icons, where)
+    with progress_bar("searching") as progress:
+        found = search(
+            icons,
+            where,
+            count=choose,
+            objective=objective,  # type: ignore[arg-type]
+            evaluations=evaluations,
+            people=people,
+            seed=seed,
+            tracking=tracking,
+            norm=norm,
+            progress=progress,
+        )
+    if output == STDOUT:
+        typer.echo(str(found.found), nl=False)
+        return
+    if output is not None:
+        with complete_or_absent(output) as draft:
+            draft.write_text(str(found.found), encoding="utf-8")
+        note(f"wrote {output}")
+    show_search(found, icons.title, people, where.name)
+
+
+def show_search(found: Searched, title: str, people: int, rig: str) -> None:
+    """Print the icons that were found, what they are worth beside the set that the search began with, and the note."""
+    from ..text.number_text import number, percent
+    from ..text.tables import show, table
+
+    made = table("", "before", "after", numbers=("before", "after"))
+    for what, before, after in (
+        ("worst pair, d′", number(found.before.d_prime), number(found.after.d_prime)),
+        ("correct", percent(found.before.percent_correct), percent(found.after.percent_correct)),
+        ("bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
+        ("bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
+    ):
+        made.add_row(what, before, after)
+    crowd = "1 virtual person" if people == 1 else f"{people} virtual people"
+    began = f"Before: {', '.join(icon.name for icon in found.start)}"
+    icons = [
+        f"  - {icon.name}: {icon.metadata.tags[-1]}" for icon in found.found if "found by search" in icon.metadata.tags
+    ]
+    show(
+        *([title, ""] if title else []),
+        "Found:",
+        *icons,
+        "",
+        made,
+        "",
+        f"After: worst pair {' and '.join(found.after.worst_pair)}",
+        began,
+        "",
+        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, "
+        f"by {found.objective} (seed {found.seed}); before and after are for {crowd} on the {rig} rig.",
+        "These are predictions of a model, not measurements, and the set was searched for on that same model: "
+        "expect less of it from people than is said here.",
+    )

@@ -1,0 +1,145 @@
+"""``thermicon sensitivity``: which uncertain parameters move the prediction for a set most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from ..text.messages import fail, note, usage
+from ..text.number_text import percent
+from ..text.progress import progress_bar
+from ..text.tables import show, table
+from .cues import read_set, warn_of_frames
+from .sweep import write_frame
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.perception import Sensitivity
+
+HOW = {
+    "reference area": "the area of the published thresholds; measure thresholds on your own display instead",
+    "slope of sensation": "amplitude difference thresholds, at several amplitudes",
+    "memory noise": "let people name a few icons from memory and count",
+    "gain control strength": "how much weaker a change is felt after one of the same direction",
+    "lapse rate": "errors on two icons that nobody can mistake",
+    "contact resistance": "skin or interface thermistor under your display, then fit the rig to its log",
+    "spread of thresholds between people": "thresholds of a dozen people on your own display",
+    "onset uncertainty": "how well people tell two onsets apart in time",
+}
+"""What to do about a parameter whose name does not say it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What ``sensitivity`` was asked for; ``samples`` None leaves their number to the method."""
+
+    people: int = 24
+    seed: int = 0
+    method: str = "sobol"
+    samples: int | None = None
+    norm: str = "max"
+
+
+def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:
+    """Study the icons of a file on the rig: the table on stdout, the rest where it was asked for."""
+    from thermicon.perception import NORMS, sensitivity
+
+    if request.norm not in NORMS:
+        raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
+    if output is not None:
+        check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
+    if figure is not None:
+        check_output(figure, FIGURE_SUFFIXES, "a figure")
+    icons = read_set([file])
+    if len(icons) < 2:
+        fail(f"{file}: a sensitivity needs at least two icons: one alone is never confused")
+    warn_of_frames([file], icons, rig)
+    with progress_bar("sensitivity") as progress:
+        found = sensitivity(
+            icons,
+            rig,
+            people=request.people,
+            seed=request.seed,
+            method=request.method,
+            samples=request.samples,
+            norm=request.norm,
+            progress=progress,
+        )
+    if output is not None and output != STDOUT:
+        with complete_or_absent(output) as draft:
+            write_frame(found.to_frame(), draft)
+        note(f"wrote {output}")
+    if figure is not None:
+        drawn: Any = found.plot().figure
+        with complete_or_absent(figure) as draft:
+            drawn.savefig(draft, dpi=130)
+        note(f"wrote {figure}")
+    if output == STDOUT:
+        typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)
+    else:
+        show_sensitivity(found, icons.title)
+
+
+def show_sensitivity(found: Sensitivity, title: str) -> None:
+    """Print a row a parameter, the most important first, and what to measure first."""
+    made = table(
+        "parameter", "interval", "correct", "bits", "correct low–high", numbers=("correct", "bits", "correct low–high")
+    )
+    for effect in found.effects:
+        parameter = effect.parameter
+        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+        low, high = effect.percent_correct_ends
+        made.add_row(
+            parameter.name,
+            f"{parameter.low:.3g}–{parameter.high:.3g}{unit}",
+            size(effect.percent_correct, found.method),
+            size(effect.information_bits, found.method, "bits"),
+            f"{percent(low)} – {percent(high)}",
+        )
+    heading = [title, ""] if title else []
+    show(*heading, made, "", *sentences(found))
+
+
+def size(value: float, method: str, unit: str = "%") -> str:
+    """Write a share of variance, or by Morris a mean effect in points or bits.
+
+    >>> size(0.431, "sobol"), size(0.034, "morris"), size(0.12, "morris", "bits")
+    ('43 %', '3.4', '0.12')
+    """
+    if method == "sobol":
+        return percent(value)
+    return f"{100 * value:.1f}" if unit == "%" else f"{value:.2f}"
+
+
+def how(name: str) -> str:
+    """Say behind the name of a parameter what a lab would measure; nothing where the name says it.
+
+    >>> how("memory noise (max)")
+    ': let people name a few icons from memory and count'
+    """
+    found = HOW.get(name.split(" (")[0])
+    return f": {found}" if found else ""
+
+
+def sentences(found: Sensitivity) -> list[str]:
+    """Return what the numbers are, what to measure first, and on what it rests."""
+    kind = (
+        "Shares of the variance of per cent correct and of bits, interactions included (total Sobol indices)"
+        if found.method == "sobol"
+        else "Mean effect of a parameter over its interval, in points of per cent correct and in bits (Morris)"
+    )
+    what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
+    crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
+    lead = "Measure these first; the rest moves the prediction less:"
+    return [
+        lead if found.first else "None of these moves the prediction.",
+        *(f"  - {name}{how(name)}" for name in found.first),
+        "",
+        f"{kind}; beside them per cent correct at the low and at the high end of each interval alone. "
+        f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
+        f"{percent(found.percent_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
+    ]

@@ -1,0 +1,235 @@
+"""``thermicon session``: a sequence of icons as one run, one verdict, and what every play does."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..text.messages import check_changes, load_rig, note, usage
+from .options import Changes, OneFile, RigName
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Session, SessionPlan
+    from thermicon.icons import IconSet
+
+TRACKING = ("replay", "display")
+LONGEST_GAP_S = 3600.0
+"""The end of `thermicon.circuit.SessionPlan`, here without its imports."""
+
+RANDOM_REPEATS, ORDER_REPEATS = 8, 1
+MOST_SHOWN = 60
+"""Plays in the table; all of them are in the JSON."""
+
+
+CAUTION = (
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What was asked for; `order` None shuffles with `seed`."""
+
+    order: Path | None
+    repeats: int
+    seed: int
+    gap_s: float
+    tracking: str
+    json: Path | None = None
+    figure: Path | None = None
+    order_out: Path | None = None
+
+
+def session_command(
+    file: OneFile,
+    order: Annotated[
+        Path | None,
+        typer.Option(
+            "--order", metavar="FILE", readable=False, help="Names of icons in the order of play, one per line."
+        ),
+    ] = None,
+    random: Annotated[bool, typer.Option("--random", help="Every icon --repeats times, in random order.")] = False,
+    gap: Annotated[
+        float, typer.Option("--gap", metavar="S", help="Time from the end of an icon to the start of the next.")
+    ] = 10.0,
+    repeats: Annotated[
+        int | None,
+        typer.Option("--repeats", metavar="N", help="Plays of each icon, or of the order.  [default: 8, or 1]"),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the random order.")] = 0,
+    tracking: Annotated[
+        str,
+        typer.Option(
+            "--tracking", metavar="|".join(TRACKING), help="Currents open loop, or the display temperature followed."
+        ),
+    ] = "replay",
+    json: Annotated[
+        Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session.")
+    ] = None,
+    order_out: Annotated[
+        Path | None,
+        typer.Option("--order-out", metavar="OUT", readable=False, help="Write the order as a file for --order."),
+    ] = None,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Play a sequence of icons as one run: temperatures, dose, drift of the baseline, one verdict in the worst case.
+
+    The verdict is a report: the exit code is 0 whatever its colour. Only export refuses.
+    """
+    check_changes(changes or [])
+    if (order is None) == (not random):
+        raise usage("give either --order FILE or --random", "--order")
+    if not (math.isfinite(gap) and 0.0 <= gap <= LONGEST_GAP_S):
+        raise usage(f"{gap:g} s is outside 0 to {LONGEST_GAP_S:g} s", "--gap")
+    if repeats is not None and repeats < 1:
+        raise usage(f"{repeats} is not a number of repeats of 1 or more", "--repeats")
+    if not 0 <= seed <= 2**63 - 1:
+        raise usage(f"{seed} is outside 0 to {2**63 - 1}", "--seed")
+    if tracking not in TRACKING:
+        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+    count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS
+    request = Request(order, count, seed, gap, tracking, json, figure, order_out)
+    session_file(file, load_rig(rig, changes or []), request)
+
+
+def session_file(file: str, rig: Rig, request: Request) -> None:
+    """Play a session with the icons of a file; print the report and write what was asked for."""
+    from thermicon.circuit import play_session
+    from thermicon.circuit.safety.sessionplan import order_text
+
+    from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
+    from ..text.progress import progress_bar
+    from .cues import read_set, warn_of_site
+
+    for path, suffixes, what in (
+        (request.json, (), "a report"),
+        (request.figure, FIGURE_SUFFIXES, "a figure"),
+        (request.order_out, (), "an order"),
+    ):
+        if path is not None:
+            check_output(path, suffixes, what)
+    icons = read_set([file])
+    plan = plan_of(icons, request)
+    warn_of_site(file, icons, rig)
+    with progress_bar("worst case") as progress:
+        played = [icons[name] for name in plan.names]
+        session = play_session(played, plan, rig, tracking=request.tracking, progress=progress)
+    if request.json is not None:
+        with complete_or_absent(request.json) as draft:
+            draft.write_text(session_text(session, icons, rig), encoding="utf-8")
+    if request.order_out is not None:
+        with complete_or_absent(request.order_out) as draft:
+            draft.write_text(order_text(plan), encoding="utf-8")
+    if request.figure is not None:
+        from ..figures.session_figure import session_figure
+
+        with complete_or_absent(request.figure) as draft:
+            session_figure(session).savefig(draft, dpi=130)
+    for written in (request.json, request.order_out, request.figure):
+        if written is not None:
+            note(f"wrote {written}")
+    show_session(session)
+
+
+def plan_of(icons: IconSet, request: Request) -> SessionPlan:
+    """The plan that was asked for; SessionError, before anything is played, where it is impossible."""
+    from thermicon.circuit import SessionPlan
+    from thermicon.circuit.safety.sessionplan import check_repeats, read_order
+
+    if request.order is not None:
+        return SessionPlan.repeated(read_order(request.order, icons), request.repeats, gap_s=request.gap_s)
+    check_repeats(request.repeats, len(icons), "icons")
+    names = [icon.name for icon in icons]
+    return SessionPlan.shuffled(names, request.repeats, seed=request.seed, gap_s=request.gap_s)
+
+
+def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
+    """The session as JSON text; what does not exist is null."""
+    facts = {
+        "thermicon": version("thermicon"),
+        "content_hash": icons.content_hash,
+        **session.to_dict(),
+        "rig_changes": list(rig.changes),
+        "rig_text": rig.document,
+    }
+    return json.dumps(facts, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def show_session(session: Session) -> None:
+    """Print the verdict, what the session does as a whole, and one row per play."""
+    from ..text.number_text import number, span
+    from ..text.tables import show, table
+
+    rows = table(
+        *("play", "icon", "start", "skin", "display", "baseline", "safety"),
+        numbers=("play", "start", "baseline"),
+        names=("icon",),
+    )
+    for place, play in enumerate(session.plays[:MOST_SHOWN], 1):
+        rows.add_row(
+            str(place),
+            play.icon,
+            f"{number(play.start_s, 2)} s",
+            span(play.skin_min_C, play.skin_max_C, "°C"),
+            span(play.display_min_C, play.display_max_C, "°C"),
+            f"{number(play.drift_K, 2)} K",
+            play.verdict,
+        )
+    more = len(session.plays) - MOST_SHOWN
+    left = [f"and {more} more plays, which --json lists"] if more > 0 else []
+    show(*summary_lines(session), "", rows, *left)
+    note(CAUTION)
+
+
+def summary_lines(session: Session) -> list[str]:
+    """What people want to know of a session first, a line each."""
+    from ..text.number_text import number, span
+
+    trace, plan = session.trace, session.plan
+    plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
+    shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
+    lines = [
+        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s apart{shuffled}",
+        f"safety {session.verdict} in {session.scenarios} scenarios, over the whole session and after",
+        *(f"  - {'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in session.findings),
+    ]
+    for words, column in (("skin", trace.skin_C), ("display", trace.display_C), ("hot plate", trace.hot_plate_C)):
+        lines.append(f"  {words:<10} {span(float(column.min()), float(column.max()), '°C')}")
+    after = "more than 10 min" if session.recovery_s is None else f"{number(session.recovery_s)} s"
+    lines += [
+        *_dose_lines(session),
+        f"  baseline   {number(session.baseline_drift_K, 2)} K at most; back within 0.1 K {after} after the end",
+        f"  energy     {number(session.energy_J)} J into the module",
+    ]
+    over = [
+        f"  beyond     {number(each.seconds, 2)} s {'above' if each.upper else 'below'} the {each.severity} limit of "
+        f"{number(each.limit_C)} °C ({each.quantity})"
+        for each in session.time_beyond
+        if each.seconds > 0
+    ]
+    return [*lines, *over]
+
+
+def _dose_lines(session: Session) -> list[str]:
+    """Dose on the rig as given and in the worst case, beside the limits of a session."""
+    lines = []
+    for words, quantity, value, unit in (
+        ("dose", "thermal dose", session.dose_cem43_min, " min CEM43"),
+        ("Henriques", "Henriques integral", session.henriques, ""),
+    ):
+        worst = session.worst(quantity)
+        if worst is not None:
+            limit = f"{worst.value:.2g} in the worst case; the limit of a session is {worst.limit:g}"
+            lines.append(f"  {words:<10} {value:.2g}{unit}, {limit}")
+    return lines

@@ -1,0 +1,170 @@
+"""``thermicon simulate``: icons or a drive to traces, a summary, figures."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from ..figures.trace_overview import FELT_TAIL_S, draw_overview
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from ..text.messages import note
+from ..text.number_text import number, span
+from .cues import pick, read_set, warn_of_site
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+
+def simulate_file(
+    file: str,
+    icon: str | None,
+    rig: Rig,
+    rate_Hz: float,
+    tail_s: float | None,
+    output: Path | None,
+    figure: Path | None,
+) -> None:
+    """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
+    from thermicon.circuit import simulate
+
+    whole = read_set([file])
+    icons = pick(whole, icon)
+    pictures = _figure_paths(figure, [each.name for each in icons])
+    _check(output, pictures)
+    warn_of_site(file, whole, rig)
+    traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
+    _write(traces, output)
+    for each, picture in zip(icons, pictures, strict=False):
+        played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
+        draw_overview(played, picture, rig.changes)
+    _tell(traces, rig, output, pictures, [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)])
+
+
+def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None) -> None:
+    """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
+    from thermicon.circuit import read_drive, simulate_current
+
+    pictures = [] if figure is None else [figure]
+    _check(output, pictures)
+    played = read_drive(drive, hold=hold)
+    trace = simulate_current(played, rig, rate_Hz=rate_Hz)
+    _write([trace], output)
+    for picture in pictures:
+        draw_overview(simulate_current(played, rig), picture, rig.changes)
+    _tell([trace], rig, output, pictures, [None])
+
+
+def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
+    """Return how the icon could be changed so that the rig reaches it; None where it is reached or nothing helps."""
+    from thermicon.circuit import nearest_reachable
+
+    if trace.reachable:
+        return None
+    near = nearest_reachable(icon, rig)
+    return None if near is None else near.sentence
+
+
+def _figure_paths(figure: Path | None, names: Sequence[str]) -> list[Path]:
+    if figure is None:
+        return []
+    if len(names) == 1:
+        return [figure]
+    return [figure.with_name(f"{figure.stem}-{name}{figure.suffix}") for name in names]
+
+
+def _check(output: Path | None, pictures: Sequence[Path]) -> None:
+    if output is not None:
+        check_output(output, TRACE_SUFFIXES, "a trace")
+    for picture in pictures:
+        check_output(picture, FIGURE_SUFFIXES, "a figure")
+
+
+def _write(traces: Sequence[Trace], output: Path | None) -> None:
+    """Write the traces into their file, before anything is printed that a reader may not wait for."""
+    if output is not None and output != STDOUT:
+        write_traces(traces, output)
+
+
+def _tell(
+    traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
+) -> None:
+    """Say on stderr what is to be known and was written, then print on stdout: a summary, or the traces."""
+    for trace in traces:
+        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
+            if warning not in rig.warnings:  # those were told when the rig was loaded
+                note(f"warning: {trace.icon or 'drive'}: {warning}")
+    if output is not None:
+        for trace, better in zip(traces, cures, strict=True):
+            note(headline(trace) + (f"; {better}" if better else ""))
+    for path in (output, *pictures):
+        if path not in (None, STDOUT):
+            note(f"wrote {path}")
+    if output is None:
+        for trace, better in zip(traces, cures, strict=True):
+            typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
+    elif output == STDOUT:
+        write_traces(traces, output)
+
+
+def unsafe(trace: Trace) -> list[str]:
+    """Return a sentence for every shipped limit of safety that the run passes, the hard ones marked."""
+    from thermicon.circuit import judge_safety
+
+    findings = judge_safety(trace).findings
+    return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
+
+
+def write_traces(traces: Sequence[Trace], output: Path) -> None:
+    """Write the traces below each other, by the suffix of ``output``; ``-`` is CSV on stdout."""
+    from thermicon.circuit import write_trace
+
+    if output == STDOUT:
+        with tempfile.TemporaryDirectory() as folder:
+            draft = Path(folder) / "trace.csv"
+            write_trace(list(traces), draft)
+            typer.echo(draft.read_text(encoding="utf-8"), nl=False)
+        return
+    with complete_or_absent(output) as draft:
+        write_trace(list(traces), draft)
+
+
+def headline(trace: Trace) -> str:
+    """One line about a run: its length, and whether it reached its target or why not."""
+    start = f"{trace.icon or 'drive'}: {number(float(trace.time_s[-1]), 2)} s"
+    if trace.outcome is None:
+        return start
+    if not trace.outcome.reached:
+        return f"{start}, NOT reached: {trace.outcome.reason}"
+    miss = abs(trace.outcome.largest_miss_K)
+    told = "everywhere within 1 mK" if miss < 1e-3 else f"largest miss {number(miss, 3)} K"
+    slowest = trace.outcome.slowest_step_s
+    steps = "" if slowest is None else f", slowest step {number(slowest, 2)} s"
+    return f"{start}, reached ({told}{steps})"
+
+
+def _current(trace: Trace) -> str:
+    if not trace.has_current:
+        return "none: a thermode follows temperatures in a loop of its own"
+    return span(float(trace.current_A.min()), float(trace.current_A.max()), "A", 2)
+
+
+def describe(trace: Trace) -> str:
+    """Say what a person wants to know of a run first: outcome, drive, extremes, changes at the receptors."""
+    peaks = []
+    for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):
+        change = column - column[0]
+        low, high = float(change.min()), float(change.max())
+        peaks.append(f"{name} {span(low, high, 'K', 2)}")
+    lines = [
+        headline(trace),
+        f"  current   {_current(trace)}",
+        f"  display   {span(float(trace.display_C.min()), float(trace.display_C.max()), '°C')}",
+        f"  skin      {span(float(trace.skin_C.min()), float(trace.skin_C.max()), '°C')}",
+        f"  change    {'; '.join(peaks)}",
+    ]
+    return "\n".join(lines)

@@ -1,0 +1,84 @@
+"""The commands about icons as text: ``convert``, ``cite`` and ``explain``. They are put on the program in ``cli``."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..text.messages import check_changes, load_rig, usage
+from .options import Changes, IconName, OneFile
+
+CONTROLS = ("skin", "display")
+
+
+def convert_command(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue, .json or .csv file, or a shipped set.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="OUT", readable=False, help="The file: .cue, .json or .hjif.")
+    ],
+    icon: IconName = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option("--tolerance", metavar="K", help="For .csv: how far the icon may lie from the recording."),
+    ] = None,
+    name: Annotated[str | None, typer.Option("--name", metavar="NAME", help="For .csv: the name of the icon.")] = None,
+    column: Annotated[
+        str | None, typer.Option("--column", metavar="COLUMN", help="For .csv: the column of temperatures.")
+    ] = None,
+    control: Annotated[
+        str | None,
+        typer.Option("--control", metavar="|".join(CONTROLS), help="For .csv: what the temperatures are those of."),
+    ] = None,
+) -> None:
+    """Write icons as another kind of file, by its ending: .cue, .json, or .hjif (MPEG haptics, experimental).
+
+    JSON is lossless but for comments. A recording (.csv) becomes an icon of few straight pieces.
+    """
+    if not file.lower().endswith(".csv"):
+        for option, value in (
+            ("--tolerance", tolerance),
+            ("--name", name),
+            ("--column", column),
+            ("--control", control),
+        ):
+            if value is not None:
+                raise usage("belongs to a recording, a .csv file", option)
+    if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
+        raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
+    if control is not None and control not in CONTROLS:
+        raise usage(f"{control!r} is none of {', '.join(CONTROLS)}", "--control")
+    from .convert import Recording, convert_file
+
+    convert_file(file, output, icon, Recording(tolerance, name, column, control))
+
+
+def cite_command(
+    file: OneFile,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries for the sources instead.")] = False,
+    rig: Annotated[
+        str | None, typer.Option("--rig", metavar="RIG", help="Also describe this rig in the paragraph.")
+    ] = None,
+    changes: Changes = None,
+) -> None:
+    """Print a paragraph for the methods of a paper, or with --bibtex the entries of the sources that the icons name."""
+    check_changes(changes or [])
+    if bibtex and (rig is not None or changes):
+        raise usage("describes a rig in the paragraph; BibTeX entries have no rig", "--rig" if rig else "--set")
+    from .cite import cite_file
+
+    cite_file(file, bibtex, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+def explain_command(
+    code: Annotated[str, typer.Argument(metavar="CODE", help="The code of an error, such as E102, or its title.")],
+) -> None:
+    """Explain an error of cue files: what it means, an example of it, and the same put right."""
+    from thermicon.icons.files.catalogue import explain
+
+    try:
+        typer.echo(explain(code))
+    except ValueError as unknown:
+        raise usage(str(unknown), "CODE") from None

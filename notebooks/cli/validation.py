@@ -1,0 +1,153 @@
+"""``thermicon validate``: every published target, predicted beside reported, as a table or as a report in a folder."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..files.outputs import OutputError, check_folder
+from ..text.messages import note, usage
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from thermicon.perception.validation.validate import ValidationReport
+
+DPI = 110
+HEADS = ("temp.", "flow", "R&dD")
+PAGE, TEXT, DATA, FIGURES = "validation.html", "validation.md", "validation.json", "figures"
+
+
+def validate_command(
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Write the whole report into this folder."),
+    ] = None,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people.")] = 200,
+    draws: Annotated[
+        int, typer.Option("--draws", metavar="N", help="Observers drawn for intervals and trade-offs; 0: none.")
+    ] = 64,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
+) -> None:
+    """Predict every published result that the model was not set on, and show the misses with their size.
+
+    Without -o a table is printed. With -o validation.html, validation.md with its figures, and validation.json are
+    written, from temperature and from heat flow side by side.
+    """
+    for option, value, least, most in (
+        ("--people", people, 2, 2000),
+        ("--draws", draws, 0, 1000),
+        ("--seed", seed, 0, 2**32 - 1),
+    ):
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+    if draws == 1:
+        raise usage("1 draw has no interval; ask for 2 or more, or 0 for none", "--draws")
+    if output is not None:
+        check_folder(output)
+    from thermicon.perception.validation.validate import validate
+
+    from ..text.progress import progress_bar
+
+    with progress_bar("validating") as progress:
+        report = validate(people=people, draws=draws, seed=seed, progress=progress)
+    if output is None:
+        show_report(report)
+    else:
+        write_report(report, output)
+        for name in (PAGE, TEXT, DATA):
+            note(f"wrote {output / name}")
+
+
+def show_report(report: ValidationReport) -> None:
+    """Print every number, published and predicted, and how many hold."""
+    from thermicon.perception.observer.variants import VARIANTS
+
+    from ..pages.validation_page import NAMES, number_text, unit_text
+    from ..text.tables import show, table
+
+    mark = {"holds": "✓", "misses": "✗", "shown": " "}
+    for section in report.sections:
+        made = table("", "published", *HEADS, numbers=HEADS)
+        for line in section.lines:
+            cells = [f"{number_text(line, one)} {mark[one.verdict.word]}" for one in line.judged]
+            unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
+            made.add_row(f"{line.row.label}{',' if unit else ''}{unit}", line.published.text, *cells)
+        show(f"{section.target.number} {section.target.title}", made, "")
+    held = [report.counts(k) for k in range(len(VARIANTS))]
+    counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
+    show(
+        f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
+        "temp.: receptors that go by temperature; flow: by heat flow; R&dD: impulses of Ring & de Dear. Predictions, "
+        "not measurements; no parameter was set on these results. -o DIR writes sources, intervals, sizes of the "
+        "misses, mechanisms suspected and figures.",
+    )
+
+
+def write_report(report: ValidationReport, folder: Path) -> None:
+    """Write the report; nothing is left behind unless all of it is there, and an older report is replaced as a whole.
+
+    Raises `OutputError` where the folder cannot be written.
+    """
+    from thermicon.perception.validation.validate_file import report_file
+
+    from ..pages.pages import as_html, as_markdown
+    from ..pages.validation_page import TITLE, page
+
+    blocks, pictures = page(report), draw_pictures(report)
+    texts = {
+        PAGE: as_html(blocks, TITLE, pictures),
+        TEXT: as_markdown(blocks, FIGURES),
+        DATA: json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n",
+    }
+    made = not folder.exists()
+    try:
+        folder.mkdir(exist_ok=True)
+        draft = Path(tempfile.mkdtemp(prefix=".validation-", suffix=".part", dir=folder))
+    except OSError as error:
+        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
+    try:
+        (draft / FIGURES).mkdir()
+        for name, held in pictures.items():
+            (draft / FIGURES / f"{name}.png").write_bytes(held)
+        for name, text in texts.items():
+            (draft / name).write_text(text, encoding="utf-8")
+        _replace(draft, folder)
+    except OSError as error:
+        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+        if made and not any(folder.iterdir()):
+            folder.rmdir()
+
+
+def draw_pictures(report: ValidationReport) -> dict[str, bytes]:
+    """Every figure of the report as PNG, by name."""
+    from thermicon.perception.validation.tradeoffs import FEWEST
+    from thermicon.perception.validation.validate_maps import FIGURES as DRAWN
+    from thermicon.perception.validation.validate_maps import TRADE_OFF
+
+    wanted = [one for those in DRAWN.values() for one in those]
+    wanted += [TRADE_OFF] if report.draws >= FEWEST else []
+    return {name: _png(draw(report)) for name, _, draw in wanted}
+
+
+def _png(figure: Figure) -> bytes:
+    held = io.BytesIO()
+    figure.savefig(held, format="png", dpi=DPI, metadata={"Software": None})
+    return held.getvalue()
+
+
+def _replace(draft: Path, folder: Path) -> None:
+    """Move a finished draft into place; the figures folder is this command's own and is replaced as a whole."""
+    (folder / FIGURES).mkdir(exist_ok=True)
+    for path in sorted((draft / FIGURES).iterdir()):
+        path.replace(folder / FIGURES / path.name)
+    for name in (DATA, TEXT, PAGE):
+        (draft / name).replace(folder / name)

@@ -1,0 +1,91 @@
+"""``thermicon export --verify DIR``: whether drives, sidecars, rig and program belong together."""
+
+from __future__ import annotations
+
+import stat
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from ..files.export_folder import STAGE
+from ..files.outputs import OutputError
+from ..text.messages import BAD_INPUT, note
+from ..text.number_text import number, span
+from ..text.tables import show, table
+
+if TYPE_CHECKING:
+    from thermicon.circuit.packing.readback import Figures
+    from thermicon.circuit.packing.verify import Pair, Verification
+
+LARGEST = 2**30
+"""Bytes; a larger file is no drive of any format's device, and is not read."""
+
+
+def verify_folder(folder: Path) -> None:
+    """Check the files of an export folder and show what belongs together; leaves with 1 where something does not."""
+    from thermicon.circuit.packing.verify import verify
+
+    files, others = _read(folder)
+    found = verify(files)
+    if found.pairs:
+        _show(found)
+    for name, what in others:
+        note(f"note: {_clean(name)} is a {what} and is not looked into")
+    for finding in found.findings:
+        if finding.kind == "told":
+            note(f"note: {_clean(str(finding))}")
+    wrong = [finding for finding in found.findings if finding.kind == "wrong"]
+    for finding in wrong:
+        note(f"wrong: {_clean(str(finding))}")
+    if wrong:
+        note(f"{folder}: {len(wrong)} {'thing does' if len(wrong) == 1 else 'things do'} not belong together")
+        raise typer.Exit(BAD_INPUT)
+    drives = (
+        "1 drive and its sidecar belong"
+        if len(found.pairs) == 1
+        else f"{len(found.pairs)} drives and their sidecars belong"
+    )
+    show(f"{folder}: {drives} together")
+
+
+def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
+    """Plain files of a folder by name, and what else is in it."""
+    if not folder.is_dir():
+        if folder.exists():
+            raise OutputError(f"cannot verify {folder}: it is a file; give the folder of an export")
+        left = folder.with_name(STAGE.format(folder.name))
+        more = f"; an export was ended half way, and the next one into {folder} puts it back" if left.exists() else ""
+        raise OutputError(f"cannot verify {folder}: there is no such folder{more}")
+    files, others = {}, []
+    for path in sorted(folder.iterdir()):
+        state = path.lstat()
+        if not stat.S_ISREG(state.st_mode):
+            others.append((path.name, "link" if path.is_symlink() else "folder" if path.is_dir() else "device"))
+        elif state.st_size > LARGEST:
+            others.append((path.name, f"file of {state.st_size / 2**30:.1f} GiB"))
+        else:
+            files[path.name] = path.read_bytes()
+    return files, others
+
+
+def _show(found: Verification) -> None:
+    rows = table("drive", "sidecar", "holds", "belongs", names=("drive", "sidecar"))
+    for pair in found.pairs:
+        bad = found.wrong(pair.drive, pair.sidecar)
+        rows.add_row(_clean(pair.drive), _clean(pair.sidecar), _held(pair), "NO" if bad else "yes")
+    show(rows)
+
+
+def _held(pair: Pair) -> str:
+    held: Figures | None = pair.figures
+    if held is None:
+        return "not read back, digest only"
+    count = f"{held.count} values, " if held.count is not None else ""
+    lasts = f"{number(held.duration_s, 2)} s, " if held.duration_s is not None else ""
+    return f"{count}{lasts}{span(held.least, held.greatest, pair.unit, 3)}"
+
+
+def _clean(text: str) -> str:
+    """Text of files without what could move a terminal's cursor."""
+    return "".join(each if each.isprintable() else "?" for each in text)

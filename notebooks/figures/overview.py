@@ -1,0 +1,113 @@
+"""Figures for people: one icon from drive to sensation, and one set as two heat maps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Trace
+    from thermicon.perception import Percept, Ranking
+
+COOL, WARM = "#2166ac", "#e08214"
+INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
+
+
+def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
+    """Everything about one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
+
+    Line styles differ as well as colours, so the figure survives a grey printer. Returns a matplotlib ``Figure``;
+    nothing is shown. ``rig_changes`` are named in the title.
+    """
+    from matplotlib.figure import Figure
+
+    panels = [_temperatures, _heat_flow, *([_current] if trace.has_current else [])]
+    figure = Figure(figsize=(8.0, 8.4 if percept is not None else 6.4), layout="constrained")
+    count = len(panels) + (percept is not None)
+    heights = [1.5, 1.2, *([0.9] if trace.has_current else []), *([] if percept is None else [1.1])]
+    axes = figure.subplots(count, 1, sharex=True, height_ratios=heights)
+    for panel, ax in zip(panels, axes, strict=False):
+        panel(trace, ax)
+    if percept is not None:
+        _sensation(percept, axes[-1])
+    for ax in axes:
+        ax.grid(alpha=0.25, linewidth=0.6)
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.margins(x=0.0)
+        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
+    axes[-1].set_xlabel("time (s)")
+    figure.align_ylabels(axes)
+    icon = trace.icon or "drive"
+    what_if = f" with {', '.join(rig_changes)}" if rig_changes else ""
+    figure.suptitle(f"{icon} on the {trace.rig_name} rig{what_if}", fontsize=11, wrap=True)
+    return figure
+
+
+def _temperatures(trace: Trace, ax: Axes) -> None:
+    from numpy import isfinite
+
+    t = trace.time_s
+    if isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
+        ax.plot(t, trace.target_C, color=TARGET, lw=5.0, solid_capstyle="butt", label="target")
+    ax.plot(t, trace.display_C, color=GREY, lw=1.2, ls=(0, (6, 2)), label="display")
+    ax.plot(t, trace.skin_C, color=INK, lw=1.6, label="skin")
+    ax.plot(t, trace.cold_receptor_C, color=COOL, lw=1.4, ls="-.", label="cold receptor")
+    ax.plot(t, trace.warm_receptor_C, color=WARM, lw=1.4, ls="--", label="warm receptor")
+    ax.set_ylabel("temperature (°C)")
+
+
+def _heat_flow(trace: Trace, ax: Axes) -> None:
+    t = trace.time_s
+    ax.axhline(0.0, color=GREY, lw=0.6)
+    ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="skin surface")
+    ax.plot(t, trace.heat_flow_cold_receptor_W_per_m2 / 1e3, color=COOL, lw=1.4, ls="-.", label="cold receptor")
+    ax.plot(t, trace.heat_flow_warm_receptor_W_per_m2 / 1e3, color=WARM, lw=1.4, ls="--", label="warm receptor")
+    ax.set_ylabel("heat flow\ninto skin (kW/m²)")
+
+
+def _current(trace: Trace, ax: Axes) -> None:
+    low, high = trace.driver_limits_A
+    ax.axhline(0.0, color=GREY, lw=0.6)
+    ax.plot(trace.time_s, trace.current_A, color=INK, lw=1.1, drawstyle="steps-post", label="current\n(+ cools)")
+    for k, limit in enumerate((low, high)):
+        ax.axhline(limit, color=LIMIT, lw=1.0, ls=(0, (2, 2)), label="driver's limits" if k == 0 else None)
+    ax.set_ylabel("current (A)")
+
+
+def _sensation(percept: Percept, ax: Axes) -> None:
+    from numpy import arange
+
+    t = arange(len(percept.psi_cold)) * percept.dt_s
+    ax.plot(t, percept.psi_cold, color=COOL, lw=1.5, ls="-.", label="cold")
+    ax.plot(t, percept.psi_warm, color=WARM, lw=1.5, ls="--", label="warm")
+    if percept.onset_s is not None:
+        said = f"reported as {percept.channel}\nat {percept.onset_s:.2f} s\n(response clock)"
+        ax.axvline(percept.onset_s, color=INK, lw=1.0, ls=":", label=said)
+    ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
+
+
+def set_figure(ranking: Ranking) -> Figure:
+    """Who is confused with whom: distances (d′) and the predicted confusions of one set, side by side."""
+    return _maps(ranking, ("distance", "confusion"))
+
+
+def single_map(ranking: Ranking, kind: Literal["distance", "confusion"]) -> Figure:
+    """One of the two heat maps of a set on its own."""
+    return _maps(ranking, (kind,))
+
+
+def _maps(ranking: Ranking, kinds: tuple[Literal["distance", "confusion"], ...]) -> Figure:
+    from matplotlib.figure import Figure
+
+    from thermicon.perception.plots import draw, draw_heat
+
+    longest = max(map(len, map(draw_heat.short, ranking.labels)))
+    side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
+    figure = Figure(figsize=(len(kinds) * (side + 0.6), side), layout="constrained")
+    for kind, ax in zip(kinds, figure.subplots(1, len(kinds), squeeze=False)[0], strict=True):
+        {"distance": draw.plot_distance, "confusion": draw.plot_confusion}[kind](ranking, ax=ax)
+    return figure

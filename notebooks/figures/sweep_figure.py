@@ -1,0 +1,121 @@
+"""The figure of a sweep: small multiples of what matters against the key, a line an icon."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .overview import GREY
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COOLS = ("#0b3c6f", "#2166ac", "#5aa5dc", "#9ccbee")
+WARMS = ("#7a3603", "#e08214", "#f3a95c", "#fbc894")
+MARKS = "osD^vPX*"
+PANELS = (
+    (("largest_miss_K",), "largest miss\n(K)"),
+    (("current_min_A", "current_max_A"), "current (A)\nleast dashed"),
+    (("energy_J",), "electrical energy\n(J)"),
+    (("display_min_C", "display_max_C"), "display (°C)\nleast dashed"),
+    (("skin_min_C", "skin_max_C"), "skin (°C)\nleast dashed"),
+    (("cold_receptor_peak_change_K",), "peak change,\ncold receptor (K)"),
+    (("warm_receptor_peak_change_K",), "peak change,\nwarm receptor (K)"),
+    (("cold_receptor_attack_K_per_s",), "attack,\ncold receptor (K/s)"),
+    (("cold_receptor_delay_s",), "delay behind the skin,\ncold receptor (s)"),
+)
+"""Columns of a sweep and the label of their panel."""
+
+
+def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
+    """Draw the table of a sweep; an icon that cools first is blue, one that warms orange, and each has its own mark.
+
+    A mark without filling stands where an icon was not reached, a grey band where nothing could be played.
+    """
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit.rig.keyunits import unit_of
+
+    figure = Figure(figsize=(9.6, 8.2), layout="constrained")
+    axes = list(figure.subplots(3, 3, sharex=True).flat)
+    styles = _styles(frame)
+    for ax, (columns, label) in zip(axes, PANELS, strict=True):
+        for name, (color, mark) in styles.items():
+            _line(ax, frame[frame["icon"] == name], key, columns, color, mark)
+        ax.set_ylabel(label, fontsize=9)
+        ax.tick_params(labelsize=8)
+        ax.grid(alpha=0.25, linewidth=0.6)
+        ax.spines[["top", "right"]].set_visible(False)
+        if log:
+            _log_axis(ax)
+    axes[0].set_ylim(bottom=0.0)
+    if frame["largest_miss_K"].abs().max() < 1e-3:
+        axes[0].set_ylim(0.0, 0.1)
+        axes[0].text(0.5, 0.5, "everywhere within 1 mK", ha="center", transform=axes[0].transAxes, fontsize=8)
+    shaded = _shade(axes, frame, key)
+    _legend(figure, styles, bool((frame["reached"] == False).any()), shaded)  # noqa: E712
+    figure.align_ylabels(axes)
+    unit = unit_of(key)
+    figure.supxlabel(f"{key} ({unit})" if unit else key, fontsize=10)
+    return figure
+
+
+def _log_axis(ax: Axes) -> None:
+    """Equal ratios on the abscissa, with plain numbers at 1, 2 and 5 of every decade."""
+    from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
+
+    ax.set_xscale("log")
+    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_minor_locator(NullLocator())
+
+
+def _line(ax: Axes, rows: pd.DataFrame, key: str, columns: tuple[str, ...], color: str, mark: str) -> None:
+    fill = [color if reached is not False else "white" for reached in rows["reached"].fillna(True).astype(bool)]
+    for place, column in enumerate(columns):
+        values = rows[column].abs() if column == "largest_miss_K" else rows[column]
+        ax.plot(rows[key], values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
+        ax.scatter(rows[key], values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3)
+
+
+def _styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:
+    """Colour and mark of every icon: blue where its larger change at the cold receptors is a cooling, else orange."""
+    styles, used = {}, {True: 0, False: 0}
+    for place, name in enumerate(frame["icon"].unique()):
+        change = frame.loc[frame["icon"] == name, "cold_receptor_peak_change_K"].median()
+        cools = bool(change < 0)
+        shades = COOLS if cools else WARMS
+        styles[str(name)] = (shades[(used[cools] + 1) % len(shades)], MARKS[place % len(MARKS)])
+        used[cools] += 1
+    return styles
+
+
+def _shade(axes: list[Axes], frame: pd.DataFrame, key: str) -> bool:
+    """Shade the stretches of the key in which no icon could be played; whether there are any."""
+    lost = frame.groupby(key)["duration_s"].count() == 0
+    values = lost.index.to_numpy(dtype=float)
+    for k in lost.to_numpy().nonzero()[0]:
+        low = values[k] if k == 0 else 0.5 * (values[k - 1] + values[k])
+        high = values[k] if k == len(values) - 1 else 0.5 * (values[k] + values[k + 1])
+        for ax in axes:
+            ax.axvspan(low, high, color=GREY, alpha=0.18, lw=0.0, zorder=0)
+    return bool(lost.any())
+
+
+def _legend(figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, shaded: bool) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Line2D | Patch] = [
+        Line2D([], [], color=color, marker=mark, markersize=5, lw=1.3, label=name)
+        for name, (color, mark) in styles.items()
+    ]
+    if missed:
+        hollow = Line2D([], [], color="none", marker="o", markersize=5, label="not reached")
+        hollow.set_markerfacecolor("white")
+        hollow.set_markeredgecolor(GREY)
+        handles.append(hollow)
+    if shaded:
+        handles.append(Patch(color=GREY, alpha=0.18, label="impossible"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=4, frameon=False, fontsize=9)

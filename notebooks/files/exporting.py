@@ -1,0 +1,177 @@
+"""An export from icons to files, for command line and workbench: realised, judged, compared, packed, written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .export_folder import HOW, publish
+from .outputs import OutputError
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Device, Prepared, Refusal, Rig
+    from thermicon.circuit.delivery.formats import Format
+    from thermicon.icons import Icon
+    from thermicon.perception import FeltChange
+
+FORMAT = "csv"
+
+AFTER_S = 10.0
+"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
+
+MOST_COMPARED = 60
+"""In a larger set d′ is looked at only among the icons that are exported, and among more than these not at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """Icons ready to be written or refused: what the device makes of each, and what is felt of the change."""
+
+    form: Format
+    device: Device
+    prepared: tuple[Prepared, ...]
+    felt: tuple[FeltChange, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def losses(self) -> dict[str, tuple[str, ...]]:
+        """What perception says is lost, by the names of icons."""
+        return {change.icon: change.losses() for change in self.felt}
+
+    @property
+    def against(self) -> list[tuple[str, Refusal]]:
+        """Every cause against writing, with the icon that it is about.
+
+        What perception loses is reported where nothing else is refused, since it follows from the rest.
+        """
+        from thermicon.circuit.packing.refusal import Refusal
+
+        found = []
+        for one in self.prepared:
+            name, causes = one.realised.icon.name, one.refusals
+            felt = self.losses.get(name, ())
+            if felt and not causes:
+                more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
+                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device that is finer or faster"),)
+            found += [(name, refusal) for refusal in causes]
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Written:
+    """What an export put into its folder, and which older files went because their sidecars describe new drives."""
+
+    folder: Path
+    names: tuple[str, ...]
+    gone: tuple[str, ...] = ()
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """Where the files are."""
+        return tuple(self.folder / name for name in self.names)
+
+
+def formats_for(device: Device) -> tuple[str, ...]:
+    """Names of the formats that a device takes.
+
+    >>> from thermicon.circuit import Device
+    >>> formats_for(Device.load("qst-tcs2"))
+    ('tcs2-serial', 'tcs2-protocol-ini', 'psychopy')
+    """
+    from thermicon.circuit.delivery.formats import format_names, load_format
+
+    return tuple(name for name in format_names() if device.driven_by in load_format(name).takes)
+
+
+def ready_of(icon: Icon | None, rig: Rig, device: str | None = None, form: str = FORMAT) -> Ready:
+    """Realise and judge one icon; raises ValueError without one, InputError where the device cannot play it."""
+    if icon is None:
+        raise ValueError("there is no icon to export: the text has errors")
+    return prepare_icons([icon], [], rig, device, form)
+
+
+def prepare_icons(
+    icons: Sequence[Icon],
+    rest: Sequence[Icon],
+    rig: Rig,
+    device: str | None = None,
+    form: str = FORMAT,
+    step: Callable[[int, int], None] | None = None,
+    tail_s: float = 0.0,
+    pause_s: float | None = None,
+) -> Ready:
+    """Realise and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
+
+    ``tail_s`` is followed after the last corner, ``pause_s`` lies between plays (None: the recovery time).
+    Raises InputError where the device cannot play an icon, or not in this format.
+    """
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.formats import load_format
+    from thermicon.circuit.packing.export import prepare_set
+
+    made = load_format(form)
+    played = Device.load(device or made.device)
+    prepared = prepare_set(icons, rig, played, made, tail_s=tail_s, pause_s=pause_s, step=step)
+    warned: list[str] = []
+    felt = compare_felt(prepared, rest, rig, played, tail_s, warned.append)
+    return Ready(made, played, prepared, felt, tuple(warned))
+
+
+def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
+    """The icons of a set that are not exported but compared with; none where the set is large."""
+    names = {icon.name for icon in chosen}
+    left = [icon for icon, _ in zip(whole, range(MOST_COMPARED + 1), strict=False) if icon.name not in names]
+    return left if len(left) + len(chosen) <= MOST_COMPARED else []
+
+
+def compare_felt(
+    ready: Sequence[Prepared],
+    rest: Sequence[Icon],
+    rig: Rig,
+    device: Device,
+    tail_s: float,
+    warn: Callable[[str], None],
+) -> tuple[FeltChange, ...]:
+    """What the device changes of the exported icons for a nominal person, beside the others of the set."""
+    from thermicon.circuit.delivery.realise import realise, traces_until
+    from thermicon.circuit.inputs import InputError
+    from thermicon.perception import judge_delivered
+
+    everyone = [one.realised for one in ready]
+    for icon in rest:
+        try:
+            everyone.append(realise(icon, rig, device, tail_s=tail_s))
+        except InputError as problem:
+            warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
+    end = max(realised.end_s for realised in everyone) + AFTER_S
+    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
+    if len(groups) > 1:
+        warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
+    felt: list[FeltChange] = []
+    for group in groups:
+        traces = [traces_until(realised, end) for realised in group]
+        names = [realised.icon.name for realised in group]
+        felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
+    return tuple(felt[: len(ready)])
+
+
+def write(ready: Ready, folder: Path, overwrite: bool = False, insist: bool = False, how: str = HOW) -> Written:
+    """Write drives and sidecars, all or none, and say which.
+
+    Raises OutputError where that is refused: what is unsafe always, what is lossy or not reached unless ``insist``,
+    files that are there unless ``overwrite``, which ``how`` tells a person how to ask for.
+    """
+    from thermicon.circuit import pack
+
+    stops = [f"{name}: {refusal}" for name, refusal in ready.against if not (insist and refusal.forcible)]
+    if stops:
+        raise OutputError("; ".join(stops))
+    files = pack(
+        ready.prepared,
+        ready.form,
+        felt={change.icon: change.to_dict() for change in ready.felt},
+        losses=ready.losses,
+    )
+    return Written(folder, tuple(files), publish(files, folder, overwrite, how))

@@ -1,0 +1,173 @@
+"""Files that commands write: looked at before long work starts, complete or absent when it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from types import FrameType
+
+from .drafts import draft_of
+
+STDOUT = Path("-")
+TRACE_SUFFIXES = (".csv", ".parquet")
+NETLIST_SUFFIXES = (".cir", ".net", ".sp")
+FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
+
+
+class OutputError(Exception):
+    """An output cannot be written where or as it was asked for; the text says what to change."""
+
+
+def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
+    """Fail now, with the reason, where writing ``path`` would fail later.
+
+    ``suffixes`` are the file types on offer (empty: any), ``what`` names the thing written. ``-`` is always fine.
+    """
+    if path == STDOUT:
+        return
+    if path.is_dir():
+        raise OutputError(f"cannot write {path}: it is a folder; give the name of a file")
+    if suffixes and path.suffix.lower() not in suffixes:
+        offer = " or ".join(suffixes)
+        found = f"not {path.suffix}" if path.suffix else "and this name has no ending"
+        raise OutputError(f"cannot write {path}: {what} is written as {offer}, {found}")
+    _check_folder(path, path.parent)
+    if path.exists() and not os.access(path, os.W_OK):
+        raise OutputError(f"cannot write {path}: the file is there already and is read-only")
+
+
+def check_folder(path: Path) -> None:
+    """Fail now where the folder ``path`` could neither be used nor be made."""
+    if path.is_dir():
+        _check_folder(path, path)
+    elif path.exists() and not path.is_dir():  # it may have been made in between
+        raise OutputError(f"cannot write into {path}: it is a file; give the name of a folder")
+    else:
+        _check_folder(path, path.parent)
+
+
+def _check_folder(path: Path, folder: Path) -> None:
+    if not folder.exists():
+        raise OutputError(f"cannot write {path}: the folder {folder} does not exist; make it first")
+    if not folder.is_dir():
+        raise OutputError(f"cannot write {path}: {folder} is a file, not a folder")
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise OutputError(f"cannot write {path}: the folder {folder} is not writable for you")
+
+
+@contextmanager
+def complete_or_absent(path: Path) -> Iterator[Path]:
+    """A temporary name beside ``path`` to write to; it takes the place of ``path`` only when the block succeeds.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with complete_or_absent(Path(folder) / "a.txt") as draft:
+    ...         _ = draft.write_text("done")
+    ...     [found.name for found in Path(folder).iterdir()]
+    ['a.txt']
+    """
+    goal = path.resolve()
+    if goal.exists() and not goal.is_file():
+        yield goal  # a pipe or a device: nothing to replace
+        return
+    try:
+        with draft_of(goal) as draft:
+            yield draft
+            draft.replace(goal)
+    except OSError as error:
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+
+
+def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = False) -> None:
+    """Write files into a folder, which is made if missing: all of them are there when this returns, or none.
+
+    Every file is written under a hidden name, flushed to the disk, and renamed when all are. What exists already is an
+    error before anything is written, unless ``replace``. A process that is killed may leave some of them; for a folder
+    that must never be mixed there is ``exportfolder.publish``.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_together({"a.json": b"{}", "a.csv": b"1"}, Path(folder))
+    ...     sorted(found.name for found in Path(folder).iterdir())
+    ['a.csv', 'a.json']
+    """
+    made = not folder.exists()
+    placed: list[Path] = []
+    try:
+        with stopped_cleanly(), ExitStack() as held:
+            folder.mkdir(exist_ok=True)
+            there = [name for name in files if (folder / name).exists()]
+            if there and not replace:
+                more = f" and {len(there) - 1} more" if len(there) > 1 else ""
+                raise OutputError(f"{folder / there[0]}{more} exists already and is kept; --force replaces it")
+            drafts = {name: held.enter_context(draft_of(folder / name)) for name in files}
+            for name, draft in drafts.items():
+                with draft.open("wb") as file:
+                    file.write(files[name])
+                    file.flush()
+                    os.fsync(file.fileno())
+            for name, draft in drafts.items():
+                if name not in there:
+                    placed.append(folder / name)
+                draft.replace(folder / name)
+            placed.clear()
+    except OSError as error:
+        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
+    finally:
+        for left in placed:
+            left.unlink(missing_ok=True)
+        if made:
+            with contextlib.suppress(OSError):
+                folder.rmdir()  # only where it is empty
+
+
+@contextmanager
+def stopped_cleanly() -> Iterator[None]:
+    """Let a polite request to end (SIGTERM) act like Ctrl-C, so that what was begun is tidied up."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+@contextmanager
+def interrupts_wait() -> Iterator[Callable[[], None]]:
+    """Have Ctrl-C and SIGTERM wait, so that tidying up is never cut short.
+
+    They act like Ctrl-C when the function that the block gets is called, and at its end.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: None
+        return
+    came: list[int] = []
+
+    def wait(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+
+    def check() -> None:
+        if came:
+            raise KeyboardInterrupt
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    held = {number: action for number, action in before.items() if action not in (None, signal.SIG_IGN)}
+    for number in held:
+        signal.signal(number, wait)
+    try:
+        yield check
+    finally:
+        for number, action in held.items():
+            signal.signal(number, action)
+    check()

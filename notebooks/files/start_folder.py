@@ -1,0 +1,40 @@
+"""Where a page may write: below the folder that it was started with, whatever a person (or a page) types."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from .outputs import OutputError
+
+VARIABLE = "THERMICON_PAGE_FOLDER"
+"""Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
+
+
+def below_start(folder: Path) -> Path:
+    """Return a folder to write into, with links followed; OutputError where it is not below that of the page.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as start:
+    ...     os.environ[VARIABLE] = start
+    ...     try:
+    ...         below_start(Path(start) / ".." / "elsewhere")
+    ...     except OutputError as refused:
+    ...         str(refused).partition(";")[0].endswith("is outside the folder of this page")
+    ...     finally:
+    ...         del os.environ[VARIABLE]
+    True
+    """
+    start = os.environ.get(VARIABLE)
+    if start is None:
+        return folder
+    try:
+        root = Path(start).resolve(strict=True)
+        goal = (root / folder).resolve()
+    except (OSError, RuntimeError, ValueError):
+        raise OutputError(f"{folder} is no folder that can be used; give the name of one below {start}") from None
+    if not goal.is_relative_to(root):
+        raise OutputError(
+            f"{folder} is outside the folder of this page; it writes only below {root}, into a folder such as drives"
+        )
+    return goal

@@ -1,0 +1,124 @@
+"""Options that ask for the best few icons of a set, and how the choice is told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .messages import usage
+from .number_text import number, percent
+
+if TYPE_CHECKING:
+    from thermicon.perception.selection.request import Choosing
+
+OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
+MOST_EXCLUDED = 5
+ONE_BY_ONE = 50
+
+ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K of the icons.")]
+ObjectiveName = Annotated[
+    str | None,
+    typer.Option(
+        "--objective",
+        metavar="NAME",
+        help="What to choose by: worst (pair), correct, bits, bits-per-s.  [default: worst]",
+    ),
+]
+Must = Annotated[
+    list[str] | None, typer.Option("--must", metavar="ICON", help="An icon to have among the chosen; may be repeated.")
+]
+MostTime = Annotated[
+    float | None, typer.Option("--most-time", metavar="S", help="The chosen last at most so many seconds together.")
+]
+MostEnergy = Annotated[
+    float | None, typer.Option("--most-energy", metavar="J", help="They take at most so many joules together.")
+]
+
+
+def chosen_as(
+    count: int | None, objective: str | None, must: Sequence[str] | None, most_s: float | None, most_J: float | None
+) -> Choosing | None:
+    """Check the options of a choice; None where none is asked for."""
+    others = (("--objective", objective), ("--must", must), ("--most-time", most_s), ("--most-energy", most_J))
+    if count is None:
+        for option, value in others:
+            if value:
+                raise usage("belongs to --choose K, which asks for the best K icons", option)
+        return None
+    if count < 2:
+        raise usage(f"{count} cannot be told apart; choose 2 icons or more", "--choose")
+    if objective is not None and objective not in OBJECTIVES:
+        raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
+    for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
+        if most is not None and not (math.isfinite(most) and most > 0):
+            raise usage(f"{most:g} {unit} is not above 0", option)
+    from thermicon.perception.selection.request import Choosing
+
+    return Choosing(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
+
+
+def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
+    """Say what was chosen, how sure that is, what it is worth on its own, and what could not be chosen.
+
+    >>> scored("worst", 2.449), scored("correct", 0.914), scored("bits-per-s", 0.3)
+    ('d′ 2.4 in the worst pair', '91 % correct', '0.30 bits/s')
+    """
+    objective, count = chosen["objective"], len(chosen["icons"])
+    yield f"Best {count} of {chosen['pool']}, by {NAMES[objective]}: {', '.join(chosen['icons'])}"
+    told = f"  - at the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"
+    if objective == "worst":
+        told += f" ({' and '.join(chosen['worst_pair'])})"
+    yield told
+    if chosen["optimal"]:
+        yield f"  - no other choice is better: {_searched(chosen)}"
+    else:
+        yield (
+            f"  - the best found; no choice exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
+            f"({chosen['looked_at']} choices looked at)"
+        )
+    own = chosen["at_own_range"]
+    yield (
+        f"  - at their own range: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
+        f"{scored('correct', own['percent_correct'])}, {scored('bits', own['information_bits'])}, "
+        f"{scored('bits-per-s', own['bits_per_s'])}"
+    )
+    if own["percent_correct_parameter_interval"]:
+        low, high = own["percent_correct_parameter_interval"]
+        least, most = own["information_bits_parameter_interval"]
+        yield (
+            f"  - over the range of the model's parameters {percent(low)} to {percent(high)} correct, "
+            f"{least:.2f} to {most:.2f} bits"
+        )
+    energy = "" if chosen["total_J"] is None else f" and take {number(chosen['total_J'])} J"
+    yield f"  - together they last {number(chosen['total_s'])} s{energy}"
+    if chosen["best_for_people"] is not None:
+        asked = min(chosen["people"], ONE_BY_ONE)
+        yield (
+            f"  - it is also the best choice for {percent(chosen['best_for_people'])} of {asked} people "
+            f"taken one by one; in the middle, one made for the person alone would gain d′ {chosen['median_loss']:.2f}"
+        )
+    for one in chosen["excluded"][:MOST_EXCLUDED]:
+        yield f"  - left out: {one['icon']} {one['reason']}"
+    if len(chosen["excluded"]) > MOST_EXCLUDED:
+        yield f"  - and {len(chosen['excluded']) - MOST_EXCLUDED} more left out, all of them in --json"
+
+
+NAMES = {"worst": "the worst pair", "correct": "per cent correct", "bits": "bits", "bits-per-s": "bits a second"}
+
+
+def scored(objective: str, value: float) -> str:
+    """Write the value of an objective with what it is."""
+    if objective == "worst":
+        return f"d′ {number(value)} in the worst pair"
+    if objective == "correct":
+        return f"{percent(value)} correct"
+    return f"{value:.2f} {'bits' if objective == 'bits' else 'bits/s'}"
+
+
+def _searched(chosen: dict[str, Any]) -> str:
+    if chosen["objective"] == "worst":
+        return f"proven by branch and bound ({chosen['looked_at']} branches)"
+    return f"all {chosen['looked_at']} were looked at, with {chosen['people']} people"

@@ -1,0 +1,151 @@
+"""What the gate says of icons beyond their colour: how they may be repeated, and what the hardware must provide.
+
+What holds for all icons of an export is said once, and of what differs the strictest, with the icon that it is of.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from .number_text import number
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Prepared
+    from thermicon.circuit.safety.demands import Demands
+    from thermicon.circuit.safety.gate import Gate
+    from thermicon.circuit.safety.repeated import Repeated
+
+MOST_NAMES = 6
+QUICKEST_S = 0.02
+"""A cut-off that must react sooner than the gate looks for is wanted at once."""
+
+_CORNER = re.compile(r"(?P<name>.+) (?P<sign>[+−])[\d.]+ (%|K)")
+_AGAIN = re.compile(r"played again and again with \S+ s of pause")
+
+Named = tuple[str, "Gate"]
+
+
+def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
+    """Repetition and hardware of the icons that may be written: what it is about, and what is to be known.
+
+    Of an icon that is not safe nothing is said here, since it is refused with its reason and cure.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.notebooks.files.exporting import ready_of
+    >>> ready = ready_of(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
+    >>> [about for about, _ in gate_words(ready.prepared)]
+    ['played again and again', 'the hardware must provide']
+    """
+    from thermicon.circuit.safety.gate import Gate
+
+    gates = [
+        (one.realised.icon.name, one.verdict) for one in ready if isinstance(one.verdict, Gate) and one.verdict.safe
+    ]
+    if not gates:
+        return []
+    again = "played again and again" + (", in any order" if len(gates) > 1 else "")
+    return [(again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
+
+
+def repeated_text(gates: Sequence[Named]) -> str:
+    """Colour, plays, pause and recovery of icons that were judged as a set, with one pause."""
+    from thermicon.circuit.safety.repeated import RECOVERED_K
+
+    colours: dict[str, list[str]] = {}
+    for name, gate in gates:
+        colours.setdefault(gate.repeated.colour, []).append(name)
+    said = [f"{colour}{_of(_names(names), len(colours) > 1)}" for colour, names in sorted(colours.items())]
+    first, counts = gates[0][1].repeated, sorted({gate.repeated.plays for _, gate in gates})
+    plays = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
+    shortest = "no pause is safe" if first.shortest_pause_s is None else f"{number(first.shortest_pause_s, 1)} s"
+    ordered = sorted(gates, key=lambda one: _recovery(one[1].repeated))
+    back = [_recovery_text(gate.repeated) for _, gate in (ordered[0], ordered[-1])]
+    after = back[0]
+    if back[0] != back[1]:
+        after = f"{back[0]} ({ordered[0][0]}) to {back[1]} ({ordered[-1][0]})"
+    return (
+        f"{' and '.join(said)}, {plays} plays in {first.session_s / 60:g} min with "
+        f"{number(first.pause_s, 1)} s between them; "
+        f"shortest safe pause: {shortest}; back within {RECOVERED_K:g} K of rest after {after}"
+    )
+
+
+def demands_text(gates: Sequence[Named]) -> str:
+    """What hardware must do for all icons: of each demand the strictest."""
+    every = [(name, gate.demands) for name, gate in gates]
+    cut = [one.cut_off_display_C for _, one in every]
+    low, high = max(one.low for one in cut), min(one.high for one in cut)
+    within = min(one.react_within_s for one in cut)
+    hangs = [name for name, one in every if not one.watchdog_s]
+    parts = [f"watchdog {_strictest(every, lambda one: one.watchdog_s)}"]
+    if hangs:
+        whose = _of(_names(hangs), len(hangs) < len(every))
+        parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
+    quick = f"within {within:g} s" if within >= QUICKEST_S else "at once"
+    parts.append(f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display {quick}")
+    if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
+        parts.append("polarity check before the first play")
+    unrested = [name for name, one in every if one.rest_before_first_play_s is None]
+    rested = [(name, one) for name, one in every if one.rest_before_first_play_s]
+    if unrested:
+        parts.append("warming up before the first play" + _of(_names(unrested), len(unrested) < len(every)))
+    elif rested:
+        parts.append(f"rest held for {_longest(every)} before the first play")
+    limited = [(name, one) for name, one in every if one.zero_current_at_most_s is not None]
+    if limited:
+        parts.append(f"zero current in contact for {_strictest(limited, _zero_s)} at most")
+    return ", ".join(parts)
+
+
+def short_scenario(scenario: str) -> str:
+    """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows.
+
+    >>> short_scenario("contact −30 %, gain +10 %, played again and again with 9 s of pause (warm bound)")
+    'low contact; high gain; repeated (warm bound)'
+    >>> short_scenario("the rig as given, then zero current")
+    'the rig as given, then zero current'
+    """
+    sides: dict[str, list[str]] = {}
+    rest = []
+    for part in _AGAIN.sub("repeated", scenario).split(", "):
+        found = _CORNER.fullmatch(part)
+        if found is None:
+            rest.append(part)
+        else:
+            sides.setdefault("high" if found["sign"] == "+" else "low", []).append(found["name"])
+    corner = [f"{side} {', '.join(names)}" for side, names in sides.items()]
+    return "; ".join([*corner, *([", ".join(rest)] if rest else [])])
+
+
+def _recovery(repeated: Repeated) -> float:
+    return float("inf") if repeated.recovery_s is None else repeated.recovery_s
+
+
+def _recovery_text(repeated: Repeated) -> str:
+    return "more than 10 min" if repeated.recovery_s is None else f"{number(repeated.recovery_s, 1)} s"
+
+
+def _strictest(every: Sequence[tuple[str, Demands]], seconds: Callable[[Demands], float]) -> str:
+    name, least = min(((name, seconds(one)) for name, one in every), key=lambda each: each[1])
+    return f"{least:g} s" + _of(name, len({seconds(one) for _, one in every}) > 1)
+
+
+def _longest(every: Sequence[tuple[str, Demands]]) -> str:
+    name, most = max(((name, one.rest_before_first_play_s or 0.0) for name, one in every), key=lambda each: each[1])
+    return f"{most:g} s" + _of(name, len({one.rest_before_first_play_s for _, one in every}) > 1)
+
+
+def _zero_s(one: Demands) -> float:
+    return one.zero_current_at_most_s or 0.0
+
+
+def _of(name: str, needed: bool) -> str:
+    return f" ({name})" if needed else ""
+
+
+def _names(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more

@@ -1,0 +1,88 @@
+"""Messages to the person at the terminal, exit codes, and the rig that the options of a command name."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NoReturn, TextIO
+
+import typer
+
+from thermicon.icons.model.cleaning import clean, clean_line
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+BAD_INPUT = 1
+REFUSED = 3
+INTERRUPTED = 130
+DEFAULT_RIG = "thenar"
+
+
+def is_ours(error: BaseException) -> bool:
+    """Whether the error is one that this project raises on purpose, with a text for people."""
+    return type(error).__module__.partition(".")[0] == "thermicon"
+
+
+def interrupted() -> typer.Exit:
+    """Say on stderr that Ctrl-C ended the program, and build the exit with its code."""
+    with contextlib.suppress(OSError):
+        typer.echo("interrupted", err=True)
+    return typer.Exit(INTERRUPTED)
+
+
+def fail(message: str) -> NoReturn:
+    """Say what is wrong on stderr and leave with the code for bad input."""
+    typer.echo(clean(message), err=True)
+    raise typer.Exit(BAD_INPUT)
+
+
+def note(message: str) -> None:
+    """Tell the person something beside the result; stderr, so that results can be piped. Nobody need be there."""
+    try:
+        typer.echo(clean(message), err=True)
+    except BrokenPipeError:
+        into_nowhere(sys.stderr)
+
+
+def into_nowhere(stream: TextIO) -> None:
+    """Let what is still to be written to a stream go nowhere, since its reader went away."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, stream.fileno())
+    os.close(nowhere)
+
+
+class Missing(typer.BadParameter):
+    """An argument or option that is needed here, though another form of the command does without it."""
+
+    def format_message(self) -> str:
+        """The words of the command line's own error."""
+        return f"Missing {self.message}."
+
+
+def usage(message: str, option: str) -> typer.BadParameter:
+    """Build the error for a command line that makes no sense; raising it exits with 2."""
+    return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
+
+
+def check_changes(changes: Sequence[str]) -> None:
+    """Fail with a usage error unless every ``--set`` has the form KEY=VALUE."""
+    for change in changes:
+        key, equals, value = change.partition("=")
+        if not (key.strip() and equals and value.strip()):
+            raise usage(f"{change!r} is not of the form KEY=VALUE, for example contact.area_cm2=4", "--set")
+
+
+def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
+    """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr."""
+    check_changes(changes)
+    from thermicon.circuit import Rig
+
+    rig = Rig.load(name or DEFAULT_RIG)
+    if changes:
+        rig = rig.with_set(list(changes))
+    for warning in rig.warnings:
+        note(f"warning: {warning}")
+    return rig

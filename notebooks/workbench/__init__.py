@@ -1,0 +1,1 @@
+"""The workbench: models, views and widgets."""

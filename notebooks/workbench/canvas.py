@@ -1,0 +1,116 @@
+"""The canvas of the workbench: one anywidget that draws frames in the browser and hands back what people do there.
+
+The module in ``canvas_parts/`` is plain JavaScript without a build step: its parts are joined here in order, so they
+import nothing. A frame goes out as one message with float32 buffers, never as a trait, so a saved notebook holds the
+module and no data.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from importlib.resources import files
+from typing import Any
+from uuid import uuid4
+
+import anywidget
+import numpy
+import traitlets
+
+Message = dict[str, Any]
+
+PARTS = (
+    "base",
+    "theme",
+    "flow",
+    "frame",
+    "scale",
+    "curve",
+    "panel",
+    "handles",
+    "timeline",
+    "highlight",
+    "troubles",
+    "editor",
+    "kept",
+    "design",
+    "heat",
+    "main",
+)
+STYLES = ("theme", "layout", "editor", "timeline", "heat")
+
+
+def module_text() -> str:
+    """Return the ES module: the words of the cue language, then all parts."""
+    folder = files("thermicon.notebooks") / "canvas_parts"
+    parts = [_shortened((folder / f"{part}.js").read_text(encoding="utf-8")) for part in PARTS]
+    return "\n".join((f"const CUE_WORDS = {json.dumps(_words(), ensure_ascii=False)};", *parts))
+
+
+def style_text() -> str:
+    """Return the style sheet."""
+    folder = files("thermicon.notebooks") / "canvas_parts"
+    return "\n".join((folder / f"{style}.css").read_text(encoding="utf-8") for style in STYLES)
+
+
+def _shortened(script: str) -> str:
+    """Leave out indentation and lines of comment: a notebook that stores its widgets stores the module with each."""
+    lines = (line.strip() for line in script.splitlines())
+    return "\n".join(line for line in lines if line and not line.startswith(("//", "/** ", "* ", "*/")))
+
+
+def _words() -> dict[str, list[str]]:
+    """Words to colour, from the lexer, so that the page never knows another language than the parser."""
+    from thermicon.icons.language.highlight import KEYWORDS, SPELLINGS
+    from thermicon.icons.model.words import CONTROLS, STARTS
+
+    return {"keywords": sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"}), "units": list(SPELLINGS)}
+
+
+class Canvas(anywidget.AnyWidget):
+    """Draws frames of one view: ``design`` (text and time line), ``traces`` (time line) or ``heat`` (two matrices).
+
+    What a frame consists of is said in ``frames``. Nothing is drawn before the first one.
+
+    >>> canvas = Canvas(view="heat")
+    >>> canvas.view
+    'heat'
+    """
+
+    _esm = module_text()
+    _css = style_text()
+    view = traitlets.Enum(("design", "traces", "heat"), default_value="design").tag(sync=True)
+    key = traitlets.Unicode(help="tells the views of this widget from those of another").tag(sync=True)
+
+    def __init__(self, view: str = "design") -> None:
+        super().__init__(view=view, key=uuid4().hex)
+        self._newest: tuple[Message, list[bytes]] | None = None
+        self._text: str | None = None
+        self._handlers: list[Callable[[Message], None]] = []
+        self.on_msg(self._receive)
+
+    def frame(self, meta: Mapping[str, Any], arrays: Sequence[Any] = ()) -> None:
+        """Show a frame: its description, and numbers as sequences that become float32 buffers, in order.
+
+        The newest is kept for pages that are opened or reloaded later.
+        """
+        whole = {"type": "frame", "view": self.view, **meta}
+        buffers = [numpy.ascontiguousarray(array, dtype="<f4").tobytes() for array in arrays]
+        if whole.get("text") is not None:
+            self._text = whole["text"]
+        self._newest = (whole, buffers)
+        self.send(whole, buffers=buffers)
+
+    def on_message(self, handler: Callable[[Message], None]) -> None:
+        """Call `handler` with each message from the page but those greetings that the newest frame answers."""
+        self._handlers.append(handler)
+
+    def _receive(self, widget: Canvas, content: Message, buffers: Sequence[Any]) -> None:
+        if content.get("type") == "text":
+            self._text = content.get("text")
+        if content.get("type") == "hello" and self._newest is not None:
+            meta, arrays = self._newest
+            self.send({**meta, "text": self._text} if "text" in meta else meta, buffers=arrays)
+            return
+        for handler in tuple(self._handlers):
+            handler(content)

@@ -1,0 +1,209 @@
+"""The design view without its widgets: every message of the page becomes one frame, whatever goes wrong in between."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from .cue_check import mended
+from .dragging import drag
+from .frames import Frame, frame_of
+from .history import Edited, History
+from .knobs import apply, knobs_of
+from .scene import Scene, scene, with_notes
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+Message = Mapping[str, Any]
+MOST_LETTERS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class _Drag:
+    """A drag that is going on: which corner, and the text before it, from which every step of it starts."""
+
+    handle: int
+    text: str
+
+
+class Designing:
+    """Text, icon, knobs and history of one workbench, and the scene that they make.
+
+    ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
+
+    >>> from thermicon.circuit import Rig
+    >>> made = Designing("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
+    >>> made.receive({"type": "text", "seq": 1, "text": "cue 1; icon dip { cool by 6 at 3 K/s }"}).meta["stale"]
+    True
+    >>> made.receive({"type": "undo", "seq": 2}).meta["text"]
+    'cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }'
+    """
+
+    def __init__(self, text: str, rig: Rig, icon: str | None = None) -> None:
+        self.nominal = rig
+        self.values: dict[str, float | str] = {}
+        self._applied = apply(rig, {})
+        self._drag: _Drag | None = None
+        self.scene: Scene = scene(text, rig, icon, self._applied.observer)
+        self.history = History(Edited(text, self.scene.icon))
+        self.last_ms = 0.0
+        self._tell: list[Callable[[], None]] = []
+
+    @property
+    def text(self) -> str:
+        """The text as it stands in the editor."""
+        return self.history.now.text
+
+    @property
+    def rig(self) -> Rig:
+        """The rig with the knobs set."""
+        return self._applied.rig
+
+    def on_change(self, tell: Callable[[], None]) -> None:
+        """Call a function after each message that changed text or rig."""
+        self._tell.append(tell)
+
+    def receive(self, message: Message) -> Frame:
+        """Answer a message of the page with the newest frame."""
+        seq = message.get("seq", 0)
+        return self._answer(lambda: self._act(message), seq if isinstance(seq, int) else 0)
+
+    def turn(self, values: Mapping[str, float | str]) -> Frame:
+        """Set knobs, by key; the others stay where they are."""
+
+        def act() -> None:
+            self._set({**self.values, **values})
+
+        return self._answer(act)
+
+    def reset(self) -> Frame:
+        """Bring all knobs back to the rig's own values."""
+        return self._answer(lambda: self._set({}))
+
+    def show_text(self, text: str, icon: str | None = None) -> Frame:
+        """Put another text in the editor, as one step that can be undone."""
+        return self._answer(lambda: self._replace(text, icon))
+
+    def frame(self) -> Frame:
+        """The frame as it is now, with the text."""
+        return self._answer(lambda: self.text)
+
+    def say(self, note: str) -> Frame:
+        """Put a sentence before the notes until the next change."""
+
+        def act() -> None:
+            self.scene = with_notes(self.scene, note)
+
+        return self._answer(act)
+
+    def _answer(self, act: Callable[[], str | None], seq: int = 0) -> Frame:
+        began, before = time.perf_counter(), (self.text, self.rig)
+        shown: str | None = None
+        try:
+            shown = act()
+        except Exception as wrong:  # a page that goes silent is worse than any sentence
+            self.scene = with_notes(self.scene, f"this could not be done: {wrong or type(wrong).__name__}")
+            shown = self.text
+        try:
+            made = frame_of(self.scene)
+        except Exception as wrong:
+            self.scene = replace(with_notes(self.scene, f"this could not be drawn: {wrong}"), drawing=None, stale=True)
+            made = frame_of(self.scene)
+        if (self.text, self.rig) != before:
+            for tell in self._tell:
+                tell()
+        self.last_ms = 1e3 * (time.perf_counter() - began)
+        return made.numbered(seq, self.last_ms, shown, self.history.can_undo, self.history.can_redo)
+
+    def _act(self, message: Message) -> str | None:
+        """Do what a message asks; returns the text where the editor is to take it."""
+        kind = message.get("type")
+        if kind != "drag":
+            self._drag = None
+        match kind:
+            case "hello":
+                return self.text
+            case "text":
+                self._typed(message.get("text"))
+                return None
+            case "icon":
+                self._choose(str(message.get("name")))
+                return None
+            case "drag":
+                return self._dragged(message)
+            case "undo" | "redo":
+                return self._step(self.history.undo() if kind == "undo" else self.history.redo(), kind)
+            case "apply":
+                return self._mend(message.get("line"))
+        raise ValueError(f"the page sent a message that is not known: {kind}")
+
+    def _typed(self, text: object) -> None:
+        if not isinstance(text, str) or len(text) > MOST_LETTERS:
+            raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it stays as it was")
+        self.history = self.history.typed(text, time.monotonic())
+        self._draw()
+
+    def _choose(self, name: str) -> None:
+        self.history = self.history.chosen(name)
+        self._draw(name)
+
+    def _dragged(self, message: Message) -> str:
+        handle, end = int(message["handle"]), bool(message.get("end"))
+        if self._drag is None or self._drag.handle != handle:
+            self._drag = _Drag(handle, self.text)
+        # Every step starts from the text before the drag, so that rounding does not add up on the way.
+        drawing, base = self.scene.drawing, self._drag.text
+        start = None if drawing is None else drawing.start
+        time_s, level = _float(message.get("t")), _float(message.get("y"))
+        moved = drag(base, self.scene.icon or "", handle, time_s, level, start)
+        if moved.refused is None:
+            self.history = self.history.dragged(moved.text, end)
+        elif end:
+            self.history = self.history.dragged(self.text, True)
+        if end:
+            self._drag = None
+        self._draw(notes=() if moved.refused is None else (f"not moved: {moved.refused}",))
+        return self.text
+
+    def _step(self, history: History, kind: str) -> str:
+        if history is self.history:
+            self.scene = with_notes(self.scene, f"there is nothing to {kind}")
+            return self.text
+        self.history = history
+        self._draw(history.now.icon)
+        return self.text
+
+    def _mend(self, line: object) -> str:
+        new = mended(self.text, line) if isinstance(line, int) else None
+        if new is None:
+            self.scene = with_notes(self.scene, f"line {line} has no suggestion that helps")
+            return self.text
+        self.history = self.history.changed(new)
+        self._draw()
+        return new
+
+    def _replace(self, text: str, icon: str | None) -> str:
+        self.history = self.history.changed(text)
+        self._draw(icon)
+        return text
+
+    def _set(self, values: Mapping[str, float | str]) -> None:
+        own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
+        self.values = {key: value for key, value in values.items() if own.get(key) != value}
+        self._applied = apply(self.nominal, self.values)
+        self._draw()
+
+    def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
+        rig, observer, told = self._applied
+        self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
+        if self.scene.icon != self.history.now.icon:
+            # The icon that is shown is no step of its own; typing over its name goes on as one step.
+            self.history = replace(self.history, now=replace(self.history.now, icon=self.scene.icon))
+
+
+def _float(value: object) -> float:
+    return float(value) if isinstance(value, int | float) else math.nan

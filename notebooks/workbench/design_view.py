@@ -1,0 +1,127 @@
+"""The design view as widgets: the canvas with text and time line, and above it the knobs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import ipywidgets as widgets
+
+from .canvas import Canvas, module_text
+from .knobs import Knob, knobs_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from .design_model import Designing
+
+SHARED = "globalThis.thermiconCanvas"
+
+
+class MainCanvas(Canvas):
+    """The canvas of the design view, which lends its module to the other canvases of the page."""
+
+    _esm = f"{module_text()}\n{SHARED} = {{ render }};"
+
+
+class SideCanvas(Canvas):
+    """A canvas that borrows the module of the page's main canvas, so that a notebook stores the module once."""
+
+    _esm = (
+        "async function render(given) {\n"
+        f"while (!{SHARED}) await new Promise((go) => setTimeout(go, 30));\n"
+        f"return {SHARED}.render(given);\n"
+        "}\nexport default { render };"
+    )
+    _css = ""
+
+
+class DesignView:
+    """Canvas and knobs of one ``Designing``; ``box`` is what is shown."""
+
+    def __init__(self, design: Designing) -> None:
+        self.design = design
+        self.canvas = MainCanvas("design")
+        self.canvas.on_message(self._receive)
+        self.sliders: dict[str, Any] = {}
+        self._labels: dict[str, widgets.HTML] = {}
+        self._quiet = False
+        held = [self._knob(knob) for knob in knobs_of(design.nominal)]
+        self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
+        self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
+        self.reset.on_click(lambda _: self._reset())
+        self.reset.add_class("thermicon-reset")
+        knobs = widgets.Box([*held, self.reset]).add_class("thermicon-knobs")
+        self.box = widgets.VBox([knobs, self.canvas]).add_class("thermicon-design")
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Send the frame as it is, with the text: after Python changed something."""
+        self._send(self.design.frame())
+
+    def show_text(self, text: str, icon: str | None = None) -> None:
+        """Put another text into the editor, as one step that can be undone."""
+        self._send(self.design.show_text(text, icon))
+
+    def _receive(self, message: Mapping[str, Any]) -> None:
+        self._send(self.design.receive(message))
+
+    def _send(self, frame: Any) -> None:
+        self.canvas.frame(frame.meta, frame.buffers)
+
+    def _knob(self, knob: Knob) -> widgets.VBox:
+        label = widgets.HTML()
+        self._labels[knob.key] = label
+        self.sliders[knob.key] = made = _control(knob)
+        made.tooltip = f"{knob.what} ({knob.source})"
+        made.observe(lambda change: self._turned(knob.key, change["new"]), "value")
+        self._tell(knob)
+        return widgets.VBox([label, made]).add_class("thermicon-knob")
+
+    def _turned(self, key: str, value: float | str) -> None:
+        if self._quiet:
+            return
+        self._send(self.design.turn({key: value}))
+        self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
+
+    def _reset(self) -> None:
+        self._quiet = True
+        try:
+            for knob in knobs_of(self.design.nominal):
+                self.sliders[knob.key].value = knob.value
+        finally:
+            self._quiet = False
+        self._send(self.design.reset())
+        for knob in knobs_of(self.design.nominal):
+            self._tell(knob)
+
+    def _tell(self, knob: Knob) -> None:
+        """The knob's name, and what the rig has where that is another value."""
+        changed = knob.key in self.design.values
+        unit = f" ({knob.unit})" if knob.unit else ""
+        said = f"{knob.label}{unit}" + (f" · rig {knob.shown(knob.value)}" if changed else "")
+        text = f'<span class="{"changed" if changed else ""}" title="{_quoted(knob.what)}">{said}</span>'
+        if self._labels[knob.key].value != text:
+            self._labels[knob.key].value = text
+
+
+def _control(knob: Knob) -> Any:
+    """A slider for a range, a list for a choice."""
+    layout = widgets.Layout(width="auto")
+    if knob.options:
+        return widgets.Dropdown(options=knob.options, value=knob.value, layout=layout)
+    digits = len(f"{knob.step:g}".partition(".")[2])
+    return widgets.FloatSlider(
+        value=float(knob.value),
+        min=knob.low,
+        max=knob.high,
+        step=knob.step,
+        readout_format=f".{digits}f",
+        continuous_update=True,
+        layout=layout,
+    )
+
+
+def _quoted(text: str) -> str:
+    from html import escape
+
+    return escape(text, quote=True)

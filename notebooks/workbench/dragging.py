@@ -1,0 +1,277 @@
+"""A corner dragged: the one or two numbers of its statement that put it there; the rest of the text is untouched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any
+
+from thermicon.icons import CueErrors, Icon, Wave
+from thermicon.icons.model.motion import periods_of
+
+from ..text.number_text import number
+from .cue_check import read_text
+from .handles import PEAK_AT, RATES, Corner, Grip, corners_of, grip_of, slots_of
+from .number_literals import Amount, Written, keyword_of, kind_of, replaced, written
+
+if TYPE_CHECKING:
+    from thermicon.icons.model.slots import Path
+    from thermicon.icons.model.statements import Leaf
+
+ROUNDS = 12
+CLOSE = 1e-9
+_WORDS = {"cool": "warm", "warm": "cool"}
+
+
+@dataclass(frozen=True, slots=True)
+class Dragged:
+    """The text after a drag; ``refused`` says why it is the text before."""
+
+    text: str
+    refused: str | None = None
+
+
+class _Refused(Exception):
+    """A drag that leads nowhere; the sentence says why."""
+
+
+def drag(text: str, icon: str, index: int, time_s: float, level: float, start: float | None = None) -> Dragged:
+    """Move a corner of an icon to a time (s) and level (°C or A), as near as rounded numbers come.
+
+    ``index`` counts the handles of the icon, ``start`` is the level of rest as in ``handles_of``. A ramp at a rate
+    keeps its corner under the pointer: dragged up or down, its rate changes with its size.
+
+    >>> text = "cue 1\\nicon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s } # six"
+    >>> drag(text, "dip", 0, 2.0, 27.0).text.splitlines()[1]
+    'icon dip { cool by 5 °C at 2.5 °C/s; hold for 4 s; return at 3 °C/s } # six'
+    >>> drag(text, "dip", 1, 1.5, 26.0).refused
+    'the corner cannot come before 2 s, where its statement begins'
+    """
+    try:
+        return Dragged(_drag(text, icon, index, time_s, level, start))
+    except _Refused as why:
+        return Dragged(text, str(why))
+
+
+def _drag(text: str, name: str, index: int, time_s: float, level: float, start: float | None) -> str:
+    reading = read_text(text)
+    icon = reading.find(name)
+    if icon is None:
+        cause = f"line {reading.troubles[0].line} has an error" if reading.troubles else f"no icon is called {name}"
+        raise _Refused(f"the corner stays where it is: {cause}")
+    corners = corners_of(icon, start)
+    if not 0 <= index < len(corners):
+        raise _Refused(f"{name} has {len(corners)} corners now, so there is none to move at {index + 1}")
+    if not (math.isfinite(time_s) and math.isfinite(level)):
+        raise _Refused("the corner stays where it is: a place to drag it to is missing")
+    corner = corners[index]
+    grip = grip_of(corner, slots_of(reading.family_of(name)))
+    if (grip.time is None and grip.level is None) or corner.path is None or corner.leaf.span is None:
+        raise _Refused(grip.why or "this corner does not move")
+    move = _Move(icon, index, corner, grip, start, written(text, corner.leaf.span))
+    edits = move.edits(time_s, level)
+    new = replaced(text, edits)
+    after = read_text(new)
+    if after.troubles:
+        first = after.troubles[0]
+        raise _Refused(f"line {first.line} would be wrong: {first.headline}{f'; {first.hint}' if first.hint else ''}")
+    return new
+
+
+@dataclass(frozen=True, slots=True)
+class _Move:
+    """A corner about to be moved: the icon, which corner, what it hangs on, and its statement in the text."""
+
+    icon: Icon
+    index: int
+    corner: Corner
+    grip: Grip
+    start: float | None
+    place: Written
+
+    def amount(self, field: str) -> Amount:
+        """Where a number of the statement stands in the text."""
+        found = self.place.amounts.get(keyword_of(self.corner.leaf, field))
+        if found is None:
+            raise _Refused("this corner is not written in the text")
+        return found
+
+    def edits(self, time_s: float, level: float) -> dict[tuple[int, int], str]:
+        """Which words of the text become which, so that the corner comes to a time and level."""
+        grip, now = self.grip, self.corner
+        place = float(now.level), float(now.time_s)
+        to_level = level if grip.level and abs(level - place[0]) > 0.5 * self.step(grip.level) else place[0]
+        to_time = time_s if grip.time and abs(time_s - place[1]) > 0.5 * self.step(grip.time) else place[1]
+        return {} if (to_level, to_time) == place else self.in_words(*self.solve(to_level, to_time))
+
+    def step(self, field: str) -> float:
+        """What a field is rounded to, in SI; for a rate, what the time of its ramp would be."""
+        leaf = self.corner.leaf
+        if field in RATES:
+            return 0.05 if self.corner.time_s - self.corner.begin_s >= 0.25 else 0.01
+        return self.amount(field).step(getattr(leaf, field), kind_of(leaf, field, self.icon.frame.control))
+
+    def solve(self, to_level: float, to_time: float) -> tuple[float, float]:
+        """Size of the change from where the statement begins, and its time, that lead the corner there.
+
+        In a repeat a number changes every round, so the place hangs on it by more than one round.
+        """
+        now, grip = self.corner, self.grip
+        size, took = float(now.level - now.begin), float(now.time_s - now.begin_s)
+        place = float(now.level), float(now.time_s)
+        slope = [1.0, 1.0]
+        for _ in range(ROUNDS):
+            miss = [
+                to_level - place[0] if grip.level else 0.0,
+                to_time - place[1] if grip.time else 0.0,
+            ]
+            if max(map(abs, miss)) < CLOSE:
+                break
+            old, before = (size, took), place
+            size, took = size + miss[0] / slope[0], took + miss[1] / slope[1]
+            place = self.replay(size, took)
+            for n, (new, was) in enumerate(zip((size, took), old, strict=True)):
+                if abs(new - was) > CLOSE and abs(change := (place[n] - before[n]) / (new - was)) > CLOSE:
+                    slope[n] = change
+        return size, took
+
+    def replay(self, size: float, took: float) -> tuple[float, float]:
+        """Where the corner would be with a statement of another size and time."""
+        self.check(size, took)
+        if self.corner.path is None:
+            return float(self.corner.level), float(self.corner.time_s)
+        try:
+            leaf = replace(self.corner.leaf, **self.fields(size, took))
+            body = _with(self.icon.statements, self.corner.path, leaf)
+            found = corners_of(replace(self.icon, statements=body), self.start)
+        except (CueErrors, ValueError) as wrong:
+            raise _Refused(_said(wrong)) from None
+        if len(found) <= self.index:
+            raise _Refused("the statement has no such corner then")
+        return float(found[self.index].level), float(found[self.index].time_s)
+
+    def check(self, size: float, took: float) -> None:
+        """Refuse what is no statement: no time, no size."""
+        now, grip = self.corner, self.grip
+        if grip.time is not None and took <= 0:
+            raise _Refused(self.too_early())
+        if grip.level is not None and abs(size) < CLOSE:
+            raise _Refused("the corner cannot lie at the level its statement begins at: that would be no change")
+        if isinstance(now.leaf, Wave) and grip.level is not None and size * now.leaf.sign < 0:
+            first = {"warm": "cool", "cool": "warm", "up": "down", "down": "up"}[str(now.leaf.start)]
+            raise _Refused(f'to begin the other way, write "starting {first}": an amplitude is positive')
+
+    def fields(self, size: float, took: float) -> dict[str, Any]:
+        """Values (SI) of the statement's fields for a size and time."""
+        leaf, grip, found = self.corner.leaf, self.grip, dict[str, Any]()
+        if grip.level is not None:
+            found |= self.level_fields(size)
+        if grip.time in RATES:
+            found[grip.time] = round(abs(size) / took, 9)
+        elif grip.time == "period_s" and isinstance(leaf, Wave):
+            found["period_s"] = round(took / float(PEAK_AT[leaf.shape]), 9)
+            if not leaf.cut:
+                found["duration_s"] = round(found["period_s"] * float(periods_of(leaf)), 9)
+        elif grip.time is not None:
+            found[grip.time] = round(self.whole(took), 9)
+        return found
+
+    def level_fields(self, size: float) -> dict[str, Any]:
+        """Direction and amount for a signed size, the amount without sign where a word tells the direction."""
+        leaf, field = self.corner.leaf, str(self.grip.level)
+        to = field.startswith("to")
+        value = float(self.corner.begin) + size if to else size
+        direction = getattr(leaf, "direction", "change")
+        if isinstance(leaf, Wave):
+            return {field: round(abs(size), 9)}
+        if direction == "change":
+            return {field: round(value, 9)}
+        word = "cool" if size < 0 else "warm"
+        return {"direction": word, field: round(value if to else abs(size), 9)}
+
+    def whole(self, took: float) -> float:
+        """A time of a wave that is not cut in whole periods, at least one; any other time as it is."""
+        leaf = self.corner.leaf
+        if not isinstance(leaf, Wave) or leaf.cut:
+            return took
+        return max(1, round(took / leaf.period_s)) * leaf.period_s
+
+    def in_words(self, size: float, took: float) -> dict[tuple[int, int], str]:
+        """The edits that write a size and time, rounded; a number that rounds to what it was stays as it is written."""
+        leaf, grip, control = self.corner.leaf, self.grip, self.icon.frame.control
+        edits: dict[tuple[int, int], str] = {}
+        resized = False
+        if grip.level is not None:
+            fields = self.level_fields(size)
+            kind, where = kind_of(leaf, grip.level, control), self.amount(grip.level)
+            value = where.rounded(fields[grip.level], kind)
+            turned = fields.get("direction", "") != getattr(leaf, "direction", "") and "direction" in fields
+            resized = turned or value != where.rounded(getattr(leaf, grip.level), kind)
+            if resized:
+                written_size = where.si(value, kind) - (float(self.corner.begin) if grip.level[:2] == "to" else 0.0)
+                size = math.copysign(written_size, size)
+                self.check(size if abs(written_size) >= CLOSE else 0.0, took)
+                edits[where.start, where.end] = where.text(value)
+            else:
+                size = float(self.corner.level - self.corner.begin)
+            if turned and self.place.direction is not None:
+                edits[self.place.direction] = _WORDS[getattr(leaf, "direction")]  # noqa: B009
+        if grip.time in RATES:
+            before = float(self.corner.time_s - self.corner.begin_s)
+            if resized or abs(took - before) > 0.2 * self.step(grip.time):
+                where = self.amount(grip.time)
+                value = where.rate(abs(size), took, kind_of(leaf, grip.time, control))
+                edits[where.start, where.end] = where.text(value)
+        elif grip.time is not None:
+            edits |= self.time_in_words(took)
+        return edits
+
+    def time_in_words(self, took: float) -> dict[tuple[int, int], str]:
+        """The edits that write the time of a statement that has one of its own; a wave stays one of whole periods."""
+        leaf, field = self.corner.leaf, str(self.grip.time)
+        where, now = self.amount(field), getattr(leaf, field)
+        if field == "period_s" and isinstance(leaf, Wave):
+            period = where.rounded(took / float(PEAK_AT[leaf.shape]), "time")
+            if period == where.rounded(now, "time"):
+                return {}
+            self.check_time(period)
+            edits = {(where.start, where.end): where.text(period)}
+            if not leaf.cut:
+                total = self.amount("duration_s")
+                edits[total.start, total.end] = total.exactly(
+                    where.si(period, "time") * float(periods_of(leaf)), "time"
+                )
+            return edits
+        if isinstance(leaf, Wave) and not leaf.cut:
+            whole = self.whole(took)
+            return {} if abs(whole - now) < CLOSE else {(where.start, where.end): where.exactly(whole, "time")}
+        value = where.rounded(took, "time")
+        self.check_time(value)
+        return {} if value == where.rounded(now, "time") else {(where.start, where.end): where.text(value)}
+
+    def check_time(self, value: Decimal) -> None:
+        """Refuse a time that is rounded to none."""
+        if value <= 0:
+            raise _Refused(self.too_early())
+
+    def too_early(self) -> str:
+        """The sentence for a corner at or before the beginning of its statement."""
+        return f"the corner cannot come before {number(float(self.corner.begin_s), 2)} s, where its statement begins"
+
+
+def _with(body: Sequence[Any], path: Path, leaf: Leaf) -> tuple[Any, ...]:
+    """A body with the statement at a path exchanged."""
+    place, rest = path[0], path[1:]
+    part = body[place]
+    new = replace(part, body=_with(part.body, rest, leaf)) if rest else leaf
+    return (*body[:place], new, *body[place + 1 :])
+
+
+def _said(wrong: Exception) -> str:
+    """What is wrong, in the words of its last part: the place is known."""
+    if isinstance(wrong, CueErrors):
+        first = wrong.errors[0]
+        return f"{first.title}: {first.what}{f'; {first.help}' if first.help else ''}"
+    return str(wrong).rpartition(": ")[2]

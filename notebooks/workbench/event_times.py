@@ -1,0 +1,117 @@
+"""When things happen in one run: the onset that is reported, the peaks that are felt and those of the skin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from thermicon.circuit.solver.inverse import LIMITS, baseline_C, steps_at
+from thermicon.circuit.solver.trace import CLOSE_K
+from thermicon.perception.sensation.features import HELD_SHARE, STILL_K, directions
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+    from thermicon.perception import Channel, Percept
+
+FELT_DPRIME = 1.0
+"""A peak of sensation is marked from here on: what a choice of two tells from nothing."""
+GAP_S = 0.05
+Kind = Literal["onset", "felt peak", "physical peak"]
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """One event: time in s on the clock that is named, and whose channel it is."""
+
+    kind: Kind
+    time_s: float
+    channel: Channel
+    clock: Literal["response", "percept", "cue"]
+
+    @property
+    def label(self) -> str:
+        """What a mark says, as in ``physical peak (cold) 2.04 s``."""
+        clock = "" if self.clock == "cue" else f", {self.clock} clock"
+        return f"{self.kind} ({self.channel}) {self.time_s:.2f} s{clock}"
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """A stretch of time (s) in which the target is missed, and what holds it back."""
+
+    from_s: float
+    to_s: float
+    label: str
+
+
+def moments_of(trace: Trace, percept: Percept) -> tuple[Moment, ...]:
+    """Return onset, felt peaks and peaks of the skin, the earliest first; those of channels that feel something.
+
+    A peak of the skin that is held counts from when it comes within 1 %.
+    """
+    found: list[Moment] = []
+    if percept.onset_s is not None and percept.channel is not None:
+        found.append(Moment("onset", percept.onset_s, percept.channel, "response"))
+    for channel in directions(trace):
+        psi = percept.psi_cold if channel == "cold" else percept.psi_warm
+        felt = percept.felt_peak_s(channel)
+        if felt is None or psi.max() < FELT_DPRIME:
+            continue
+        found.append(Moment("felt peak", felt, channel, "percept"))
+        away = (trace.skin_C - trace.skin_C[0]) * (-1.0 if channel == "cold" else 1.0)
+        if away.max() > STILL_K:
+            at = int((away >= HELD_SHARE * away.max()).argmax())
+            found.append(Moment("physical peak", float(trace.time_s[at]), channel, "cue"))
+    return tuple(sorted(found, key=lambda moment: moment.time_s))
+
+
+def missed_spans(icon: Icon, trace: Trace, rig: Rig) -> tuple[Span, ...]:
+    """Return when a run misses its target, or asks for more current than the driver has; nothing where it is reached.
+
+    A step is as fast as the driver can make it, so what it takes to arrive is missed only where it never does.
+    """
+    if trace.reachable:
+        return ()
+    return tuple(_spans(trace.time_s, _missed(icon, trace, rig), _held_back(trace)))
+
+
+def _missed(icon: Icon, trace: Trace, rig: Rig) -> NDArray[np.bool_]:
+    if trace.outcome is None:
+        low, high = trace.driver_limits_A
+        wide = (trace.current_A > high + 1e-9) | (trace.current_A < low - 1e-9)
+        return np.asarray(wide | (np.abs(trace.voltage_V) > rig.driver.voltage_limit_V + 1e-6))
+    reached = trace.skin_C if trace.control == "skin" else trace.display_C
+    close = np.abs(reached - trace.target_C) <= CLOSE_K
+    missed = ~close
+    for begin, until in steps_at(icon, baseline_C(icon, rig)):
+        window = np.flatnonzero((trace.time_s >= begin - 1e-9) & (trace.time_s <= until + 1e-9))
+        arrived = window[close[window] & (trace.time_s[window] > begin + 1e-6)]
+        if len(arrived):
+            missed[window[window < arrived[0]]] = False
+    return np.asarray(missed)
+
+
+def _held_back(trace: Trace) -> str:
+    names = [name for name, _ in trace.outcome.limits] if trace.outcome is not None else ["driver's limits"]
+    known = [name for name in names if name in LIMITS or name == "driver's limits"]
+    return f"unreachable: {' and '.join(known)}" if known else "unreachable"
+
+
+def _spans(time_s: NDArray[np.float64], missed: NDArray[np.bool_], label: str) -> list[Span]:
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], missed, [False])).astype(np.int8)))
+    found: list[Span] = []
+    last = len(time_s) - 1
+    for begin, end in pairwise(edges.tolist()):
+        if not missed[begin]:
+            continue
+        from_s, to_s = float(time_s[max(begin - 1, 0)]), float(time_s[min(end, last)])
+        if found and from_s - found[-1].to_s < GAP_S:
+            from_s = found.pop().from_s
+        found.append(Span(from_s, to_s, label))
+    return found

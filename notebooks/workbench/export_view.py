@@ -1,0 +1,241 @@
+"""The export view: what a device makes of the icons, whether that is safe, and the files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import ipywidgets as widgets
+
+from ..files.exporting import FORMAT, Ready, formats_for, prepare_icons, write
+from ..files.outputs import OutputError
+from ..files.start_folder import below_start
+from .background import Newest, Turn
+from .cue_check import read_text
+from .export_tables import delivered_html, gate_html, written_html
+from .set_model import MOST_RANKED
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+    from .design_model import Designing
+
+SETTLES_S = 0.2
+Wanted = tuple[str, "Rig", "str | None", str, str, str]
+"""Text, rig, name of the icon (None: all), device, format, pause as typed."""
+
+
+class ExportView:
+    """The drives of one ``Designing``, prepared while it is ``shown``; ``box`` is what is shown."""
+
+    def __init__(self, design: Designing, folder: Path) -> None:
+        self.design = design
+        self.shown = False
+        self.ready: Ready | None = None
+        self.worker = Newest(self._failed)
+        self._asked: Wanted | None = None
+        self._done: Wanted | None = None
+        self._build(folder)
+
+    def _build(self, folder: Path) -> None:
+        from thermicon.circuit import Device, device_names
+        from thermicon.circuit.delivery.formats import load_format
+
+        names = device_names()
+        usual = load_format(FORMAT).device
+        wide = {"width": "100%"}
+        titles = [(f"{name}: {Device.load(name).title}", name) for name in names]
+        self.device = widgets.Dropdown(options=titles, value=usual, description="device", layout=wide)
+        self.form = widgets.Dropdown(options=self._forms(usual), value=FORMAT, description="format", layout=wide)
+        which = [("the icon that is shown", "shown"), ("all icons of the set", "all")]
+        self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
+        self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
+        self.pause = widgets.Text(
+            value="",
+            placeholder="in s; empty: recovery time",
+            description="pause",
+            continuous_update=False,
+            layout=wide,
+        )
+        self.overwrite = widgets.Checkbox(value=False, description="overwrite files that are there", indent=False)
+        self.insist = widgets.Checkbox(value=False, description="also what is lossy or not reached", indent=False)
+        self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
+        for control in (self.device, self.form, self.folder, self.which, self.pause):
+            control.style.description_width = "52px"
+        self.said = {name: widgets.HTML() for name in ("status", "written", "delivered", "figure", "gate")}
+        self.device.observe(lambda _: self._safely(self._device_chosen), "value")
+        for control in (self.form, self.which, self.pause):
+            control.observe(lambda _: self._safely(self.renew), "value")
+        self.folder.observe(lambda _: self._safely(self._forget_result), "value")
+        self.insist.observe(lambda _: self._safely(self._allow), "value")
+        self.button.on_click(lambda _: self._safely(self.write))
+        said = self.said
+        controls = [self.device, self.form, self.which, self.pause, self.folder]
+        controls += [self.overwrite, self.insist, self.button]
+        left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
+        self.body = widgets.VBox(
+            [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
+        )
+        row = widgets.Box([left, self.body]).add_class("thermicon-row")
+        self.box = widgets.VBox([row]).add_class("thermicon-export")
+        self._say("drives are prepared when this tab is opened")
+
+    def renew(self, after_s: float = SETTLES_S) -> None:
+        """Prepare the drives anew if the view is shown and what there is to prepare has changed."""
+        if not self.shown:
+            self.worker.forget()
+            self._asked = None
+            return
+        want = self._wanted()
+        if want == self._asked:
+            return
+        if want == self._done and self.ready is None:
+            return
+        if want == self._done:
+            self.worker.forget()
+            self._asked = None
+            self._mark(False)
+            self._allow()
+            return
+        self.button.disabled = True
+        self.said["written"].value = ""
+        self._mark(self.ready is not None)
+        reading = read_text(want[0])
+        if reading.icons is None or (want[2] is None and len(reading.icons) > MOST_RANKED):
+            self.worker.forget()
+            self._asked = None
+            many = f"more than {MOST_RANKED} icons are exported by thermicon export"
+            self._say("the text has errors, so nothing is exported" if reading.icons is None else many, "th-caution")
+            return
+        self._asked = want
+        self._say("working …")
+        self.worker.ask(lambda turn: self._prepare(turn, want), after_s)
+
+    def write(self) -> None:
+        """Write the files; what is refused is said, and nothing is written then."""
+        if self.ready is None or self._wanted() != self._done:
+            raise OutputError("the drives are not ready yet")
+        try:
+            folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
+            written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
+        except (OutputError, ValueError, RuntimeError) as wrong:
+            self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
+            self._say("")
+            return
+        self.said["written"].value = written_html(self.ready, written)
+        self._say("")
+
+    def _forget_result(self) -> None:
+        """What was said of another folder is no news of this one."""
+        self.said["written"].value = ""
+        self._allow()
+
+    def _wanted(self) -> Wanted:
+        name = self.design.scene.icon if self.which.value == "shown" else None
+        return self.design.text, self.design.rig, name, self.device.value, self.form.value, self.pause.value
+
+    def _prepare(self, turn: Turn, want: Wanted) -> None:
+        """The job of the worker."""
+        text, rig, name, device, form, typed = want
+        icons = read_text(text).icons
+        assert icons is not None
+        chosen = [icon for icon in icons if name in (None, icon.name)] if len(icons) <= MOST_RANKED else []
+        found = None if name is None else icons.find(name)
+        chosen = chosen or ([found] if found is not None else [])
+        rest = [icon for icon in icons if icon not in chosen] if len(icons) <= MOST_RANKED else []
+
+        def step(done: int, total: int) -> None:
+            turn.tell(lambda: self._say(f"working … {done} of {total}"))
+
+        made = prepare_icons(chosen, rest, rig, device, form, step, pause_s=pause_of(typed))
+        shown = self.design.scene.icon
+        red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
+        named = (k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown)
+        place = next(red, next(named, 0))  # what stops all of them is looked at first
+        picture = export_svg(made, place)
+        turn.tell(lambda: self._show(made, place, picture, want))
+
+    def _show(self, made: Ready, place: int, picture: str, want: Wanted) -> None:
+        self.ready, self._asked, self._done = made, None, want
+        self._mark(False)
+        self.said["delivered"].value = delivered_html(made)
+        self.said["figure"].value = picture
+        self.said["gate"].value = gate_html(made.prepared[place])
+        self._allow()
+
+    def _allow(self) -> None:
+        """Whether there is something to write, and if not, why."""
+        if self.ready is None or self._wanted() != self._done:
+            return
+        stops = [refusal for _, refusal in self.ready.against if not (self.insist.value and refusal.forcible)]
+        self.button.disabled = bool(stops)
+        if not stops:
+            self._say("ready to be written", "th-good")
+        elif all(refusal.forcible for refusal in stops):
+            self._say("refused: what is lossy or not reached is written only if you tick it", "th-caution")
+        else:
+            names = dict.fromkeys(name for name, refusal in self.ready.against if not refusal.forcible)
+            cure = "; take out what is red, or export the others one by one" if len(self.ready.prepared) > 1 else ""
+            self._say(f"refused: what is not safe is never written ({', '.join(names)}){cure}", "th-bad")
+
+    def _failed(self, said: str) -> None:
+        self._asked, self._done, self.ready = None, self._wanted(), None
+        for name in ("delivered", "figure", "gate"):
+            self.said[name].value = ""
+        self._mark(False)
+        self._say(said, "th-bad")
+
+    def _device_chosen(self) -> None:
+        """Offer the formats that the device takes; the one that was chosen stays if it can."""
+        forms = self._forms(self.device.value)
+        kept = self.form.value if any(name == self.form.value for _, name in forms) else forms[0][1]
+        self.form.options = forms
+        self.form.value = kept
+        self.renew()
+
+    @staticmethod
+    def _forms(device: str) -> list[tuple[str, str]]:
+        from thermicon.circuit import Device
+        from thermicon.circuit.delivery.formats import load_format
+
+        return [(f"{name}: {load_format(name).title}", name) for name in formats_for(Device.load(device))]
+
+    def _mark(self, stale: bool) -> None:
+        (self.body.add_class if stale else self.body.remove_class)("thermicon-stale")
+
+    def _say(self, text: str, kind: str = "th-status") -> None:
+        self.said["status"].value = f'<span class="{kind}" style="white-space: normal">{escape(text)}</span>'
+
+    def _safely(self, act: Callable[[], None]) -> None:
+        try:
+            act()
+        except Exception as wrong:  # a page that goes silent is worse than any sentence
+            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
+
+
+def pause_of(typed: str) -> float | None:
+    """Return the pause in s that was typed, None for nothing; raises PauseError for what is no such time.
+
+    >>> pause_of(" 12.5 "), pause_of("")
+    (12.5, None)
+    """
+    from thermicon.circuit.safety.repeated import PauseError, check_pause
+
+    if not typed.strip():
+        return None
+    try:
+        pause = float(typed)
+    except ValueError:
+        raise PauseError(f"pause {typed.strip()!r} is no number; give seconds, 0 to 600, or leave it empty") from None
+    check_pause(pause)
+    return pause
+
+
+def export_svg(made: Ready, place: int) -> str:
+    """The figure of one icon, in the colours of the page's theme."""
+    from ..figures.export_plot import export_figure
+    from ..figures.vector import themed_svg
+
+    return themed_svg(export_figure(made, place, (8.6, 5.0)))

@@ -1,0 +1,241 @@
+"""A scene as one frame for the canvas: plain data that JSON takes, and one float32 array for every curve.
+
+Colours are named by role only; which they are is for the canvas and its themes to say.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .cue_check import Trouble
+    from .scene import Drawing, Scene
+
+    Floats = NDArray[np.float32]
+
+MOST_POINTS = 3_000
+"""Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
+DASHED, DOTTED, DASH_DOT = (7, 3), (2, 3), (8, 3, 2, 3)
+Role = str
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What is sent: ``meta`` for JSON, and the arrays in the order that its series name by ``buffer``."""
+
+    meta: dict[str, Any]
+    buffers: tuple[Floats, ...]
+
+    def numbered(self, seq: int, ms: float, text: str | None, can_undo: bool, can_redo: bool) -> Frame:
+        """The frame as the answer to a message: its number, what it took, the text if the editor is to take it."""
+        own = {"seq": seq, "ms": _number(ms), "text": text, "can_undo": can_undo, "can_redo": can_redo}
+        return Frame({**self.meta, **own}, self.buffers)
+
+
+@dataclass(slots=True)
+class _Curves:
+    """Arrays on one clock, taken in one by one."""
+
+    rows: slice
+    buffers: list[Floats] = field(default_factory=list)
+
+    def take(
+        self,
+        key: str,
+        label: str,
+        values: NDArray[np.float64],
+        role: Role,
+        dash: Sequence[int] = (),
+        width: float = 1.5,
+        step: bool = False,
+    ) -> dict[str, Any]:
+        """Take the values of a curve, and return the series that stands for it."""
+        self.buffers.append(np.ascontiguousarray(values[self.rows], dtype=np.float32))
+        return {
+            "key": key,
+            "label": label,
+            "buffer": len(self.buffers) - 1,
+            "role": role,
+            "dash": list(dash),
+            "width": width,
+            "step": step,
+        }
+
+
+def frame_of(scene: Scene) -> Frame:
+    """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.notebooks.workbench.scene import scene
+    >>> made = frame_of(scene("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar")))
+    >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
+    (['temperature', 'heat', 'current', 'sensation'], 1401, 11)
+    """
+    meta = {"type": "frame", "view": "design", "seq": 0, "text": scene.text, **_said(scene)}
+    if scene.drawing is None:
+        empty = {"time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": [], "handles": []}
+        return Frame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
+    drawn = traces_of(scene.drawing)
+    handles = [] if scene.stale else _handles(scene.drawing)
+    return Frame(
+        {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
+    )
+
+
+def traces_of(drawing: Drawing) -> Frame:
+    """Return clock, panels and arrays of one drawing: what the design view and an overlay have in common."""
+    from thermicon.perception.sensation.percept import uniform_clock
+
+    trace, percept = drawing.trace, drawing.percept
+    dt, rows = uniform_clock(trace.time_s)
+    every = max(1, math.ceil((rows - 1) / MOST_POINTS))
+    curves = _Curves(slice(0, rows, every))
+    panels = [_temperature(drawing, curves), _heat(drawing, curves)]
+    if drawing.trace.has_current:  # a thermode has none
+        panels.append(_current(drawing, curves))
+    if len(percept.psi_cold) >= rows:
+        panels.append(_sensation(drawing, curves))
+    time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
+    return Frame({"time": time, "panels": panels}, tuple(curves.buffers))
+
+
+def _said(scene: Scene) -> dict[str, Any]:
+    badge = scene.badge
+    return {
+        "icons": list(scene.names),
+        "icon": scene.icon,
+        "troubles": [_trouble(each) for each in scene.troubles],
+        "stale": scene.stale,
+        "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},
+        "notes": list(scene.notes),
+    }
+
+
+def _trouble(trouble: Trouble) -> dict[str, Any]:
+    names = ("line", "column", "end_column", "code", "headline", "hint", "suggestion")
+    return {name: getattr(trouble, name) for name in names}
+
+
+def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
+    trace = drawing.trace
+    series = []
+    if np.isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
+        series.append(curves.take("target", "target", trace.target_C, "target", width=6.0))
+    series += [
+        curves.take("display", "display", trace.display_C, "grey", DASHED, 1.25),
+        curves.take("skin", "skin", trace.skin_C, "ink", width=1.75),
+        curves.take("cold", "cold receptor", trace.cold_receptor_C, "cool", DASH_DOT),
+        curves.take("warm", "warm receptor", trace.warm_receptor_C, "warm", DASHED),
+    ]
+    bands = [
+        {
+            "low": _number(band.low_C),
+            "high": _number(band.high_C),
+            "label": f"{band.channel} threshold {band.change_K:.2g} K (fast change)",
+            "role": _ROLES[band.channel],
+        }
+        for band in drawing.bands
+    ]
+    marks = [
+        _mark(moment.time_s, moment.label, moment.channel, float(np.interp(moment.time_s, trace.time_s, trace.skin_C)))
+        for moment in drawing.moments
+        if moment.kind == "physical peak"
+    ]
+    return _panel(drawing, "temperature", "temperature (°C)", 1.6, series, bands=bands, marks=marks)
+
+
+def _heat(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
+    trace = drawing.trace
+    series = [
+        curves.take("skin", "skin surface", trace.heat_flow_skin_W_per_m2 / 1e3, "ink", width=1.75),
+        curves.take("cold", "cold receptor", trace.heat_flow_cold_receptor_W_per_m2 / 1e3, "cool", DASH_DOT),
+        curves.take("warm", "warm receptor", trace.heat_flow_warm_receptor_W_per_m2 / 1e3, "warm", DASHED),
+    ]
+    return _panel(drawing, "heat", "heat flow into skin (kW/m²)", 1.0, series, missed=False)
+
+
+def _current(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
+    trace = drawing.trace
+    held = trace.control in ("skin", "display")
+    series = [curves.take("current", "current (+ cools)", trace.current_A, "ink", width=1.25, step=held)]
+    low, high = trace.driver_limits_A
+    levels = [
+        {"at": _number(at), "label": f"driver's limit {at:.3g} A".replace("-", "−"), "role": "limit"}
+        for at in (high, low)
+    ]
+    return _panel(drawing, "current", "current (A)", 0.9, series, levels=levels)
+
+
+def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
+    percept = drawing.percept
+    series = [
+        curves.take("cold", "cold", percept.psi_cold, "cool", DASH_DOT, 1.75),
+        curves.take("warm", "warm", percept.psi_warm, "warm", DASHED, 1.75),
+    ]
+    marks = [
+        _mark(moment.time_s, moment.label, moment.channel if moment.kind != "onset" else None, None)
+        for moment in drawing.moments
+    ]
+    label = f"sensation (d′), {percept.clock} clock"
+    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False)
+
+
+def _panel(
+    drawing: Drawing,
+    key: str,
+    label: str,
+    height: float,
+    series: list[dict[str, Any]],
+    *,
+    bands: Sequence[dict[str, Any]] = (),
+    levels: Sequence[dict[str, Any]] = (),
+    marks: Sequence[dict[str, Any]] = (),
+    missed: bool = True,
+) -> dict[str, Any]:
+    spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
+    return {
+        "key": key,
+        "label": label,
+        "height": height,
+        "series": series,
+        "bands": list(bands),
+        "levels": list(levels),
+        "spans": spans,
+        "marks": list(marks),
+    }
+
+
+def _handles(drawing: Drawing) -> list[dict[str, Any]]:
+    panel = "current" if drawing.trace.control == "current" else "temperature"
+    return [
+        {
+            "t": handle.time_s,
+            "y": handle.level,
+            "panel": panel,
+            "moves_time": handle.moves_time,
+            "moves_level": handle.moves_level,
+            "why": handle.why,
+            "line": handle.line,
+        }
+        for handle in drawing.handles
+    ]
+
+
+_ROLES: dict[str, Role] = {"cold": "cool", "warm": "warm"}
+
+
+def _mark(time_s: float, label: str, channel: str | None, value: float | None) -> dict[str, Any]:
+    role = "ink" if channel is None else _ROLES[channel]
+    return {"t": _number(time_s), "label": label, "role": role, "y": None if value is None else _number(value)}
+
+
+def _number(value: float) -> float | None:
+    """A number that JSON has; None for what is not finite."""
+    return float(value) if math.isfinite(value) else None

@@ -1,0 +1,243 @@
+"""A cue text on a rig as one scene: all that the design view shows, as data; whatever goes wrong is part of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+from thermicon.icons import CueErrors
+
+from ..text.number_text import number
+from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
+from .handles import MOST_HANDLES, Handle, handles_of
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, SafetyVerdict, Trace
+    from thermicon.icons import Icon
+    from thermicon.perception import Observer, Percept
+
+    from .event_times import Moment, Span
+    from .threshold_band import Band
+
+TAIL_S = 10.0
+"""How long sensation is followed behind the last corner, as ``thermicon simulate --figure`` does."""
+RATE_HZ, MOST_ROWS = 100.0, 30_000
+"""Rows a second of a run, and how many there are at most: longer runs have fewer a second."""
+Colour = Literal["green", "amber", "red", "grey"]
+
+
+@dataclass(frozen=True, slots=True)
+class Badge:
+    """Safety in one line, with its colour, and all that there is to say in ``more``; grey where nothing is judged."""
+
+    colour: Colour
+    text: str
+    more: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """One icon played on a rig for an observer, with everything that is drawn of it."""
+
+    icon: Icon
+    rig: Rig
+    observer: Observer
+    trace: Trace
+    percept: Percept
+    verdict: SafetyVerdict
+    missed: tuple[Span, ...]
+    moments: tuple[Moment, ...]
+    bands: tuple[Band, ...]
+    handles: tuple[Handle, ...]
+    start: float
+
+    @property
+    def reason(self) -> str | None:
+        """Why the rig cannot play the icon, in one sentence; None where it can."""
+        return self.trace.reason
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """What there is to see of a text: names, troubles, the chosen icon, notes, and its drawing.
+
+    ``stale``: the drawing is of an earlier text or rig, since this one has none. ``start`` of the drawing is the level
+    that its icon begins at (°C or A). Without a drawing there was nothing to draw yet.
+
+    >>> from thermicon.circuit import Rig
+    >>> made = scene("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
+    >>> made
+    Scene('dip' of 1 on thenar, green)
+    >>> scene("cue 1; icon dip { cool by 6 at 3 °C/s }", Rig.load("thenar"), before=made).troubles[0].code
+    'E102'
+    """
+
+    text: str
+    rig: Rig
+    observer: Observer
+    icon: str | None
+    names: tuple[str, ...]
+    count: int
+    troubles: tuple[Trouble, ...]
+    notes: tuple[str, ...]
+    stale: bool
+    drawing: Drawing | None
+
+    @property
+    def badge(self) -> Badge:
+        """Safety of what is written now: a stale drawing is not judged."""
+        if self.stale or self.drawing is None:
+            cause = "the text has errors" if self.troubles else self.notes[0] if self.notes else "there is no icon"
+            return Badge("grey", f"safety not judged: {cause}")
+        return _badge(self.drawing.verdict)
+
+    def __repr__(self) -> str:
+        said = f", {len(self.troubles)} errors" if self.troubles else ", stale" if self.stale else ""
+        return f"Scene({self.icon!r} of {self.count} on {self.rig.name}, {self.badge.colour}{said})"
+
+
+def scene(
+    text: str,
+    rig: Rig,
+    icon: str | None = None,
+    observer: Observer | None = None,
+    before: Scene | None = None,
+    notes: Sequence[str] = (),
+) -> Scene:
+    """Return the scene of a text on a rig, for the icon of a name, or else for the one that stands in its place.
+
+    ``before`` is the scene that is shown now: its drawing stays, as ``stale``, where there is nothing new to draw.
+    ``notes`` come first among the scene's own. Raises nothing for what a person may type or set.
+    """
+    from thermicon.circuit import InputError
+    from thermicon.perception import Observer
+
+    person = Observer.load() if observer is None else observer
+    wanted = icon if icon is not None or before is None else before.icon
+    reading = read_text(text)
+    if reading.icons is None:
+        return _kept(text, rig, person, wanted, before, reading.troubles, tuple(notes), reading.more)
+    chosen, moved = _chosen(reading, wanted, before)
+    said = [*notes, *moved]
+    count, names = len(reading.icons), reading.names
+    if count > MOST_NAMES:
+        said.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
+        names = names if chosen.name in names else (*names, chosen.name)
+    try:
+        drawing = draw(chosen, rig, person, reading)
+    except CueErrors as wrong:  # with the rest of this rig a target lies on the wrong side
+        troubles = tuple(map(trouble_of, wrong.errors))
+        return _kept(text, rig, person, chosen.name, before, troubles, tuple(said), wrong.more, names, count)
+    except (InputError, ValueError, ArithmeticError) as wrong:
+        told = (*said, *(f"not drawn: {line}" for line in str(wrong).splitlines()[:3]))
+        return _kept(text, rig, person, chosen.name, before, (), told, 0, names, count)
+    said += _told(drawing, reading, rig)
+    return Scene(text, rig, person, chosen.name, names, count, (), _once(said), False, drawing)
+
+
+def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
+    """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
+    from thermicon.circuit import duration_s, hold, judge_safety, simulate
+    from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.perception import perceive
+
+    from .event_times import missed_spans, moments_of
+    from .threshold_band import bands_of
+
+    lasts = duration_s(icon, rig)
+    rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))
+    end = math.ceil((lasts + TAIL_S) * rate - 1e-6) / rate  # on the beat, so that the clock is uniform
+    trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
+    percept = perceive(trace, observer)
+    base = baseline_C(icon, rig)
+    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    return Drawing(
+        icon=icon,
+        rig=rig,
+        observer=observer,
+        trace=trace,
+        percept=percept,
+        verdict=judge_safety(trace),
+        missed=missed_spans(icon, trace, rig),
+        moments=moments_of(trace, percept),
+        bands=bands_of(trace, observer),
+        handles=handles_of(icon, reading.family_of(icon.name), start),
+        start=start,
+    )
+
+
+def with_notes(made: Scene, *notes: str) -> Scene:
+    """The scene with notes put before its own, such as why a drag was refused."""
+    return replace(made, notes=_once([*notes, *made.notes]))
+
+
+def _chosen(reading: Reading, wanted: str | None, before: Scene | None) -> tuple[Icon, list[str]]:
+    """The icon of a name; where it is gone, the one in its place, or the first, and a sentence that says so."""
+    assert reading.icons is not None
+    found = reading.find(wanted)
+    if found is not None:
+        return found, []
+    first = reading.icons.icons[0]
+    if wanted is None:
+        return first, []
+    if before is not None and before.count == len(reading.icons) and wanted in before.names:
+        first = reading.icons.icons[min(before.names.index(wanted), len(reading.icons) - 1)]
+        return first, [f"{wanted} is called {first.name} now"]
+    return first, [f"no icon is called {wanted}; {first.name} is shown"]
+
+
+def _kept(
+    text: str,
+    rig: Rig,
+    observer: Observer,
+    icon: str | None,
+    before: Scene | None,
+    troubles: tuple[Trouble, ...],
+    notes: tuple[str, ...],
+    more: int,
+    names: tuple[str, ...] = (),
+    count: int = 0,
+) -> Scene:
+    """The scene where nothing new can be drawn: the last drawing stays."""
+    drawing = None if before is None else before.drawing
+    if before is not None and not names:
+        names, count = before.names, before.count
+    said = [*notes, f"and {more} more errors"] if more else list(notes)
+    return Scene(text, rig, observer, icon, names, count, troubles, _once(said), True, drawing)
+
+
+def _told(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
+    """Sentences about a drawing: why it is not reached, sites, what is unusual, where data end."""
+    trace, said = drawing.trace, []
+    if trace.reason is not None:
+        verb = "not reached: it" if trace.outcome is not None else "not played as written:"
+        said.append(f"{drawing.icon.name} is {verb} {trace.reason}")
+    site = reading.icons.frame.site if reading.icons is not None else None
+    if site is not None and site != rig.site:
+        said.append(f"the set is for the site {site}, the rig {rig.name} is for {rig.site}")
+    if drawing.percept.onset_s is None:
+        said.append(f"{drawing.icon.name} is not felt by this observer")
+    if len(drawing.handles) == MOST_HANDLES:
+        said.append(f"the first {MOST_HANDLES} corners can be dragged")
+    return [*said, *trace.warnings, *drawing.percept.outside_data]
+
+
+def _badge(verdict: SafetyVerdict) -> Badge:
+    findings = verdict.findings
+    if not findings:
+        return Badge("green", "safe: no limit of safety is passed")
+    first = findings[0]
+    unit = "" if first.unit == "1" else f" {first.unit}"
+    side = "above" if first.upper else "below"
+    text = (
+        f"{'not safe' if first.severity == 'hard' else 'caution'}: {first.quantity} {number(first.value, 2)}{unit} at "
+        f"{first.time_s:.2f} s, {side} the {first.severity} limit of {number(first.limit, 2)}{unit}"
+    )
+    colour: Colour = "red" if verdict.colour == "red" else "amber"
+    return Badge(colour, text, tuple(map(str, findings)))
+
+
+def _once(notes: Sequence[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(notes))

@@ -1,0 +1,188 @@
+"""A set ranked for the set view, quickly and then well, with everything of it that is drawn, as data."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..cli.cues import MOST_ICONS
+from ..figures.map_drawing import distinct
+from .cue_check import Reading, read_text
+from .frames import Frame, traces_of
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+    from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
+    from thermicon.perception.selection.request import Choosing
+
+QUICK, WELL = (6, 0), (200, 128)
+"""How many people, and how many draws of the parameters: at once, and when there is time."""
+MOST_RANKED = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Ranked:
+    """A ranking, the text and rig that it is of, its map, the order of its heat maps, and what it took (ms)."""
+
+    text: str
+    rig: Rig
+    icons: tuple[Icon, ...]
+    ranking: Ranking
+    map: PerceptualMap | None
+    order: tuple[int, ...]
+    ms: float
+
+    @property
+    def labels(self) -> list[str]:
+        """Names in the order of the heat maps."""
+        return [self.ranking.labels[k] for k in self.order]
+
+    def names(self, row: int, column: int) -> tuple[str, str]:
+        """Names of the two icons of a cell; IndexError for a cell that there is not."""
+        labels = self.labels
+        if not (0 <= row < len(labels) and 0 <= column < len(labels)):
+            raise IndexError(f"there is no cell {row + 1}, {column + 1} in a set of {len(labels)} icons")
+        return labels[row], labels[column]
+
+    def pair(self, a: str, b: str) -> PairScore:
+        """The two icons' numbers and reasons; KeyError for icons that are no pair of it."""
+        for pair in self.ranking.pairs:
+            if {pair.a, pair.b} == {a, b}:
+                return pair
+        raise KeyError(f"{a} and {b} are no pair of this set")
+
+
+def rank_set(
+    text: str,
+    rig: Rig,
+    people: int,
+    parameters: int,
+    choosing: Choosing | None = None,
+    reference: PerceptualMap | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Ranked:
+    """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
+
+    >>> from thermicon.circuit import Rig
+    >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s; return at 2 K/s }; icon glow { pulse warm by 3 K for 2 s }"
+    >>> rank_set(text, Rig.load("thenar"), 2, 0).labels
+    ['dip', 'glow']
+    """
+    from thermicon.perception import map_of, rank
+    from thermicon.perception.plots.draw_heat import clustered_order
+
+    began = time.perf_counter()
+    reading = read_text(text)
+    if (why := why_not(reading)) is not None or reading.icons is None:
+        raise ValueError(why)
+    made = rank(reading.icons, rig, people=people, parameters=parameters, choosing=choosing, progress=progress)
+    order = tuple(int(k) for k in clustered_order(made.d_prime))
+    laid = map_of(made, reference) if len(made.icons) > 1 else None
+    return Ranked(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))
+
+
+def why_not(reading: Reading) -> str | None:
+    """Why a text is not ranked, in one sentence; None where it can be."""
+    if reading.icons is None:
+        first = reading.troubles[0]
+        more = len(reading.troubles) + reading.more - 1
+        others = f", and {more} more {'error' if more == 1 else 'errors'}" if more else ""
+        return f"the text has errors: line {first.line}, {first.headline}{others}"
+    if len(reading.icons) == 0:
+        return "there is no icon to rank: the set is empty"
+    if len(reading.icons) > MOST_RANKED:
+        fits = len(reading.icons) <= MOST_ICONS
+        cure = "Workbench.ranking or thermicon rank does it" if fits else "narrow the family"
+        return f"{len(reading.icons):,} icons are too many to rank while you wait (at most {MOST_RANKED}); {cure}"
+    return None
+
+
+def heat_frame(made: Ranked, picked: tuple[str, str] | None, seq: int = 0) -> Frame:
+    """The frame of both heat maps, near icons side by side."""
+    order, labels = np.array(made.order), made.labels
+    distances = made.ranking.d_prime[np.ix_(order, order)]
+    confusions = made.ranking.confusion[np.ix_(order, order)]
+    highest = max(float(distances.max()), 1e-9)
+    meta = {
+        "type": "frame",
+        "view": "heat",
+        "seq": seq,
+        "labels": distinct(labels),
+        "matrices": [
+            {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": highest,
+             "text": "0.0"},
+            {"key": "confusion", "label": "confusion", "buffer": 1, "unit": "", "low": 0,
+             "high": 1, "text": "0%"},
+        ],
+        "picked": None if picked is None else [labels.index(name) for name in picked],
+        "ms": made.ms,
+    }  # fmt: skip
+    return Frame(meta, (distances.astype(np.float32).ravel(), confusions.astype(np.float32).ravel()))
+
+
+def overlay_frame(made: Ranked, a: str, b: str) -> Frame:
+    """Two icons over each other on one clock: skin, sensation of cold and of warmth; one icon alone where a is b."""
+    names = [a] if a == b else [a, b]
+    parts = [_traces(made, name) for name in names]
+    step = max(part.meta["time"]["dt"] for part in parts)
+    rows = max(round(part.meta["time"]["dt"] * (part.meta["time"]["n"] - 1) / step) for part in parts) + 1
+    clock = step * np.arange(rows)
+    buffers: list[Any] = []
+    panels = []
+    for key, title, height in PANELS:
+        series = []
+        for part, name, (dash, width) in zip(parts, names, STYLES, strict=False):
+            values = _values(part, key, clock)
+            if values is None:
+                continue
+            buffers.append(values)
+            role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
+            series.append({"key": f"{key} {name}", "label": name, "buffer": len(buffers) - 1, "role": role,
+                           "dash": dash, "width": width, "step": False})  # fmt: skip
+        panels.append({"key": key, "label": title, "height": height, "series": series})
+    meta = {
+        "type": "frame",
+        "view": "traces",
+        "seq": 0,
+        "time": {"t0": 0.0, "dt": step, "n": rows},
+        "panels": panels,
+        "notes": [],
+    }
+    return Frame(meta, tuple(buffers))
+
+
+PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
+STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
+
+
+def edit_of(made: Ranked, a: str, b: str) -> Edit | NoEdit:
+    """The cheapest edit that parts a pair, confirmed by the people of the ranking."""
+    from thermicon.perception import cheapest_edit
+
+    known = made.ranking.d_prime
+    return cheapest_edit(made.icons, made.rig, a, b, people=made.ranking.people, seed=made.ranking.seed, before=known)
+
+
+def _traces(made: Ranked, name: str) -> Frame:
+    from thermicon.perception import Observer
+
+    from .scene import draw
+
+    icon = next(icon for icon in made.icons if icon.name == name)
+    return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))
+
+
+def _values(part: Frame, key: str, clock: Any) -> Any:
+    """The values of a curve on another clock; NaN behind its end."""
+    panel = "temperature" if key == "skin" else "sensation"
+    for each in part.meta["panels"]:
+        for series in each["series"]:
+            if each["key"] == panel and series["key"] == key:
+                own = part.meta["time"]["dt"] * np.arange(part.meta["time"]["n"])
+                return np.interp(clock, own, part.buffers[series["buffer"]], right=np.nan).astype(np.float32)
+    return None

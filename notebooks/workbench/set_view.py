@@ -1,0 +1,308 @@
+"""The set view: who is confused with whom, the pair that is looked at, what would part it, the map, the best few."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+import ipywidgets as widgets
+
+from ..figures.map_drawing import map_svg
+from ..text.choices import NAMES
+from .apply_edit import with_edit
+from .background import Newest, Turn
+from .cue_check import read_text
+from .design_view import SideCanvas
+from .set_model import (
+    QUICK,
+    WELL,
+    Ranked,
+    edit_of,
+    heat_frame,
+    overlay_frame,
+    rank_set,
+    why_not,
+)
+from .set_tables import (
+    caveat_html,
+    chosen_html,
+    edit_html,
+    notes_html,
+    pair_html,
+    ranking_table,
+    scores_html,
+    why_html,
+)
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.perception import Edit, NoEdit, PerceptualMap
+    from thermicon.perception.selection.request import Choosing
+
+    from .design_model import Designing
+
+ShowText = Callable[[str], None]
+Wanted = tuple[str, "Rig", "Choosing | None"]
+SETTLES_S = 0.25
+"""How long a text is left to change further before the set is ranked anew."""
+SHARES = 10
+SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
+WIDE, BESIDE = "1 1 500px", 6
+"""Up to so many icons, table and heat maps stand side by side."""
+
+
+class SetView:
+    """The set of one ``Designing``, ranked while it is ``shown``; ``box`` is what is shown.
+
+    ``show_text`` is called with the text after an edit is applied.
+    """
+
+    def __init__(self, design: Designing, show_text: ShowText) -> None:
+        self.design, self._show_text = design, show_text
+        self.shown = False
+        self.made: Ranked | None = None
+        self.picked: tuple[str, str] | None = None
+        self.edit: Edit | NoEdit | None = None
+        self.worker, self.editor = Newest(self._failed), Newest(self._no_edit)
+        self._warmer = Newest()
+        self._asked: Wanted | None = None
+        self._done: Wanted | None = None
+        self._failed_for: Wanted | None = None
+        self._build()
+
+    def _build(self) -> None:
+        self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
+        self.heat.on_message(self._receive)
+        names = ("scores", "status", "table", "notes", "pair", "edit_text", "why", "map", "choice", "caveat")
+        self.said = {name: widgets.HTML() for name in names}
+        said = self.said
+        self.count = widgets.Dropdown(options=[("all", 0)], value=0, description="choose", layout={"width": "150px"})
+        by = [(name, key) for key, name in NAMES.items()]
+        self.objective = widgets.Dropdown(options=by, value="worst", description="by", layout={"width": "210px"})
+        for control in (self.count, self.objective):
+            control.style.description_width = "auto"
+            control.observe(lambda _: self._safely(lambda: self.renew(0.0)), "value")
+        self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
+        self.apply.on_click(lambda _: self._safely(self.apply_edit))
+        top = _row(said["scores"], said["status"]).add_class("thermicon-top")
+        table = widgets.VBox([said["table"], _row(self.count, self.objective), said["choice"]])
+        self._table = table.add_class("thermicon-side")
+        self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
+        overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
+        reasons = widgets.VBox([said["pair"], said["edit_text"], self.apply, said["why"]], layout={"flex": "3 1 300px"})
+        placed = widgets.VBox([said["map"]], layout={"flex": "2 1 270px", "min_width": "0"})
+        self._below = _row(overlay, reasons, placed).add_class("thermicon-pair")
+        self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
+        self.box = widgets.VBox([top, self.body]).add_class("thermicon-set")
+        self.body.layout.display = "none"
+        self._say("the set is ranked when this tab is opened")
+
+    def warm(self) -> None:
+        """Load, beside the page, what ranking needs, so that the first look at a set does not wait for it."""
+        self._warmer.ask(self._load, 1.0)
+
+    def _load(self, turn: Turn) -> None:
+        rank_set(SMALL, self.design.nominal, 2, 0, progress=turn.go_on)
+
+    def renew(self, after_s: float = SETTLES_S) -> None:
+        """Rank the set anew if it is shown and what there is to rank has changed; mark what is there as stale.
+
+        It waits for a time (s) in which the text may change further.
+        """
+        want = self._wanted()
+        if not self.shown:
+            self.worker.forget()  # the design view has the processor to itself
+            self._asked = None
+            return
+        if want in (self._asked, self._failed_for):
+            return
+        if want == self._done and self.made is not None:
+            self.worker.forget()
+            self._asked = None
+            self._mark(False)
+            self._say(f"{self.made.ranking.people} people")
+            return
+        self._mark(self.made is not None and want[:2] != self._done_of())
+        if (why := why_not(read_text(want[0]))) is not None:
+            self.worker.forget()
+            self._asked = None
+            kept = "" if self.made is None else f"; the last good set is shown, for {self.made.ranking.people} people"
+            self._say(why + kept, "th-caution")
+            return
+        self._asked = want
+        quick = self.made is None or want[:2] != self._done_of()
+        self._say("ranking …" if quick or not want[2] else "choosing …")
+        self.worker.ask(lambda turn: self._rank(turn, want, quick), after_s)
+
+    def pick(self, a: str, b: str) -> None:
+        """Look at a pair: both icons over each other, why they are confused, and the cheapest edit."""
+        made = self.made
+        if made is None:
+            return
+        self.picked, self.edit = (a, b), None
+        frame = overlay_frame(made, a, b)
+        self.overlay.frame(frame.meta, frame.buffers)
+        self._below.layout.display = ""
+        self.apply.disabled = True
+        if a == b:
+            self.editor.forget()
+            self.said["pair"].value = f'<div class="th-head">{escape(a)}</div>'
+            self.said["why"].value = ""
+            self.said[
+                "edit_text"
+            ].value = '<span class="th-soft">choose a cell of two icons: it tells what parts them</span>'
+            return
+        self.said["pair"].value, self.said["why"].value = pair_html(made.pair(a, b)), why_html(made.pair(a, b))
+        self.said["edit_text"].value = edit_html(None)
+        self.editor.ask(lambda turn: self._look_for_edit(turn, made, a, b), 0.1)
+
+    def apply_edit(self) -> None:
+        """Write the edit that is told into the text, as one step that can be undone."""
+        from thermicon.perception import Edit
+
+        edit = self.edit
+        if not isinstance(edit, Edit):
+            raise ValueError("there is no edit to apply")
+        text = with_edit(self.design.text, edit.edited, edit.old, edit.new)
+        self.apply.disabled = True
+        self.said["edit_text"].value = f'<span class="th-good">applied: {escape(edit.new)}</span>'
+        self._show_text(text)
+
+    def _rank(self, turn: Turn, want: Wanted, quick: bool) -> None:
+        """The job of the worker: a few people at once, then as many as make numbers of it."""
+        text, rig, choosing = want
+        if quick:
+            reference = None if self.made is None else self.made.map
+            first = rank_set(text, rig, *QUICK, None, reference, turn.go_on)
+            turn.tell(lambda: self._show(first, want, False))
+        reference = None if self.made is None else self.made.map
+        told = [0]
+
+        def progress(done: int, total: int) -> None:
+            turn.go_on()
+            share = SHARES * done // max(total, 1)
+            if share > told[0]:
+                told[0] = share
+                doing = "choosing" if choosing is not None and not quick else "refining"
+                said = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
+                turn.tell(lambda: self._say(said))
+
+        well = rank_set(text, rig, *WELL, choosing, reference, progress)
+        turn.tell(lambda: self._show(well, want, True))
+
+    def _failed(self, said: str) -> None:
+        self._asked, self._failed_for = None, self._wanted()  # the same again would fail the same way
+        self._say(f"not ranked: {said}", "th-caution")
+
+    def _show(self, made: Ranked, want: Wanted, well: bool) -> None:
+        """Put a ranking on the page; runs on the kernel's own loop."""
+        self.made, self._failed_for = made, None
+        self._done = want if well else None
+        if well:
+            self._asked = None
+        from thermicon.perception.ranking.rank_file import ranking_file
+
+        ranking, said = made.ranking, self.said
+        alone = len(made.icons) < 2
+        self.body.layout.display = ""
+        self._maps.layout.display = self._below.layout.display = "none" if alone else ""
+        few = len(made.icons) <= BESIDE
+        self._maps.layout.flex = WIDE if few else "1 1 100%"
+        (self._table.remove_class if few else self._table.add_class)("thermicon-wide")
+        known = set(made.labels)
+        self.picked = self.picked if self.picked is not None and known.issuperset(self.picked) else None
+        pair = self.picked or ranking.worst_pair or (made.labels[0],) * 2
+        if not alone:  # the maps first: they are what is waited for
+            frame = heat_frame(made, pair)
+            self.heat.frame(frame.meta, frame.buffers)
+        self._mark(False)
+        result = ranking_file(ranking, mapped=False)  # the map is made already, beside the one before
+        said["scores"].value = scores_html(ranking)
+        said["table"].value = ranking_table(ranking, result)
+        said["notes"].value = notes_html(result)
+        said["caveat"].value = caveat_html(result)
+        said["choice"].value = chosen_html(ranking)
+        people = f"{ranking.people} people"
+        self._say(f"{people}" if well else f"first look: {people}; refining …")
+        self._offer(len(made.icons))
+        if alone:
+            return
+        if made.map is not None:
+            said["map"].value = map_html(made.map)
+        if well or self.picked is None:
+            self._safely(lambda: self.pick(*pair))
+
+    def _look_for_edit(self, turn: Turn, made: Ranked, a: str, b: str) -> None:
+        found = edit_of(made, a, b)
+        turn.tell(lambda: self._offer_edit(found))
+
+    def _no_edit(self, said: str) -> None:
+        self.said["edit_text"].value = f'<span class="th-caution">no edit: {escape(said)}</span>'
+
+    def _offer_edit(self, found: Edit | NoEdit) -> None:
+        from thermicon.perception import NoEdit
+
+        self.edit = found
+        self.said["edit_text"].value = edit_html(found)
+        self.apply.disabled = isinstance(found, NoEdit)
+
+    def _receive(self, message: dict[str, Any]) -> None:
+        self._safely(lambda: self._cell(message))
+
+    def _cell(self, message: dict[str, Any]) -> None:
+        """A cell was clicked: answer at once, so that the page knows that the kernel lives."""
+        if message.get("type") != "cell" or self.made is None:
+            return
+        seq = int(message.get("seq", 0))
+        try:
+            pair = self.made.names(int(message["row"]), int(message["column"]))
+        except (IndexError, KeyError, ValueError) as wrong:
+            self._say(str(wrong), "th-caution")
+            pair = self.picked or (self.made.labels[0],) * 2
+        frame = heat_frame(self.made, pair, seq)
+        self.heat.frame(frame.meta, frame.buffers)
+        self.pick(*pair)
+
+    def _wanted(self) -> Wanted:
+        return self.design.text, self.design.rig, self._choosing()
+
+    def _choosing(self) -> Choosing | None:
+        from thermicon.perception.selection.request import Choosing
+
+        return Choosing(self.count.value, self.objective.value) if self.count.value else None
+
+    def _offer(self, icons: int) -> None:
+        """How many can be chosen of so many icons."""
+        options = [("all", 0), *((f"best {k}", k) for k in range(2, icons))]
+        if list(self.count.options) != options:
+            kept = self.count.value if any(value == self.count.value for _, value in options) else 0
+            self.count.options = options
+            self.count.value = kept
+
+    def _done_of(self) -> tuple[str, Rig] | None:
+        return None if self.made is None else (self.made.text, self.made.rig)
+
+    def _mark(self, stale: bool) -> None:
+        for part in (self.body, self.said["scores"]):
+            (part.add_class if stale else part.remove_class)("thermicon-stale")
+
+    def _say(self, text: str, kind: str = "th-status") -> None:
+        self.said["status"].value = f'<span class="{kind}">{escape(text)}</span>'
+
+    def _safely(self, act: Callable[[], None]) -> None:
+        try:
+            act()
+        except Exception as wrong:  # a page that goes silent is worse than any sentence
+            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
+
+
+def map_html(found: PerceptualMap) -> str:
+    """The perceptual map with what is to be known of it."""
+    spread = f"; ellipses: half of {found.people} people" if found.covariance is not None else ""
+    told = f'<div class="th-soft">distances are d′, stress {found.stress:.2f}{spread}</div>'
+    return f'<div class="th-head">perceptual map</div>{told}{map_svg(found)}'
+
+
+def _row(*parts: Any) -> widgets.Box:
+    return widgets.Box(parts).add_class("thermicon-row")

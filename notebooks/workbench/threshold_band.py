@@ -1,0 +1,79 @@
+"""What would be just felt: the change at the depth of a receptor that the observer tells from nothing in a choice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.perception import CHANNELS, Channel, Observer, load_thresholds, receptor_drive
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Trace
+
+DT_S = 0.01
+ROUNDS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """About the level (°C) that a channel is adapted to: what lies within ``change_K`` of it is not felt.
+
+    The cold channel feels what goes down, the warm one what goes up, so each band lies on one side of its level.
+    """
+
+    channel: Channel
+    level_C: float
+    change_K: float
+
+    @property
+    def low_C(self) -> float:
+        """Lower end, °C."""
+        return self.level_C - self.change_K if self.channel == "cold" else self.level_C
+
+    @property
+    def high_C(self) -> float:
+        """Upper end, °C."""
+        return self.level_C if self.channel == "cold" else self.level_C + self.change_K
+
+
+def bands_of(trace: Trace, observer: Observer) -> tuple[Band, ...]:
+    """Return the bands of both channels about the temperatures that a trace begins with; none where heat flow is felt.
+
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    >>> [f"{band.channel} {band.change_K:.2f} K" for band in bands_of(trace, Observer.load())]
+    ['cold 0.06 K', 'warm 0.09 K']
+    """
+    if observer.drive_unit != "K":
+        return ()
+    starts = (trace.cold_receptor_C, trace.warm_receptor_C)
+    return tuple(
+        Band(channel, float(start[0]), just_felt_K(observer, channel, trace.area_m2, trace.site))
+        for channel, start in zip(CHANNELS, starts, strict=True)
+    )
+
+
+@lru_cache(maxsize=256)
+def just_felt_K(observer: Observer, channel: Channel, area_m2: float, site: str) -> float:
+    """Size (K) of the ramp at receptor depth that is felt with d′ = 1, for an observer adapted to where it begins.
+
+    The ramp has the rate and hold of the step that the observer's unit of sensation was calibrated with; thresholds
+    depend on area and site as everywhere else.
+    """
+    from thermicon.perception.sensation.sensation import sensitivity
+
+    known = load_thresholds()
+    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
+    wanted = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
+    middle = 0.5 * sum(observer.neutral(channel))
+    sign = -1.0 if channel == "cold" else 1.0
+    size = wanted
+    for _ in range(ROUNDS):  # drive is in proportion to size, but for the gain that it lowers itself
+        time = np.arange(0.0, size / rate + held, DT_S)
+        felt = receptor_drive(middle + sign * np.minimum(rate * time, size), DT_S, channel, observer)
+        size *= wanted / float(felt.max())
+    return size

@@ -1,0 +1,251 @@
+"""The workbench: design, set and export of thermal icons as one page of widgets, or as figures without a front end."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
+
+from .design_model import Designing
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Rig, Trace
+    from thermicon.perception import Percept, Ranking
+
+    from .design_view import DesignView
+    from .export_view import ExportView
+    from .scene import Scene
+    from .set_view import SetView
+
+View = Literal["design", "set", "export"]
+VIEWS: tuple[View, ...] = ("design", "set", "export")
+FIRST = "six-icons"
+
+
+class Workbench:
+    """A workbench for one set of icons on one rig, shown as a page where a notebook can show widgets.
+
+    ``text`` is cue text, the path of a cue file, the name of a shipped set, an icon or a set (None: six-icons); ``rig``
+    a name, the path of a rig file, or a rig; ``icon`` is shown first; ``folder`` is where drives are written.
+    Cue text with errors is no error here: the page shows them. Raises CueErrors for a file or name that is not there,
+    RigError for such a rig, ValueError for such an icon.
+
+    >>> bench = Workbench("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }")
+    >>> bench
+    Workbench('dip' of 1 on thenar, green)
+    >>> bench.figure("design").get_suptitle().splitlines()[0]
+    'dip on the thenar rig'
+    """
+
+    def __init__(
+        self,
+        text: str | Path | Icon | IconSet | None = None,
+        rig: str | Path | Rig = "thenar",
+        icon: str | None = None,
+        folder: str | Path = "drives",
+    ) -> None:
+        from thermicon.circuit import Rig
+
+        loaded = rig if isinstance(rig, Rig) else Rig.load(rig)
+        self._design = Designing(text_of(text), loaded, icon)
+        self._check_icon(icon)
+        self._folder = Path(folder)
+        self._ranked: tuple[object, Ranking] | None = None
+        self._page: Any = None
+        self.design_view: DesignView | None = None
+        self.set_view: SetView | None = None
+        self.export_view: ExportView | None = None
+
+    def _check_icon(self, icon: str | None) -> None:
+        """A name that is asked for must be there; while people write, another icon may take its place."""
+        from thermicon.icons.model.words import nearest
+
+        scene = self._design.scene
+        if icon is not None and not scene.troubles and scene.icon != icon:
+            near = nearest(icon, scene.names)
+            has = f"did you mean {near}?" if near else f"there are {', '.join(scene.names[:20])}"
+            raise ValueError(f"no icon is called {icon!r}; {has}")
+
+    @property
+    def text(self) -> str:
+        """The cue text as it stands in the editor; setting it is one step that can be undone."""
+        return self._design.text
+
+    @text.setter
+    def text(self, text: str) -> None:
+        self._design.show_text(text)
+        if self.design_view is not None:
+            self.design_view.refresh()
+
+    @property
+    def icons(self) -> IconSet:
+        """The set as it is written; raises CueErrors where the text has errors."""
+        return parse(self.text, "text")
+
+    @property
+    def icon(self) -> Icon | None:
+        """The icon that is shown; None where there is none yet."""
+        drawing = self._design.scene.drawing
+        return None if drawing is None else drawing.icon
+
+    @property
+    def rig(self) -> Rig:
+        """The rig with the sliders set."""
+        return self._design.rig
+
+    @property
+    def scene(self) -> Scene:
+        """All that the design view shows, as data."""
+        return self._design.scene
+
+    @property
+    def trace(self) -> Trace | None:
+        """The run of the icon that is shown."""
+        drawing = self._design.scene.drawing
+        return None if drawing is None else drawing.trace
+
+    @property
+    def percept(self) -> Percept | None:
+        """What is felt of it."""
+        drawing = self._design.scene.drawing
+        return None if drawing is None else drawing.percept
+
+    def ranking(self, people: int = 200) -> Ranking:
+        """Rank the set as it is written, for so many people; the last one is kept.
+
+        Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
+        """
+        from thermicon.perception import rank
+
+        from ..cli.cues import MOST_ICONS
+
+        if len(self.icons) > MOST_ICONS:
+            many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"
+            raise ValueError(f"{many}: narrow the family")
+        asked = (self.text, self.rig, people)
+        if self._ranked is None or self._ranked[0] != asked:
+            self._ranked = (asked, rank(self.icons, self.rig, people=people, edits="worst"))
+        return self._ranked[1]
+
+    def figure(self, view: View = "design") -> Figure:
+        """Return what a view shows as a matplotlib Figure; raises ValueError for a view that there is not."""
+        if view not in VIEWS:
+            raise ValueError(f"there is no view {view!r}; there are {', '.join(VIEWS)}")
+        if view == "design":
+            from .scene_plot import scene_figure
+
+            return scene_figure(self.scene)
+        if view == "set":
+            from ..figures.overview import set_figure
+
+            return set_figure(self.ranking())
+        from ..figures.export_plot import export_figure
+        from ..files.exporting import ready_of
+
+        return export_figure(ready_of(self.icon, self.rig))
+
+    @property
+    def page(self) -> Any:
+        """The widgets; they are made when they are first asked for."""
+        if self._page is None:
+            self._page = self._made()
+        return self._page
+
+    def _made(self) -> Any:
+        import ipywidgets as widgets
+
+        from .design_view import DesignView
+        from .export_view import ExportView
+        from .set_view import SetView
+
+        style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
+        self.design_view = design = DesignView(self._design)
+        self.set_view = ranked = SetView(self._design, design.show_text)
+        self.export_view = export = ExportView(self._design, self._folder)
+        tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
+
+        def shown(change: Any) -> None:
+            ranked.shown = change["new"] == 1
+            export.shown = change["new"] == 2
+            for view in (ranked, export):
+                view.renew(0.0)  # who opens a tab has finished typing
+
+        def changed() -> None:
+            for view in (ranked, export):
+                view.renew()
+
+        if has_kernel():
+            ranked.warm()
+        tabs.observe(shown, "selected_index")
+        self._design.on_change(changed)
+        self.tabs = tabs
+        return widgets.VBox([style, tabs]).add_class("thermicon")
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
+        """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
+        light: dict[str, Any] = {"text/plain": repr(self)}
+        if not has_kernel():
+            from ..figures.inline import small_png
+
+            return {**light, "image/png": small_png(self.figure())}
+        try:
+            light["text/html"] = self.icons._repr_html_()
+        except CueErrors as wrong:
+            light["text/html"] = f"<pre>{_escaped(str(wrong))}</pre>"
+        return {**light, **self.page._repr_mimebundle_(include=include, exclude=exclude), "text/plain": repr(self)}
+
+    def __repr__(self) -> str:
+        return f"Workbench{repr(self.scene).removeprefix('Scene')}"
+
+
+def text_of(source: str | Path | Icon | IconSet | None) -> str:
+    """Return the cue text of a set, an icon, a file, a shipped set by name, or text itself.
+
+    >>> text_of("cue 1; icon dip { hold for 1 s }")
+    'cue 1; icon dip { hold for 1 s }'
+    >>> text_of("wave-shapes").splitlines()[0]
+    'cue 1'
+    """
+    if isinstance(source, Icon | IconSet):
+        return str(source)
+    if source is None or (isinstance(source, str) and source in library_names() and not Path(source).is_file()):
+        return _shipped(source or FIRST)
+    if isinstance(source, str) and ("{" in source or "\n" in source or not source.strip()):
+        return source
+    from thermicon.icons.files.shipped import file_bytes, is_json
+
+    data = None if is_json(source) else file_bytes(source)
+    if data is None:
+        return str(read_cue(source))  # JSON, or the reason why there is no such file
+    return data.decode("utf-8-sig", errors="replace")
+
+
+def _shipped(name: str) -> str:
+    """A shipped set as it is written, with its comments."""
+    place = files("thermicon.icons") / "library" / f"{name}.cue"
+    return place.read_text(encoding="utf-8") if place.is_file() else str(load_library(name))
+
+
+def style_text() -> str:
+    """The style sheet of the page around the canvases."""
+    return (files("thermicon.notebooks") / "workbench.css").read_text(encoding="utf-8")
+
+
+def has_kernel() -> bool:
+    """Whether there is a kernel whose front end could show widgets."""
+    try:
+        from IPython import get_ipython
+    except ImportError:
+        return False
+    shell = get_ipython()
+    return getattr(shell, "kernel", None) is not None
+
+
+def _escaped(text: str) -> str:
+    from html import escape
+
+    return escape(text)

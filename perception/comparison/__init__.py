@@ -1,0 +1,1 @@
+"""Why two icons are distinguishable: parts of the distance, reasons, published rules."""

@@ -1,0 +1,84 @@
+"""A score by rules alone, and the places where rules and model judge differently.
+
+The score is the share of rules passed, all with the same weight; among equals the one whose smallest
+margin, in shares of its threshold, is larger comes first. Nothing in it comes from the model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ..criteria import APART_DPRIME
+from ..number_text import decimals, significant
+from .rules import OURS, RuleResult, passes
+
+if TYPE_CHECKING:
+    from ..ranking.ranking import IconScore, PairScore
+
+FELT = 0.9
+
+
+def counted(results: Iterable[RuleResult]) -> list[RuleResult]:
+    """The results that a score by rules may use: those whose value does not come from the model."""
+    return [r for r in results if not r.from_model]
+
+
+def pair_margin(results: Iterable[RuleResult]) -> float | None:
+    """How safely the rules tell a pair apart: the largest normalised margin, since one rule suffices.
+
+    Negative where no rule does; None where a rule without a size tells them apart, such as direction.
+    """
+    ours = [r for r in results if r.quantity in OURS]
+    if any(r.passed and (r.quantity == "direction" or r.margin is None) for r in ours):
+        return None
+    margins = [m for r in ours if r.quantity != "direction" and (m := r.normalised_margin) is not None]
+    return max(margins, default=-1.0)
+
+
+def icon_score(icon: Sequence[RuleResult], pairs: Sequence[tuple[bool, float | None]]) -> tuple[float, float | None]:
+    """Share passed of an icon's own rules and of its pairs told apart, and the smallest normalised margin of them.
+
+    `pairs` holds (told apart, margin) of every pair it is in. Bands have no margin to compare. The margin
+    is None where nothing has one.
+    """
+    own = counted(icon)
+    passed = sum(r.passed for r in own) + sum(apart for apart, _ in pairs)
+    sized = [r for r in own if r.threshold_low is None]
+    margins = [r.normalised_margin for r in sized] + [margin for _, margin in pairs]
+    known = [m for m in margins if m is not None]
+    return passed / (len(own) + len(pairs)), min(known) if known else None
+
+
+def worst_by_rules(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
+    """The pair that rules tell apart least safely; equal ones by how few rules pass, then by name."""
+
+    def safety(pair: PairScore) -> tuple[bool, float, int, str, str]:
+        margin = float("inf") if pair.rules_margin is None else pair.rules_margin
+        return pair.rules_pass, margin, sum(r.passed for r in pair.rules), pair.a, pair.b
+
+    if not pairs:
+        return None
+    first = min(pairs, key=safety)
+    return first.a, first.b
+
+
+def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tuple[dict[str, Any], ...]:
+    """Icons and pairs that rules and model judge differently, with what each says."""
+    found: list[dict[str, Any]] = []
+    for icon in icons:
+        rules = passes(icon.rules, "change at the receptor", "rate at the receptor")
+        model = icon.detected_probability >= FELT
+        if rules != model:
+            shown, limit = significant(icon.detected_probability, FELT, least=2)
+            word = "felt" if rules else "not felt"
+            said = f"{icon.name}: rules say {word}, the model {shown} detected (felt from {limit})"
+            found.append({"icon": icon.name, "rules": rules, "model": model, "text": said})
+    for pair in pairs:
+        apart = pair.d_prime >= APART_DPRIME
+        if pair.rules_pass != apart:
+            word = "told apart" if pair.rules_pass else "not told apart"
+            shown = f"{pair.d_prime:.{decimals(pair.d_prime, APART_DPRIME, 1)}f}"
+            said = f"{pair.a} and {pair.b}: rules say {word}, the model d′ {shown} (apart from {APART_DPRIME})"
+            found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": apart, "text": said})
+    return tuple(found)

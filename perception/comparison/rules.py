@@ -1,0 +1,262 @@
+"""Rules of thumb, scored on an icon, a pair or a rig, each with its margin and its source.
+
+The thresholds are data (`data/rules.toml`). Rules from the literature and rules of this project
+are told apart by their source; none of them feeds the model. A rule whose value only the model
+has (when something is felt) is marked `from_model`, and no score by rules counts it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from thermicon.circuit.records import Record, Table, load_records
+
+from ..number_text import significant
+from ..observer.observer import CHANNELS, DATA, Channel
+from ..sensation.features import (
+    direction_words,
+    directions,
+    excursion_K,
+    excursion_rate_K_per_s,
+    passing_s,
+    peak_lead_s,
+    receptor_C,
+)
+from ..sensation.percept import Percept
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+
+TOLD_APART = "told apart"
+OURS = ("direction", "peak", "rate ratio", "onset")
+"""Rules of this project on a pair; one that passes tells it apart."""
+Plain = str | float | bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class RuleResult:
+    """One rule on one icon or pair; `margin` is how far the value is on the passing side (negative: fails).
+
+    `value` and `margin` are None where there is nothing to measure, as for an icon that is not felt. A rule that asks
+    for a value within a band has its lower end in `threshold_low` and its upper end in `threshold`; others have None.
+    """
+
+    rule: str
+    passed: bool
+    value: float | None
+    margin: float | None
+    threshold: float
+    unit: str
+    source: str
+    text: str
+    threshold_low: float | None = None
+    from_model: bool = False
+
+    @property
+    def quantity(self) -> str:
+        """Name of the rule without its channel.
+
+        >>> RuleResult("peak (cold)", True, 0.1, 0.03, 0.07, "K", "this project", "").quantity
+        'peak'
+        """
+        return self.rule.split(" (")[0]
+
+    @property
+    def normalised_margin(self) -> float | None:
+        """Margin in shares of the threshold, or of half the band; None where there is no margin or no size."""
+        size = self.threshold if self.threshold_low is None else 0.5 * (self.threshold - self.threshold_low)
+        return None if self.margin is None or size == 0.0 else self.margin / size
+
+    def to_dict(self) -> dict[str, Plain]:
+        """The keys of the ranking file."""
+        return {
+            "rule": self.rule,
+            "pass": self.passed,
+            "value": self.value,
+            "margin": self.margin,
+            "threshold": self.threshold,
+            "threshold_low": self.threshold_low,
+            "unit": self.unit,
+            "source": self.source,
+            "text": self.text,
+            "from_model": self.from_model,
+        }
+
+
+@lru_cache(maxsize=1)
+def load_rules() -> Table:
+    """The rules as records; `get("statement")`, `get("scope")` and `get("basis")` say what each is about."""
+    return load_records(DATA / "rules.toml", extra=("statement", "scope", "basis"))
+
+
+def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
+    """Rules on one icon: change and rate in every direction it moves, neutral zone; latency and felt peak.
+
+    The last two hold what the model predicts against what is published, and are marked so. The window of
+    latencies is for rates over 0.1 K/s; a slower change has no latency rule.
+    """
+    table = load_rules()
+    found, slow = [], set()
+    moved = directions(trace) or CHANNELS
+    for channel in moved:
+        change = abs(excursion_K(trace, channel))
+        rate = abs(excursion_rate_K_per_s(trace, channel))
+        found.append(_at_least(table.one("change at the receptor", channel=channel), channel, change))
+        found.append(_at_least(table.one("rate at the receptor"), channel, rate))
+        if not found[-1].passed:
+            slow.add(channel)
+    for channel in moved if percept.channel is None else (percept.channel,):
+        if channel not in slow:
+            found.append(_latency(table.one("latency", channel=channel), channel, percept.onset_s))
+    for channel in directions(trace):
+        lead = peak_lead_s(trace, percept, channel)
+        if lead is not None:
+            found.append(_felt_peak(table.one("felt peak", channel=channel), channel, lead))
+    found.append(_inside(table.one("neutral zone"), "cold", float(receptor_C(trace, "cold")[0])))
+    return tuple(found)
+
+
+def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
+    """Rules on a pair; the last, `told apart`, passes when any of this project's others does.
+
+    All of them are read off the two traces: onsets are the times at which a receptor passes its threshold.
+    """
+    table = load_rules()
+    moved_a, moved_b = directions(a), directions(b)
+    shared = tuple(c for c in moved_a if c in moved_b)
+    record = table.one("direction")
+    felt_a, felt_b = _felt(table, a), _felt(table, b)
+    differ = felt_a != felt_b
+    verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
+    text = f"direction: {_label(a)} {direction_words(a)}, {_label(b)} {direction_words(b)}: directions {verdict}"
+    ours = [_result(record, None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
+    theirs = []
+    for channel in shared:
+        gap = abs(excursion_K(a, channel) - excursion_K(b, channel))
+        theirs.append(_at_least(table.one("amplitude difference", channel=channel), channel, gap))
+        ours.append(_at_least(table.one("peak", channel=channel), channel, gap))
+        rates = sorted(abs(excursion_rate_K_per_s(t, channel)) for t in (a, b))
+        if rates[0] > 0.0:
+            ours.append(_at_least(table.one("rate ratio"), channel, rates[1] / rates[0]))
+    ours.append(_onset(table, a, b))
+    return (*theirs, *ours, _any(table.one(TOLD_APART), ours))
+
+
+def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
+    """Rules on the rig that a whole set is played on: the depths of its receptors, and in which layer they lie."""
+    table, found = load_rules(), []
+    for channel in CHANNELS:
+        record = table.one("depth", channel=channel)
+        depth_m = rig.skin.cold_receptor_m if channel == "cold" else rig.skin.warm_receptor_m
+        result = _inside(record, channel, depth_m * 1e3)
+        where = f"{result.text}; on this rig that is inside the {_layer(rig, depth_m)}"
+        found.append(replace(result, text=where))
+    return tuple(found)
+
+
+def first_passing(trace: Trace) -> tuple[float, Channel] | None:
+    """When (s) a receptor first passes the threshold of its rule, and which; None where neither does."""
+    table = load_rules()
+    times = [(passing_s(trace, c, table.one("change at the receptor", channel=c).central), c) for c in CHANNELS]
+    found = sorted((time, channel) for time, channel in times if time is not None)
+    return found[0] if found else None
+
+
+def _felt(table: Table, trace: Trace) -> tuple[Channel, ...]:
+    """Directions in which an icon passes the threshold of the receptor."""
+    least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
+    return tuple(channel for channel in directions(trace) if abs(excursion_K(trace, channel)) >= least[channel])
+
+
+def passes(results: Iterable[RuleResult], *rules: str) -> bool:
+    """Whether every result passes (of the rules named, or of all)."""
+    return all(r.passed for r in results if not rules or r.quantity in rules)
+
+
+def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleResult:
+    if onset_s is not None:
+        return _inside(record, channel, onset_s)
+    low, high = record.interval
+    band = f"{low:.3g} to {high:.3g}{_unit(record)}"
+    text = f"latency: the icon is not felt, so it has no onset to hold against {band}"
+    return _result(record, channel, False, None, None, high, text, low)
+
+
+def _felt_peak(record: Record, channel: Channel, lead: float) -> RuleResult:
+    margin = -lead if channel == "cold" else lead
+    asked = "before" if channel == "cold" else "after"
+    size = f"{abs(lead):.2f} s {'before' if lead < 0 else 'after'}"
+    said = "passes" if margin > 0 else "fails"
+    text = f"felt peak ({channel}): predicted {size} that of the skin, published {asked} it: {said}"
+    return _result(record, channel, margin > 0, lead, margin, record.central, text)
+
+
+def _onset(table: Table, a: Trace, b: Trace) -> RuleResult:
+    first, second = first_passing(a), first_passing(b)
+    both_warm = first is not None and second is not None and first[1] == second[1] == "warm"
+    channel: Channel = "warm" if both_warm else "cold"
+    record = table.one("onset", channel=channel)
+    if first is None or second is None:
+        differ = (first is None) != (second is None)
+        text = f"onset: {'only one of the two' if differ else 'neither'} passes the threshold of a receptor"
+        return _result(record, channel, differ, None, None, record.central, text)
+    return _at_least(record, channel, abs(first[0] - second[0]))
+
+
+def _any(record: Record, ours: list[RuleResult]) -> RuleResult:
+    passed = [r.rule for r in ours if r.passed]
+    text = f"{TOLD_APART}: {'by ' + ', '.join(passed) if passed else 'no rule separates the two'}"
+    count = float(len(passed))
+    return _result(record, None, bool(passed), count, count - 1.0, 1.0, text)
+
+
+def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:
+    limit, unit = record.central, _unit(record)
+    said = "passes" if value >= limit else "fails"
+    shown, least = significant(value, limit)
+    text = f"{record.quantity} ({channel}): {shown}{unit} against at least {least}{unit}: {said}"
+    return _result(record, channel, value >= limit, value, value - limit, limit, text)
+
+
+def _inside(record: Record, channel: Channel, value: float) -> RuleResult:
+    low, high = record.interval
+    unit, margin = _unit(record), min(value - low, high - value)
+    said = "passes" if margin >= 0 else "fails"
+    shown, least, most = significant(value, low, high)
+    text = f"{record.quantity} ({channel}): {shown}{unit} against {least} to {most}{unit}: {said}"
+    return _result(record, channel, margin >= 0, value, margin, high, text, low)
+
+
+def _result(
+    record: Record,
+    channel: Channel | None,
+    passed: bool,
+    value: float | None,
+    margin: float | None,
+    threshold: float,
+    text: str,
+    threshold_low: float | None = None,
+) -> RuleResult:
+    name = record.quantity if channel is None else f"{record.quantity} ({channel})"
+    model = record.get("basis") == "model"
+    return RuleResult(name, passed, value, margin, threshold, record.unit, record.source, text, threshold_low, model)
+
+
+def _layer(rig: Rig, depth_m: float) -> str:
+    reached = 0.0
+    for layer in rig.skin.layers:
+        reached += layer.thickness_m
+        if depth_m <= reached:
+            return layer.name
+    return rig.skin.layers[-1].name
+
+
+def _unit(record: Record) -> str:
+    return "" if record.unit == "1" else f" {record.unit}"
+
+
+def _label(trace: Trace) -> str:
+    return trace.icon or "the cue"

@@ -1,0 +1,160 @@
+"""What an icon leaves behind for the next one: warmth in the skin, and adaptation of the receptors.
+
+The nominal person feels every icon after every other one. Between the display and the receptors the skin is linear, so
+that what is left of the icon before adds to what the next one brings; adaptation, which is not, is then run over both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.observer import NORMS, Norm, Observer
+from ..sensation.percept import perceive_many, uniform_clock
+from .distance import differences, identification_noise
+from .task import Task
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+RATE_HZ = 25.0
+
+
+@dataclass(frozen=True, slots=True)
+class CarryOver:
+    """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons).
+
+    In sensation units, for the nominal person, `gap_s` after the end of the icon before.
+    """
+
+    names: tuple[str, ...]
+    gap_s: float
+    apart: Array
+    noise: Array
+
+    def __repr__(self) -> str:
+        icons = "1 icon" if len(self.names) == 1 else f"{len(self.names)} icons"
+        most = f"up to {self.apart[0].max():.3g} d′ of sensation"
+        return f"CarryOver({icons}, {self.gap_s:g} s apart: {most})"
+
+    def over(self, places: Sequence[int]) -> Array:
+        """Root mean square (norms, icons) over some icons before, each of them as likely as the next."""
+        found: Array = np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1))
+        return found
+
+    def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> dict[str, Any]:
+        """After which icon (of some) one feels least like itself, and by how many d′ from memory, for `rank --json`."""
+        k, some = NORMS.index(norm), list(places or range(len(self.names)))
+        before = some[int(self.apart[k, some, place].argmax())]
+        return {"after": self.names[before], "d_prime": float(self.apart[k, before, place] / self.noise[k])}
+
+
+def carry_over(
+    icons: Sequence[Icon],
+    rig: Rig,
+    end_s: float,
+    gap_s: float,
+    observer: Observer | None = None,
+    *,
+    tracking: str | None = None,
+) -> CarryOver:
+    """Let the nominal person feel every icon of a set after every other, each followed for `end_s`.
+
+    What an icon leaves behind depends on who holds the gap: the driver brings the skin or the display back to its
+    baseline, or, with `tracking` `replay`, the resting current flows and nothing corrects what it leaves.
+    Raises `ValueError` for a gap below 0, without icons, and for an end before that of the longest icon.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> icons, rig = list(read_cue("six-icons")), Rig.load("thenar")
+    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).apart[0].max() for gap_s in (1.0, 60.0))
+    >>> bool(near > 3 * far)
+    True
+    """
+    from thermicon.circuit import duration_s, simulate_all
+
+    if not gap_s >= 0.0:
+        raise ValueError(f"a gap of {gap_s:g} s between icons must be 0 or more")
+    if not icons:
+        raise ValueError("without icons nothing is left behind: give at least one")
+    lasting = [duration_s(icon, rig) for icon in icons]
+    if end_s < max(lasting):
+        raise ValueError(f"icons of up to {max(lasting):g} s cannot be followed for {end_s:g} s: give a later end")
+    person = Observer.load() if observer is None else observer
+    waits = [max(1, round((lasted + gap_s) * RATE_HZ)) for lasted in lasting]
+    rows = round(end_s * RATE_HZ) + 1
+    last = (max(waits) + rows) / RATE_HZ
+    traces = simulate_all(list(icons), rig, end_s=last, rate_Hz=RATE_HZ)
+    leaving = [_replayed(icon, rig, last) for icon in icons] if tracking == "replay" else traces
+    dt, _ = uniform_clock(traces[0].time_s)
+    cold, warm = (_at_receptors(traces, channel) for channel in ("cold", "warm"))
+    sources = [(_at_receptors(leaving, channel), alone) for channel, alone in (("cold", cold), ("warm", warm))]
+
+    def felt(at_cold: Array, at_warm: Array) -> Array:
+        return np.stack(perceive_many(at_cold, at_warm, dt, person, area_m2=rig.contact.area_m2, site=rig.site))
+
+    alone = felt(cold[:, :rows], warm[:, :rows])
+    apart = np.empty((len(NORMS), len(icons), len(icons)))
+    for before, wait in enumerate(waits):
+        after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
+        pairs = np.stack([alone, after], axis=2)
+        found = differences(pairs[0], pairs[1], dt, person)
+        apart[:, before] = [found[norm][:, 0, 1] for norm in NORMS]
+    noise = np.array([float(identification_noise(person, norm, dt * (rows - 1))) for norm in NORMS])
+    return CarryOver(tuple(icon.name for icon in icons), gap_s, apart, noise)
+
+
+def prepared(
+    task: Task,
+    icons: Sequence[Icon],
+    rig: Rig,
+    end_s: float,
+    counted: Sequence[int] = (),
+    tracking: str | None = None,
+) -> tuple[Task, CarryOver | None]:
+    """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
+    asked = task.asked()
+    if asked.plain:
+        return asked, None
+    played = tuple(counted or range(len(icons)))
+    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s, tracking=tracking)
+    return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
+
+
+def among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Task:
+    """The task for some icons of a set that are then asked for on their own."""
+    own = () if left is None else _rows(left.over(places)[:, list(places)])
+    return replace(task.asked(), carried=own, places=() if task.asked().plain else tuple(places))
+
+
+def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(float(value) for value in row) for row in values)
+
+
+def _replayed(icon: Icon, rig: Rig, end_s: float) -> Trace:
+    """The current of an icon open loop, and then its resting current until `end_s`, as exported drives are played."""
+    from thermicon.circuit import Drive, design, duration_s, simulate_current
+
+    plan = design(icon, rig, duration_s(icon, rig))
+    times, currents = plan.drive.time_s, plan.drive.current_A
+    if plan.drive.held:
+        drive = Drive([*times, end_s], [*currents[:-1], plan.rest_A, plan.rest_A], held=True)
+    else:
+        drive = Drive([*times, times[-1] + 1e-3, end_s], [*currents, plan.rest_A, plan.rest_A])
+    return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=plan.start_C)
+
+
+def _at_receptors(traces: Sequence[Trace], channel: str) -> Array:
+    return np.array([getattr(trace, f"{channel}_receptor_C") for trace in traces])
+
+
+def _after(left: Array, received: Array, wait: int, rows: int) -> Array:
+    """Every icon (icons, rows) begun `wait` rows into what another one leaves behind (rows,): (icons, wait + rows)."""
+    whole = np.repeat(left[np.newaxis, : wait + rows], len(received), axis=0)
+    whole[:, wait:] += received[:, :rows] - received[:, :1]
+    return whole

@@ -1,0 +1,109 @@
+"""Designed against delivered, as people feel it: detection of each icon, and d′ to every other icon of the set."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.solver.difference import loss_limit
+
+from ..arrays import Array
+from ..observer.observer import Observer, check_norm
+from ..sensation.percept import Percept, perceive
+from .distance import differences, identification_dprime
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A number of the design and of what is delivered."""
+
+    designed: float
+    delivered: float
+
+    @property
+    def drop(self) -> float:
+        """By how much it falls; negative where it rises."""
+        return self.designed - self.delivered
+
+
+@dataclass(frozen=True, slots=True)
+class FeltChange:
+    """What a device changes of one icon for a nominal person: probability of detection, d′ to each other icon."""
+
+    icon: str
+    detection: Change
+    d_prime: tuple[tuple[str, Change], ...]
+
+    def __repr__(self) -> str:
+        worst = max(self.d_prime, key=lambda pair: pair[1].drop, default=None)
+        pair = "" if worst is None else f", d′ to {worst[0]} {worst[1].designed:.3g} → {worst[1].delivered:.3g}"
+        return f"FeltChange({self.icon}: detected {self.detection.designed:.3f} → {self.detection.delivered:.3f}{pair})"
+
+    def losses(self) -> tuple[str, ...]:
+        """A sentence for every drop over the stated loss."""
+        found = []
+        if self.detection.drop > loss_limit("detection drop"):
+            found.append(
+                f"detection falls from {self.detection.designed:.2f} to {self.detection.delivered:.2f}, by more than "
+                f"the stated {loss_limit('detection drop'):g}"
+            )
+        share, least = loss_limit("relative d′ drop"), loss_limit("least d′ drop")
+        for other, change in self.d_prime:
+            if change.drop > max(share * change.designed, least):
+                found.append(
+                    f"d′ to {other} falls from {change.designed:.2f} to {change.delivered:.2f}, by more than the "
+                    f"stated {share:.0%}"
+                )
+        return tuple(found)
+
+    def to_dict(self) -> dict[str, object]:
+        """What a sidecar holds."""
+        return {
+            "observer": "nominal",
+            "detected_probability": _pair(self.detection),
+            "d_prime": {other: _pair(change) for other, change in self.d_prime},
+            "losses": list(self.losses()),
+        }
+
+
+def judge_delivered(
+    names: Sequence[str],
+    designed: Sequence[Trace],
+    delivered: Sequence[Trace],
+    observer: Observer | None = None,
+    norm: str = "max",
+) -> tuple[FeltChange, ...]:
+    """Return what a device changes of every icon of a set, for a nominal person (or `observer`).
+
+    All traces must have the same rows. Each icon is compared with the others as they were designed, and, delivered,
+    with the others as they are delivered.
+    """
+    person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
+    percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]
+    before, after = (_d_primes(each, person, chosen) for each in percepts)
+    return tuple(
+        FeltChange(
+            name,
+            Change(percepts[0][k].detected_probability, percepts[1][k].detected_probability),
+            tuple((other, Change(float(before[k, j]), float(after[k, j]))) for j, other in enumerate(names) if j != k),
+        )
+        for k, name in enumerate(names)
+    )
+
+
+def _d_primes(percepts: Sequence[Percept], person: Observer, norm: str) -> Array:
+    cold = np.array([[percept.psi_cold for percept in percepts]])
+    warm = np.array([[percept.psi_warm for percept in percepts]])
+    first, chosen = percepts[0], check_norm(norm)
+    apart = differences(cold, warm, first.dt_s, person)[chosen][0]
+    return identification_dprime(apart, person, chosen, first.dt_s * (first.psi_cold.size - 1))
+
+
+def _pair(change: Change) -> dict[str, float]:
+    return {"designed": change.designed, "delivered": change.delivered}

@@ -1,0 +1,137 @@
+"""How far apart two percepts are, in d′: over time by a named norm, then over noise.
+
+At each instant the difference is d(t) = √(Δψ_cold² + Δψ_warm²), after both sensations were
+smoothed by the uncertainty of a remembered onset. A norm makes one number of it: `max` its
+largest value, `rms` its root mean square, `integral` its integral over time (per second).
+Back to back only sensory noise limits it; from memory, memory noise is added, which is constant
+in log units: ψ is about 2a·ln u, so σ_m log units are 2aσ_m of sensation.
+"""
+
+from __future__ import annotations
+
+import math
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array, as_rows
+from ..kernels.parallel import over_rows
+from ..observer.observer import NORMS, Norm, Observer, check_norm
+from ..sensation.percept import Percept
+
+
+def smooth(psi: ArrayLike, dt_s: float, uncertainty_s: float) -> Array:
+    """Sensation (..., n_time) blurred by a symmetric exponential of SD `uncertainty_s`; ends are held."""
+    from ..kernels import kernels
+
+    rows, shape = as_rows(psi)
+    if uncertainty_s <= 0.0:
+        return rows.reshape(shape).copy()
+    decay = math.exp(-dt_s * math.sqrt(2.0) / uncertainty_s)
+    blurred = np.empty_like(rows)
+
+    def work(part: slice) -> None:
+        kernels.blur(rows[part], decay, blurred[part])
+
+    over_rows(work, rows.shape[0], rows.size)
+    return blurred.reshape(shape)
+
+
+def differences(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer) -> dict[Norm, Array]:
+    """Differences between all icons of every person, in sensation units, for every norm.
+
+    `psi_cold`, `psi_warm` have shape (people, icons, n_time) on one clock. Each norm gets an array
+    (people, icons, icons), symmetric with a zero diagonal.
+    """
+    from ..kernels import kernels
+
+    cold = smooth(psi_cold, dt_s, observer.onset_uncertainty_s)
+    warm = smooth(psi_warm, dt_s, observer.onset_uncertainty_s)
+    if cold.ndim != 3 or cold.shape != warm.shape:
+        raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
+    people, icons, _ = cold.shape
+    first, second = np.triu_indices(icons, 1)
+    found = np.zeros((people, first.size, len(NORMS)))
+
+    def work(part: slice) -> None:
+        kernels.differences(cold[part], warm[part], dt_s, found[part])
+
+    over_rows(work, people, cold.size)
+    matrices: dict[Norm, Array] = {}
+    for k, norm in enumerate(NORMS):
+        matrix = np.zeros((people, icons, icons))
+        matrix[:, first, second] = found[..., k]
+        matrix[:, second, first] = found[..., k]
+        matrices[norm] = matrix
+    return matrices
+
+
+def difference(a: Percept, b: Percept, observer: Observer | None = None, norm: Norm = "max") -> float:
+    """Difference of two percepts in sensation units; the shorter one is held at its end."""
+    person = Observer.load() if observer is None else observer
+    cold, warm, dt = _common(a, b)
+    return float(differences(cold[None], warm[None], dt, person)[check_norm(norm)][0, 0, 1])
+
+
+def difference_trace(a: Percept, b: Percept, observer: Observer | None = None) -> Array:
+    """Signed smoothed differences a − b over time, shape (2, n_time): cold, warm."""
+    person = Observer.load() if observer is None else observer
+    cold, warm, dt = _common(a, b)
+    smoothed = [smooth(psi, dt, person.onset_uncertainty_s) for psi in (cold, warm)]
+    return np.stack([psi[0] - psi[1] for psi in smoothed])
+
+
+def identification_dprime(
+    difference: ArrayLike, observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0
+) -> Array:
+    """d′ of a difference when one of the two comes from memory.
+
+    `memory` multiplies the memory noise of this person and broadcasts against `difference`.
+    """
+    noise = identification_noise(observer, norm, duration_s, memory)
+    found: Array = np.asarray(difference, dtype=np.float64) / noise
+    return found
+
+
+def identification_noise(observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0) -> Array:
+    """Noise in the units of a norm when one of two comes from memory, shaped as `memory`."""
+    log_noise = observer.memory_noise(norm) * np.asarray(memory, dtype=np.float64)
+    noise: Array = np.hypot(sensory_noise(norm, observer, duration_s), 2.0 * observer.a * log_noise)
+    return noise
+
+
+def back_to_back_dprime(difference: ArrayLike, observer: Observer, norm: Norm, duration_s: float) -> Array:
+    """d′ of a difference when both are felt one after the other: sensory noise alone."""
+    found: Array = np.asarray(difference, dtype=np.float64) / sensory_noise(norm, observer, duration_s)
+    return found
+
+
+def sensory_noise(norm: Norm, observer: Observer, duration_s: float) -> float:
+    """Sensory noise in the units of a norm: 1, but for the integral of correlated noise √(2τT)."""
+    if check_norm(norm) == "integral":
+        return math.sqrt(2.0 * observer.noise_correlation_s * duration_s)
+    return 1.0
+
+
+def memory_from_task(difference: float, proportion: float, observer: Observer, norm: Norm, duration_s: float) -> float:
+    """Memory noise (log units) at which a difference is told in a two-interval choice with `proportion` correct.
+
+    The choice is correct with probability Φ(d′/√2).
+    """
+    noise = difference / (math.sqrt(2.0) * NormalDist().inv_cdf(proportion))
+    sensory = sensory_noise(norm, observer, duration_s)
+    return math.sqrt(max(noise * noise - sensory * sensory, 0.0)) / (2.0 * observer.a)
+
+
+def _common(a: Percept, b: Percept) -> tuple[Array, Array, float]:
+    if not math.isclose(a.dt_s, b.dt_s, rel_tol=1e-9):
+        raise ValueError(f"percepts are on clocks of {a.dt_s:g} s and {b.dt_s:g} s: simulate both at one rate")
+    n = max(a.psi_cold.size, b.psi_cold.size)
+    cold = np.stack([_held(p.psi_cold, n) for p in (a, b)])
+    warm = np.stack([_held(p.psi_warm, n) for p in (a, b)])
+    return cold, warm, a.dt_s
+
+
+def _held(psi: Array, n: int) -> Array:
+    return np.concatenate([psi, np.full(n - psi.size, psi[-1])])

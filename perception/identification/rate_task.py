@@ -1,0 +1,152 @@
+"""The rate task: what it says of gain control, and of the noise of memory.
+
+Bergmann Tiest & Kappers (2009) found that people tell two rates apart when they differ by a fixed
+fraction, whatever the rate and nearly whatever the span. Simulated through this observer's own
+distance, the independence sets the strength of gain control, the fraction sets memory noise.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from thermicon.circuit import Rig
+from thermicon.circuit.records import Record, Table
+
+from ..arrays import Array
+from ..observer.channels import CHANNELS, NORMS, Norm
+from ..observer.observer import Observer
+from ..observer.variants import source_of
+from ..sensation.bench import Bench, Stimuli, ramp
+from ..sensation.fits import RIG, with_unit_drives
+from ..sensation.percept import perceive_many
+from .distance import differences, memory_from_task
+
+TAIL_S = 10.0
+STRENGTHS = np.round(np.linspace(0.0, 1.0, 51), 2)
+EVEN = 1.02
+"""Strengths whose task is within 2 % of the most even one are not told apart by it."""
+
+
+def gain_strength(known: Table, observer: Observer) -> Record:
+    """Strength of gain control at which the rate task depends least on rate and span, as published."""
+    fraction = known.one("rate Weber fraction")
+    spread = []
+    for strength in STRENGTHS.tolist():
+        trial = with_unit_drives(known, with_gain(observer, strength))
+        sizes = [case.size["max"] for case in rate_task(known, trial)]
+        spread.append(max(sizes) / min(sizes))
+    best = int(np.argmin(spread))
+    alike = STRENGTHS[np.array(spread) <= max(EVEN * spread[best], spread[0])]
+    return Record(
+        quantity=f"gain control strength{source_of(observer.variable, observer.model)}",
+        unit="1",
+        source=f"calibrated on: {fraction.source}, that the fraction hardly depends on rate and span",
+        value=float(STRENGTHS[best]),
+        low=float(alike.min()),
+        high=float(alike.max()),
+        channel="both",
+        site=fraction.site,
+        method="least spread of the rate task over its conditions, norm max",
+        conditions=(
+            f"largest over smallest condition {spread[best]:.3f}, without gain control {spread[0]:.3f}; "
+            f"interval: strengths no worse than none, so that the data pin down only its upper end"
+        ),
+        confidence="low",
+        use="calibrate",
+    )
+
+
+def memory_noise(known: Table, observer: Observer) -> list[Record]:
+    """Memory noise at which the rate task comes out as published, for each norm of distance."""
+    fraction = known.one("rate Weber fraction")
+    rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
+    criteria = known.one("criterion of the rate task").interval
+    cases = rate_task(known, observer)
+    records = []
+    for norm in NORMS:
+        found = [
+            [memory_from_task(case.size[norm], proportion, observer, norm, case.duration_s) for case in cases]
+            for proportion in criteria
+        ]
+        ends = [_geometric_mean(values) for values in found]
+        every = [v for values in found for v in values]
+        spread = max(max(values) / max(min(values), 1e-9) for values in found)
+        conditions = (
+            f"skin-surface coolings at {rates[0]:g} and {rates[1]:g} K/s over {spans[0]:g} and {spans[1]:g} K against "
+            f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
+            f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
+        )
+        made = memory_record(norm, observer, _geometric_mean(ends), min(ends), max(ends))
+        records.append(replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions))
+    return records
+
+
+def memory_record(norm: Norm, observer: Observer | None, value: float, low: float, high: float) -> Record:
+    """A record of memory noise, not calibrated yet."""
+    variant = "" if observer is None else source_of(observer.variable, observer.model)
+    return Record(
+        quantity=f"memory noise{variant}",
+        unit="log units",
+        source="not calibrated yet",
+        value=value,
+        low=low,
+        high=high,
+        channel="both",
+        method=norm,
+        confidence="low",
+        use="calibrate",
+    )
+
+
+class RateCase(NamedTuple):
+    """One condition of the rate task: difference of its two coolings by each norm, and how long they last."""
+
+    size: dict[Norm, float]
+    duration_s: float
+
+
+def rate_task(known: Table, observer: Observer) -> list[RateCase]:
+    """The published rate discrimination, simulated: every rate and span, against a rate larger by the fraction."""
+    cases = []
+    for cold, warm, dt in _felt(known, observer):
+        apart = differences(cold[None], warm[None], dt, observer)
+        cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, dt * (cold.shape[-1] - 1)))
+    return cases
+
+
+def peaks_of_task(known: Table, observer: Observer) -> Array:
+    """Peak cold sensations of all ramps of the rate task, in d′."""
+    return np.concatenate([cold.max(axis=-1).ravel() for cold, _, _ in _felt(known, observer)])
+
+
+def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
+    """Cold and warm sensations (2, n_time) of the two ramps of every condition, and the step of their clock in s."""
+    fraction = known.one("rate Weber fraction").central
+    rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
+    for rate, span in itertools.product(rates, spans):
+        played = _pair(span, rate, rate * (1.0 + fraction))
+        at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
+        yield *perceive_many(at_cold, at_warm, played.dt_s, observer), played.dt_s
+
+
+def with_gain(observer: Observer, strength: float) -> Observer:
+    """The observer with gain control of this strength in both channels."""
+    cold, warm = (replace(observer.receptor(channel), gain_strength=strength) for channel in CHANNELS)
+    return replace(observer, cold=cold, warm=warm)
+
+
+@lru_cache(maxsize=64)
+def _pair(span_K: float, slow: float, fast: float) -> Stimuli:
+    end = round(span_K / slow + TAIL_S, 2)
+    return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
+
+
+def _geometric_mean(values: Sequence[float]) -> float:
+    return math.exp(sum(math.log(max(v, 1e-9)) for v in values) / len(values))

@@ -1,0 +1,58 @@
+"""Pictures of percepts and rankings; each returns its axes and never shows a window.
+
+Those of rankings are made in `draw_heat`, `draw_map` and `draw_table`.
+"""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING, Any
+
+from thermicon.circuit.solver.draw import COOL, WARM, new_axes
+
+from .draw_heat import plot_confusion, plot_distance, plot_places
+from .draw_map import plot_map
+from .draw_table import plot_ranking
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..sensation.percept import Percept
+
+CLOCK = "response clock: with conduction and decision"
+__all__ = [
+    "as_svg",
+    "plot_confusion",
+    "plot_distance",
+    "plot_map",
+    "plot_places",
+    "plot_ranking",
+    "plot_sensation",
+]
+
+
+def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
+    """Both sensations on the clock of the receptors, and when the first is reported, which is later."""
+    axes = new_axes(ax, (6.0, 3.2))
+    axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
+    axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
+    if percept.onset_s is not None:
+        said = f"reported as {percept.channel} at {percept.onset_s:.2f} s\n({CLOCK})"
+        axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
+    axes.set_xlabel(f"time (s), {percept.clock} clock")
+    axes.set_ylabel("sensation (d′)")
+    axes.set_title(percept.icon or "percept")
+    axes.set_xlim(0.0, float(percept.time_s[-1]))
+    axes.set_ylim(bottom=0.0)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(fontsize="small", framealpha=0.8)
+    return axes
+
+
+def as_svg(axes: Axes) -> str:
+    """The figure of some axes as SVG text, for a notebook."""
+    held = io.StringIO()
+    figure: Any = axes.figure
+    figure.savefig(held, format="svg", bbox_inches="tight")
+    text = held.getvalue()
+    return text[text.index("<svg") :]

@@ -1,0 +1,166 @@
+"""Heat maps of a set: distances, confusions and places, icons that are near one another side by side.
+
+One light map of one hue, so that a page stays printable and a grey copy keeps the order of the shades. Every cell says
+its number as long as it is large enough to hold one; then a colour bar says what the shades mean.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermicon.circuit.solver.draw import COOL, new_axes
+
+from ..arrays import Array
+from ..criteria import APART_DPRIME
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
+
+    from ..ranking.ranking import Ranking
+
+LIGHT = ("#ffffff", "#d7e5f2", "#93bcdc", COOL, "#0f3a69")
+LIGHT_TEXT_FROM = 0.55
+MOST_NUMBERED = 30
+LONGEST_LABEL = 44
+
+
+def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
+    """Predicted confusions in per cent: rows the icon presented, columns the name it is answered with.
+
+    Icons that are confused stand side by side, or `clustered=False` keeps the order of the file.
+    """
+    order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
+    names = [ranking.marked[k] for k in order]
+    axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
+    axes.set_xlabel("answered")
+    axes.set_ylabel("presented")
+    axes.set_title(f"predicted confusions, % ({100 * ranking.percent_correct:.0f} % correct)")
+    return axes
+
+
+def plot_distance(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
+    """Predicted d′ of every pair, the median over people; icons that are near stand side by side."""
+    order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
+    names = [ranking.marked[k] for k in order]
+    matrix = ranking.d_prime[np.ix_(order, order)]
+    axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * APART_DPRIME))
+    axes.set_xlabel("… and")
+    axes.set_ylabel("d′ between …")
+    axes.set_title(f"predicted d′ between icons ({ranking.norm})")
+    return axes
+
+
+def plot_places(ranking: Ranking, ax: Axes | None = None) -> Axes:
+    """Probability in per cent that an icon is at each place among the icons, over people; the best icon on top.
+
+    Raises `ValueError` for a ranking that kept nothing of its people.
+    """
+    if ranking.spread is None:
+        raise ValueError("this ranking keeps no places of single people: rank the icons again")
+    place = {name: k for k, name in enumerate(ranking.labels)}
+    order = [place[row["icon"]] for row in ranking.rows()] if ranking.by == "model" else list(place.values())
+    names = [ranking.marked[k] for k in order]
+    shares = 100.0 * ranking.spread.place_probability[order]
+    axes = heat([str(k + 1) for k in range(len(names))], names, shares, ax, top=100.0, upright=True)
+    axes.set_xlabel("place (1: named best)")
+    crowd = "1 person" if ranking.people == 1 else f"{ranking.people} people"
+    axes.set_title(f"place of each icon, % of {crowd}")
+    return axes
+
+
+def clustered_order(distances: Array) -> NDArray[np.intp]:
+    """Order of icons in which near ones are side by side: average linkage, its leaves ordered at best.
+
+    The first icon of the file is in the first half, so that the order does not flip at a touch.
+
+    >>> clustered_order(np.array([[0.0, 5, 1], [5, 0, 5], [1, 5, 0]])).tolist()
+    [0, 2, 1]
+    """
+    icons = len(distances)
+    if icons < 3:
+        return np.arange(icons)
+    from scipy.cluster.hierarchy import leaves_list, linkage, optimal_leaf_ordering
+
+    condensed = distances[np.triu_indices(icons, 1)]
+    leaves = leaves_list(optimal_leaf_ordering(linkage(condensed, "average"), condensed))
+    order = np.asarray(leaves, dtype=np.intp)
+    return order[::-1] if 2 * int(np.flatnonzero(order == 0)[0]) >= icons else order
+
+
+def heat(
+    columns: list[str],
+    rows: list[str],
+    values: Array,
+    ax: Axes | None = None,
+    top: float | None = None,
+    upright: bool = False,
+    bend: float = 1.0,
+) -> Axes:
+    """One heat map of values of 0 and more, shape (rows, columns); `top` is the value of the darkest shade.
+
+    `bend` below 1 gives small values more of the shades. `upright` column names are short ones.
+    """
+    from matplotlib.colors import PowerNorm
+
+    room = 0.075 * max(map(len, map(short, rows)))
+    cell = 0.55 if len(rows) <= 12 else 0.42 if len(rows) <= MOST_NUMBERED else 0.16
+    width = 1.2 + room + cell * len(columns)
+    below = 0.9 if upright else 0.7 + 0.8 * room
+    axes = new_axes(ax, (max(4.6, width), max(2.2, cell * len(rows) + below + 0.4)))
+    highest = max(float(values.max()) if top is None else top, 1e-9)
+    edges = [np.arange(count + 1) - 0.5 for count in (len(columns), len(rows))]
+    norm = PowerNorm(bend, vmin=0.0, vmax=highest)
+    drawn = axes.pcolormesh(*edges, values, cmap=light_map(), norm=norm, edgecolors="#e4e4e4", lw=0.4)
+    axes.set_aspect("equal")
+    axes.set_xlim(-0.5, len(columns) - 0.5)
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    size = 9.0 if len(rows) <= MOST_NUMBERED else 6.0
+    axes.set_xticks(np.arange(len(columns)), [short(name) for name in columns], fontsize=size)
+    if not upright:
+        for label in axes.get_xticklabels():
+            label.set(rotation=45, ha="right", rotation_mode="anchor")
+    axes.set_yticks(np.arange(len(rows)), [short(name) for name in rows], fontsize=size)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    if len(rows) > MOST_NUMBERED:
+        figure = axes.get_figure()
+        if figure is not None:
+            figure.colorbar(drawn, ax=axes, shrink=0.6, aspect=30)
+        return axes
+    number = 9.0 if len(rows) <= 16 else 7.0
+    for (i, j), value in np.ndenumerate(values):
+        colour = "w" if (value / highest) ** bend > LIGHT_TEXT_FROM else "#222222"
+        axes.text(j, i, cell_text(float(value)), ha="center", va="center", fontsize=number, color=colour)
+    return axes
+
+
+def light_map() -> Colormap:
+    """White to dark blue, ever darker: readable in print and in grey."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("thermicon light", LIGHT)
+
+
+def cell_text(value: float) -> str:
+    """Two digits at most.
+
+    >>> cell_text(99.96), cell_text(9.94), cell_text(0.04)
+    ('100', '9.9', '0')
+    """
+    return f"{value:.0f}" if value >= 9.95 or value < 0.05 else f"{value:.1f}"
+
+
+def short(name: str, most: int = LONGEST_LABEL) -> str:
+    """A name that fits beside a figure: the middle of a very long one is left out.
+
+    >>> short("abcdefghij", 7)
+    'abc…hij'
+    """
+    if len(name) <= most:
+        return name
+    half = (most - 1) // 2
+    return f"{name[: most - 1 - half]}…{name[-half:]}"

@@ -1,0 +1,107 @@
+"""The same chunks on a dask.distributed cluster, for work that one machine would take too long for.
+
+Chunks of a worker that dies are done again by others; what comes back does not depend on who did it.
+"""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from typing import Any
+
+from .chunks import Found, Work, code_digest, run
+
+PATIENCE_S = 5.0
+"""How long to wait for a scheduler to answer, and for a first worker."""
+RETRIES = 3
+ADDRESS = re.compile(r"((tcp|tls|ws|wss)://)?[^\s/:]+:\d{1,5}|((tcp|tls|ws|wss)://)?\[[0-9a-fA-F:.]+\]:\d{1,5}")
+
+
+class ClusterError(RuntimeError):
+    """A cluster cannot be used; the text says why and what to change."""
+
+
+def on_cluster(work: Work, numbers: list[int], address: str) -> Iterator[tuple[int, Found]]:
+    """Do some chunks on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
+
+    Each is given as soon as it is done. Raises `ClusterError` where nothing answers, there is no worker, or a worker
+    has other code or fails.
+    """
+    with _client(address) as client:
+        tasks = {client.submit(_run, work, number, pure=False, retries=RETRIES): number for number in numbers}
+        try:
+            for task in import_module("distributed").as_completed(list(tasks), loop=client.loop):
+                number = tasks.pop(task)
+                yield number, _result(task, address)
+                task.release()
+        except BaseException:
+            client.cancel(list(tasks))
+            raise
+
+
+@contextmanager
+def _client(address: str) -> Iterator[Any]:
+    try:
+        distributed: Any = import_module("distributed")
+    except ImportError as error:
+        cure = "pip install 'thermicon[cluster]'"
+        raise ClusterError(f"--cluster needs the package distributed: install it with {cure}") from error
+    if not ADDRESS.fullmatch(address):
+        raise ClusterError(f"{address!r} is not the address of a scheduler: give one such as tcp://127.0.0.1:8786")
+    with _quiet():
+        try:
+            client = distributed.Client(address, timeout=PATIENCE_S, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise ClusterError(
+                f"no cluster answers at {address} within {PATIENCE_S:g} s: start one with `dask scheduler` and "
+                "`dask worker ADDRESS`, and give the address that the scheduler prints, such as tcp://127.0.0.1:8786"
+            ) from error
+        try:
+            try:
+                client.wait_for_workers(1, timeout=PATIENCE_S)
+            except TimeoutError as error:
+                raise ClusterError(
+                    f"the cluster at {address} has no workers: start some with `dask worker {address}`"
+                ) from error
+            yield client
+        finally:
+            client.close(timeout=PATIENCE_S)
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep what distributed logs about connections off stderr: what matters comes as an error."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.comm", "distributed.client", "tornado")]
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
+
+
+def _run(work: Work, number: int) -> tuple[str, Found]:
+    """Done on a worker: the chunk, with what code it was done by."""
+    from thermicon.circuit.solver.cores import at_most
+
+    with at_most(1):
+        return code_digest(), run(work, number)
+
+
+def _result(task: Any, address: str) -> Found:
+    try:
+        code, found = task.result()
+    except Exception as error:
+        raise ClusterError(
+            f"a worker of the cluster at {address} failed: {error or type(error).__name__}; all workers need the same "
+            "version of thermicon as this machine, and memory for a part of the work"
+        ) from error
+    if code != code_digest():
+        raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
+    made: Found = found
+    return made

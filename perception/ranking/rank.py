@@ -1,0 +1,315 @@
+"""The main job: icons on a rig → what people feel → who is confused with whom → a ranking."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.program import own_version
+
+from ..arrays import Array
+from ..comparison.distance_components import course, course_parts
+from ..comparison.reasons import pair_reasons
+from ..comparison.rule_score import disagreements, icon_score, pair_margin, worst_by_rules
+from ..comparison.rules import icon_rules, pair_rules, rig_rules
+from ..identification.carry_over import CarryOver, among, prepared
+from ..identification.intervals import DRAWS, parameter_intervals
+from ..identification.population import Scores
+from ..identification.spread import spread_over_people
+from ..identification.task import USUAL, Task
+from ..observer.observer import DATA, Norm, Observer, check_norm
+from ..observer.people import People, draw_people
+from ..selection.choose import Choice, choose
+from ..selection.request import Choosing, against, check_asked
+from ..sensation.coverage import outside_data
+from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
+from ..sensation.percept import Percept, perceive
+from .chunks import RATE_HZ, Work
+from .edits import with_edits
+from .gather import Gathered, Where, gather
+from .ranking import IconScore, PairScore, Ranking
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon, IconSet
+
+TAIL_S = 10.0
+RANKED_BY = ("model", "rules")
+EDITS = ("worst", "all", "none")
+
+Progress = Callable[[int, int], None]
+
+
+def rank(
+    icons: IconSet,
+    rig: Rig,
+    *,
+    people: int = 200,
+    seed: int = 0,
+    trials: int = 48,
+    tracking: str | None = None,
+    norm: str = "max",
+    by: str = "model",
+    parameters: int = DRAWS,
+    choosing: Choosing | None = None,
+    edits: str = "none",
+    task: Task = USUAL,
+    workers: int | None = None,
+    cluster: str | None = None,
+    keep: Path | None = None,
+    progress: Progress | None = None,
+) -> Ranking:
+    """Predict how well people tell the icons of a set apart when they name them from memory.
+
+    Every icon is simulated to one common end, the longest icon plus 10 s, on the nominal rig and on
+    that of each virtual person. `tracking` is `replay`, `display` or `ideal` (None: what suits the
+    icon's control); `norm` is `max`, `rms` or `integral`. `by` is `model`, or `rules`: then icons
+    are ranked by rules alone, and the model only says where it disagrees. `parameters` observers are drawn
+    for the intervals that the observer's parameters leave open (0: none). `choosing` asks for the best few of the
+    icons, and the intervals are then those of the chosen; `edits` for the cheapest edit of the `worst` pair, of `all`
+    that are not apart, or of `none`. `task` says how icons are asked for: memory noise that follows the range of the
+    set, a gap so short that the icon before is still felt, favoured names. `progress` is called with (steps done,
+    steps in all). A pair's d′ is the median over people. Icons that are not safe or not reached are ranked apart,
+    after all others.
+
+    The work goes in chunks of people, to `workers` threads (None: one a core) or to the dask cluster whose scheduler
+    has the address `cluster`; with a folder `keep`, finished chunks stay there and a run that was ended goes on from
+    them. None of it changes the result: same arguments, same bytes.
+
+    Raises `ValueError` for a set without icons, for unknown names, a single draw, and a choice that cannot be made.
+    """
+    from thermicon.circuit import duration_s, simulate_all
+
+    members = list(icons)
+    if not members:
+        raise ValueError("there is no icon to rank: the set is empty")
+    chosen = check_norm(norm)
+    if by not in RANKED_BY:
+        raise ValueError(f"a ranking is by {' or '.join(RANKED_BY)}, not by {by!r}")
+    if edits not in EDITS:
+        raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
+    if choosing is not None:
+        check_asked(choosing, [icon.name for icon in members])
+    if parameters < 0 or parameters == 1:
+        raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
+    draws = parameters if by == "model" else 0
+    where = Where(workers, cluster, keep)
+    observer = Observer.load()
+    crowd = draw_people(people, seed)
+    durations = [duration_s(icon, rig) for icon in members]
+    end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
+    fine = [] if task.plain else [k for k, trace in enumerate(traces) if against(trace) is None]
+    task, left = prepared(task, members, rig, end, fine, tracking)
+    work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
+    report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
+    percepts = [perceive(trace, observer) for trace in traces]
+    report()
+
+    all_ = gather(work, where, report)
+    made = _assemble(members, traces, percepts, all_, chosen, observer)
+    counted = _playable(made)
+    worst = _worst(counted) if by == "model" else worst_by_rules(counted)
+    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task)
+    picked = None
+    if choosing is not None:
+        picked = choose(
+            choosing,
+            members,
+            rig,
+            traces,
+            all_.d_prime,
+            crowd,
+            seed=seed,
+            tracking=tracking,
+            norm=chosen,
+            task=task,
+            left=left,
+        )
+        report()
+    whole = None if picked is not None else Scores(all_.correct, all_.bits, all_.detected)
+    intervals = None
+    if draws and whole is not None:
+        intervals = parameter_intervals(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
+    elif draws and picked is not None:
+        picked = _with_interval(
+            picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, (task, left), report
+        )
+    ranking = Ranking(
+        version=own_version(),
+        rig=rig.name,
+        rig_changes=tuple(rig.changes),
+        seed=seed,
+        people=people,
+        tracking=_tracking(members, tracking),
+        by=by,
+        norm=chosen,
+        content_hash=_hash(icons, rig),
+        icons=made.icons,
+        pairs=pairs,
+        confusion=all_.pooled,
+        percent_correct=float(all_.correct.mean()),
+        percent_correct_interval=_interval(all_.correct),
+        information_bits=float(all_.bits.mean()),
+        information_bits_interval=_interval(all_.bits),
+        bits_per_s=float(all_.bits.mean()) / (sum(durations) / len(durations)),
+        information_bits_plugin=float(all_.plugin.mean()),
+        trials=trials,
+        worst_pair=worst,
+        rules_disagree=disagreements(made.icons, made.pairs),
+        by_norm={norm: tuple(each.tolist()) for norm, each in all_.by_norm.items()},
+        stress=float(np.median(all_.stress)),
+        standard_error=all_.standard_error,
+        person_standard_error=all_.person_standard_error,
+        rules=rig_rules(rig),
+        parameter_intervals=intervals,
+        chosen=picked,
+        spread=spread_over_people(all_.d_prime, all_.each_correct),
+        task=task,
+        carry_over=left,
+    )
+    report()
+    return ranking
+
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    icons: tuple[IconScore, ...]
+    pairs: tuple[PairScore, ...]
+
+
+def _assemble(
+    icons: Sequence[Icon],
+    traces: Sequence[Trace],
+    percepts: Sequence[Percept],
+    all_: Gathered,
+    norm: Norm,
+    observer: Observer,
+) -> _Made:
+    middle, pooled, detected = all_.middle, all_.pooled, all_.detected
+    pairs = []
+    courses = [course(trace, percept, observer) for trace, percept in zip(traces, percepts, strict=True)]
+    for i, j in combinations(range(len(icons)), 2):
+        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
+        rules = pair_rules(traces[i], traces[j])
+        pairs.append(
+            PairScore(
+                a=icons[i].name,
+                b=icons[j].name,
+                d_prime=float(middle[i, j]),
+                confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
+                why=tuple(reason.text for reason in why),
+                rules=rules,
+                rules_margin=pair_margin(rules),
+                parts=course_parts(courses[i], courses[j], observer),
+            )
+        )
+    scored = []
+    for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
+        safe, reason, cautions = _verdict(trace)
+        own = icon_rules(trace, percept)
+        against = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
+        share, margin = icon_score(own, against)
+        scored.append(
+            IconScore(
+                name=icon.name,
+                detected_probability=float(detected[k]),
+                onset_s=percept.onset_s,
+                channel=percept.channel,
+                peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
+                attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
+                delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
+                percent_correct=float(pooled[k, k]),
+                reachable=bool(trace.reachable),
+                safe=safe,
+                reason=reason,
+                cautions=cautions,
+                rules=own,
+                rules_score=share,
+                rules_margin=margin,
+                outside_data=outside_data(trace),
+            )
+        )
+    return _Made(tuple(scored), tuple(pairs))
+
+
+def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
+    """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
+    from thermicon.circuit import judge_safety
+
+    safety = judge_safety(trace)
+    against = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
+    amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
+    return bool(safety.safe), "; ".join(against) or None, amber
+
+
+def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
+    from thermicon.circuit import usual_tracking
+
+    return asked or ", ".join(sorted({usual_tracking(icon) for icon in icons}))
+
+
+def _with_interval(
+    picked: Choice,
+    names: Sequence[str],
+    all_: Gathered,
+    crowd: People,
+    norm: Norm,
+    draws: int,
+    seed: int,
+    asked: tuple[Task, CarryOver | None],
+    step: Callable[[], None],
+) -> Choice:
+    """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
+    places = [names.index(name) for name in picked.icons]
+    own = picked.at_own_range
+    at_once = Scores(np.array([own.percent_correct]), np.array([own.information_bits]), all_.detected[places])
+    found = parameter_intervals(
+        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=among(*asked, places), step=step
+    )
+    return replace(picked, parameter_intervals=found)
+
+
+def _playable(made: _Made) -> tuple[PairScore, ...]:
+    """The pairs of icons that can be played; all pairs where there is none of them."""
+    fine = {icon.name for icon in made.icons if icon.playable}
+    return tuple(pair for pair in made.pairs if pair.a in fine and pair.b in fine) or made.pairs
+
+
+def _worst(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
+    """The pair most often confused; equal ones by name."""
+    if not pairs:
+        return None
+    first = min(pairs, key=lambda p: (-p.confused_probability, p.a, p.b))
+    return first.a, first.b
+
+
+def _interval(values: Array) -> tuple[float, float]:
+    low, high = np.percentile(values, [2.5, 97.5])
+    return float(low), float(high)
+
+
+def _steps(progress: Progress | None, total: int) -> Callable[[], None]:
+    done = 0
+
+    def step() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, total)
+
+    return step
+
+
+def _hash(icons: IconSet, rig: Rig) -> str:
+    """Hash of everything that was ranked: the icons' canonical text, the rig and the observer's numbers."""
+    observer = (DATA / "observer.toml").read_text(encoding="utf-8")
+    held = "\0".join([str(icons), rig.document, observer])
+    return hashlib.sha256(held.encode("utf-8")).hexdigest()

@@ -1,0 +1,185 @@
+"""A ranking as the plain data of `rank --json`: what does not exist is None, never NaN.
+
+By rules, everything that only the model gives is None, so that nobody takes a number for one of the rules'.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..observer.observer import check_norm
+from ..selection.edit import Edit, NoEdit
+
+if TYPE_CHECKING:
+    from ..identification.intervals import Interval, ParameterIntervals
+    from .ranking import IconScore, PairScore, Ranking
+
+
+def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
+    """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
+    model = ranking.by == "model"
+    asked = ranking.parameter_intervals if model else None
+    detected: tuple[Interval | None, ...] = asked.detected if asked else (None,) * len(ranking.icons)
+    made: dict[str, Any] = plain(
+        {
+            "thermicon": ranking.version,
+            "rig": ranking.rig,
+            "rig_changes": list(ranking.rig_changes),
+            "seed": ranking.seed,
+            "people": ranking.people,
+            "tracking": ranking.tracking,
+            "by": ranking.by,
+            "norm": ranking.norm,
+            "content_hash": ranking.content_hash,
+            "task": ranking.task.to_dict(),
+            "icons": [
+                {**_icon(icon, model, d), "carry_over": _carried(ranking, place)}
+                for place, (icon, d) in enumerate(zip(ranking.icons, detected, strict=True))
+            ],
+            "pairs": [_pair(pair, model) for pair in ranking.pairs],
+            "confusion": {
+                "labels": list(ranking.labels),
+                "probability": ranking.confusion.tolist() if model else None,
+                "standard_error": ranking.standard_error if model else None,
+                "person_standard_error": ranking.person_standard_error if model else None,
+            },
+            "set": _set(ranking, model, asked),
+            "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
+            "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
+        }
+    )
+    return made
+
+
+def as_text(made: dict[str, Any]) -> str:
+    """JSON text of plain data: a key a line, and a thing a line where a key holds a list of things.
+
+    >>> print(as_text({"seed": 0, "pairs": [{"a": "x"}, {"a": "y"}]}))
+    {
+     "seed": 0,
+     "pairs": [
+      {"a": "x"},
+      {"a": "y"}
+     ]
+    }
+    """
+    lines = []
+    for key, value in made.items():
+        if isinstance(value, list) and any(isinstance(thing, dict) for thing in value):
+            text = "[\n  " + ",\n  ".join(_one_line(thing) for thing in value) + "\n ]"
+        else:
+            text = _one_line(value)
+        lines.append(f" {_one_line(key)}: {text}")
+    return "{\n" + ",\n".join(lines) + "\n}"
+
+
+def _one_line(held: Any) -> str:
+    return json.dumps(held, ensure_ascii=False, allow_nan=False)
+
+
+def plain(held: Any) -> Any:
+    """Plain JSON data: a number that is not finite does not exist.
+
+    >>> plain({"a": float("nan"), "b": np.float64(1.5)})
+    {'a': None, 'b': 1.5}
+    """
+    if isinstance(held, dict):
+        return {str(key): plain(value) for key, value in held.items()}
+    if isinstance(held, list | tuple):
+        return [plain(value) for value in held]
+    if isinstance(held, bool | np.bool_):
+        return bool(held)
+    if isinstance(held, int | np.integer):
+        return int(held)
+    if isinstance(held, float | np.floating):
+        return float(held) if math.isfinite(held) else None
+    return held
+
+
+def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dict[str, Any]:
+    many = model and len(ranking.icons) > 1
+    return {
+        "percent_correct": ranking.percent_correct if model else None,
+        "percent_correct_interval": list(ranking.percent_correct_interval) if model else None,
+        "information_bits": ranking.information_bits if many else None,
+        "information_bits_interval": list(ranking.information_bits_interval) if many else None,
+        "bits_per_s": ranking.bits_per_s if many else None,
+        "information_bits_plugin": ranking.information_bits_plugin if many else None,
+        "trials": ranking.trials,
+        "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
+        "rules_disagree": list(ranking.rules_disagree),
+        "norm_sensitivity": ranking.norm_sensitivity if model else {},
+        "norm_changes": ranking.norm_changes if model else {},
+        "percent_correct_parameter_interval": asked.percent_correct if asked else None,
+        "information_bits_parameter_interval": asked.information_bits if asked and many else None,
+        "parameter_draws": asked.draws if asked else None,
+        "rules_score": ranking.rules_score,
+        "rules": [r.to_dict() for r in ranking.rules],
+    }
+
+
+def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, Any]:
+    def both(values: tuple[float | None, float | None]) -> dict[str, float | None]:
+        return {"cold_receptor": values[0], "warm_receptor": values[1]}
+
+    return {
+        "name": icon.name,
+        "detected_probability": icon.detected_probability if model else None,
+        "onset_s": icon.onset_s if model else None,
+        "channel": icon.channel if model else None,
+        "peak_change_K": both(icon.peak_change_K),
+        "attack_K_per_s": both(icon.attack_K_per_s),
+        "delay_s": both(icon.delay_s),
+        "percent_correct": icon.percent_correct if model else None,
+        "reachable": icon.reachable,
+        "safe": icon.safe,
+        "reason": icon.reason,
+        "cautions": list(icon.cautions),
+        "rules": [r.to_dict() for r in icon.rules],
+        "rules_score": icon.rules_score,
+        "rules_margin": icon.rules_margin,
+        "outside_data": list(icon.outside_data),
+        "detected_parameter_interval": detected,
+    }
+
+
+def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
+    """After which icon this one feels least like itself; None where every icon comes after a long pause."""
+    if ranking.carry_over is None or ranking.by == "rules":
+        return None
+    return ranking.carry_over.worst_of(place, check_norm(ranking.norm), ranking.task.counted)
+
+
+def _map(ranking: Ranking) -> dict[str, Any]:
+    """The perceptual map: a point an icon, in d′, and where it lies for single people as a covariance in d′²."""
+    from ..identification.map import map_of
+
+    found = map_of(ranking)
+    spread = [None] * len(found.labels) if found.covariance is None else found.covariance.tolist()
+    points = zip(found.labels, found.points.tolist(), spread, strict=True)
+    return {
+        "stress": found.stress,
+        "people": found.people,
+        "points": [{"icon": name, "x": x, "y": y, "covariance": covariance} for name, (x, y), covariance in points],
+    }
+
+
+def _pair(pair: PairScore, model: bool) -> dict[str, Any]:
+    edit = pair.edit if model else None
+    return {
+        "a": pair.a,
+        "b": pair.b,
+        "d_prime": pair.d_prime if model else None,
+        "confused_probability": pair.confused_probability if model else None,
+        "why": list(pair.why) if model else [r.text for r in pair.rules],
+        "rules": [r.to_dict() for r in pair.rules],
+        "edit": edit.to_dict() if isinstance(edit, Edit) else None,
+        "told_apart_by_rules": pair.rules_pass,
+        "rules_margin": pair.rules_margin,
+        "no_edit": edit.reason if isinstance(edit, NoEdit) else None,
+        "parts": [part.to_dict() for part in pair.parts] if model else [],
+    }

@@ -1,0 +1,282 @@
+"""What `rank` found: a frozen noun with the contract's JSON, a table and two pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import permutations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..comparison.distance_components import Part
+from ..comparison.rule_score import counted
+from ..comparison.rules import TOLD_APART, RuleResult
+from ..identification.intervals import ParameterIntervals
+from ..identification.spread import Spread
+from ..identification.task import USUAL, Task
+from ..observer.observer import Channel
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from ..identification.carry_over import CarryOver
+    from ..selection.choose import Choice
+    from ..selection.edit import Edit, NoEdit
+
+
+A_POINT = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class IconScore:
+    """One icon. Probability of detection and per cent correct are means over people; the rest is nominal.
+
+    `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
+    attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` says why the icon is not
+    safe, cannot be reached, or both; `cautions` are the soft limits of safety that it passes; `outside_data`
+    says where no data stand behind the prediction. `rules_score` is the share passed of its own rules and of
+    its pairs told apart, `rules_margin` the smallest normalised margin among them.
+    """
+
+    name: str
+    detected_probability: float
+    onset_s: float | None
+    channel: Channel | None
+    peak_change_K: tuple[float, float]
+    attack_K_per_s: tuple[float, float]
+    delay_s: tuple[float | None, float | None]
+    percent_correct: float
+    reachable: bool
+    safe: bool
+    reason: str | None
+    rules: tuple[RuleResult, ...]
+    rules_score: float
+    rules_margin: float | None
+    cautions: tuple[str, ...] = ()
+    outside_data: tuple[str, ...] = ()
+
+    @property
+    def playable(self) -> bool:
+        """Whether the icon is safe and the rig reaches it."""
+        return self.safe and self.reachable
+
+
+@dataclass(frozen=True, slots=True)
+class PairScore:
+    """One pair: median d′ over people, share of confusions (either way, mean of both), why, rules.
+
+    `rules_margin` is how safely rules tell it apart, in shares of a threshold (None: by direction alone). `edit` is
+    the cheapest edit that parts the two, or why there is none (None: not looked for); `parts` are those of the distance
+    for a nominal person.
+    """
+
+    a: str
+    b: str
+    d_prime: float
+    confused_probability: float
+    why: tuple[str, ...]
+    rules: tuple[RuleResult, ...]
+    rules_margin: float | None = None
+    edit: Edit | NoEdit | None = None
+    parts: tuple[Part, ...] = ()
+
+    @property
+    def rules_pass(self) -> bool:
+        """Whether the rules alone tell the two apart."""
+        return any(r.passed for r in self.rules if r.rule == TOLD_APART)
+
+
+@dataclass(frozen=True, slots=True)
+class Ranking:
+    """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
+
+    Per cent correct is 0–1 and information in bits, each with the 2.5–97.5 % interval over people.
+    `rig_changes` are what was changed on the rig for this question, such as `contact.area_cm2=4`.
+    `stress` and the standard errors (of the pooled cell, and of the cell of one person, that sampling blurs most) are
+    the accuracy of confusions, not spread over people.
+    `parameter_intervals` is what the observer's parameters leave open (None: not asked for). `by` says what
+    the icons are ranked by and which worst pair is told; the model's numbers are there in both cases. `chosen` are
+    the best few of them, where asked for; `spread` is what pictures need of single people. `task` is how icons are
+    asked for; `carry_over`, with a gap between them, what each leaves behind for the next (None: nothing). `by_norm` is
+    the proportion correct of each icon by the norms that were not asked for.
+    """
+
+    version: str
+    rig: str
+    seed: int
+    people: int
+    tracking: str
+    by: str
+    norm: str
+    content_hash: str
+    icons: tuple[IconScore, ...]
+    pairs: tuple[PairScore, ...]
+    confusion: Array
+    percent_correct: float
+    percent_correct_interval: tuple[float, float]
+    information_bits: float
+    information_bits_interval: tuple[float, float]
+    bits_per_s: float
+    information_bits_plugin: float
+    trials: int
+    worst_pair: tuple[str, str] | None
+    rules_disagree: tuple[dict[str, Any], ...]
+    by_norm: dict[str, tuple[float, ...]]
+    stress: float
+    standard_error: float
+    person_standard_error: float
+    rules: tuple[RuleResult, ...] = ()
+    parameter_intervals: ParameterIntervals | None = None
+    rig_changes: tuple[str, ...] = ()
+    chosen: Choice | None = None
+    spread: Spread | None = None
+    task: Task = USUAL
+    carry_over: CarryOver | None = None
+
+    def __post_init__(self) -> None:
+        own = np.array(self.confusion, dtype=np.float64)
+        if own.shape != (len(self.icons),) * 2 or not np.allclose(own.sum(axis=1), 1.0, rtol=0, atol=1e-12):
+            raise ValueError("the confusion matrix must have a row and a column for each icon, and rows that sum to 1")
+        own.setflags(write=False)
+        object.__setattr__(self, "confusion", own)
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Names of the icons, in file order."""
+        return tuple(icon.name for icon in self.icons)
+
+    @property
+    def marked(self) -> tuple[str, ...]:
+        """Names of the icons for pictures: a star behind those that are not safe or not reached."""
+        return tuple(icon.name if icon.playable else f"{icon.name} *" for icon in self.icons)
+
+    @property
+    def d_prime(self) -> Array:
+        """Median d′ of every pair as a matrix (icons, icons), zero on the diagonal."""
+        place = {name: k for k, name in enumerate(self.labels)}
+        matrix = np.zeros((len(place), len(place)))
+        for pair in self.pairs:
+            i, j = place[pair.a], place[pair.b]
+            matrix[i, j] = matrix[j, i] = pair.d_prime
+        return matrix
+
+    @property
+    def norm_sensitivity(self) -> dict[str, float]:
+        """Proportion correct of the set by each of the other norms."""
+        return {norm: sum(each) / len(each) for norm, each in self.by_norm.items()}
+
+    @property
+    def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
+        """By each other norm, the pairs of icons that change places: the first is better here, the second there.
+
+        Only by more than one point of per cent correct in both, since less is within what sampling blurs.
+        """
+        own = [icon.percent_correct for icon in self.icons]
+        return {
+            norm: tuple(
+                (self.labels[i], self.labels[j])
+                for i, j in permutations(range(len(own)), 2)
+                if own[i] > own[j] + A_POINT and each[j] > each[i] + A_POINT
+            )
+            for norm, each in self.by_norm.items()
+        }
+
+    @property
+    def rules_score(self) -> float | None:
+        """Share of pairs that rules alone tell apart; None for one icon."""
+        return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
+
+    def rows(self) -> list[dict[str, Any]]:
+        """One plain row for each icon, the best first: by per cent correct, or by its rules when `by` is rules.
+
+        Icons that are not safe or not reached come after all others. By rules, what only the model gives is None.
+        """
+        model = self.by == "model"
+        return [
+            {
+                "icon": icon.name,
+                "percent_correct": icon.percent_correct if model else None,
+                "detected_probability": icon.detected_probability if model else None,
+                "onset_s": icon.onset_s if model else None,
+                "channel": icon.channel if model else None,
+                "peak_change_cold_K": icon.peak_change_K[0],
+                "peak_change_warm_K": icon.peak_change_K[1],
+                "rules_score": icon.rules_score,
+                "rules_margin": icon.rules_margin,
+                "rules_passed": sum(r.passed for r in counted(icon.rules)),
+                "rules": len(counted(icon.rules)),
+                "pairs_apart_by_rules": self._pairs_apart(icon.name),
+                "reachable": icon.reachable,
+                "safe": icon.safe,
+                "reason": icon.reason,
+            }
+            for icon in sorted(self.icons, key=self._order)
+        ]
+
+    def to_frame(self) -> pd.DataFrame:
+        """The rows as a table."""
+        import pandas as pd
+
+        return pd.DataFrame(self.rows())
+
+    def to_dict(self) -> dict[str, Any]:
+        """The contract of `rank --json` as plain data: what does not exist is None, never NaN."""
+        from .rank_file import ranking_file
+
+        return ranking_file(self)
+
+    def to_json(self) -> str:
+        """That contract as text, the same bytes for the same arguments."""
+        from .rank_file import as_text
+
+        return as_text(self.to_dict())
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the pooled confusion matrix; returns the axes."""
+        from ..plots.draw import plot_confusion
+
+        return plot_confusion(self, ax)
+
+    def __repr__(self) -> str:
+        low, high = self.percent_correct_interval
+        icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
+        where = with_changes(self.rig, self.rig_changes)
+        if self.by == "rules":
+            worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
+            apart = sum(pair.rules_pass for pair in self.pairs)
+            pairs = f", {apart} of {len(self.pairs)} pairs told apart" if self.pairs else ""
+            return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
+        crowd = "1 person" if self.people == 1 else f"{self.people} people"
+        spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
+        bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
+        worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
+        return (
+            f"Ranking(predicted: {icons} on {where}, {crowd}, "
+            f"{100 * self.percent_correct:.1f} % correct{spread}{bits}{worst})"
+        )
+
+    def _repr_html_(self) -> str:
+        from ..plots.draw import as_svg, plot_confusion
+
+        return as_svg(plot_confusion(self, None))
+
+    def _pairs_apart(self, name: str) -> int:
+        return sum(pair.rules_pass for pair in self.pairs if name in (pair.a, pair.b))
+
+    def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
+        if self.by == "rules":
+            margin = float("inf") if icon.rules_margin is None else icon.rules_margin
+            return (not icon.playable, -icon.rules_score, -margin, icon.name)
+        return (not icon.playable, -icon.percent_correct, 0.0, icon.name)
+
+
+def with_changes(rig: str, changes: Sequence[str]) -> str:
+    """A rig's name with what was changed on it.
+
+    >>> with_changes("thenar", ["contact.area_cm2=4"]), with_changes("thenar", [])
+    ('thenar with contact.area_cm2=4', 'thenar')
+    """
+    return f"{rig} with {', '.join(changes)}" if changes else rig

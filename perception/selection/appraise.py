@@ -1,0 +1,137 @@
+"""What a set is worth in a few numbers: the chain of `rank` without reasons, rules and intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.confusion import SAMPLES, confuse
+from ..identification.measures import information_bits, percent_correct
+from ..identification.population import Played, between, feel
+from ..identification.task import USUAL, Task
+from ..observer.observer import Norm, Observer
+from ..observer.people import People, draw_people
+from .subset_identification import Objective
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+
+RATE_HZ = 100.0
+TAIL_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Appraisal:
+    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits a second."""
+
+    worst_pair: tuple[str, str]
+    d_prime: float
+    percent_correct: float
+    information_bits: float
+    bits_per_s: float
+
+    def value(self, objective: Objective) -> float:
+        """The number that an objective goes by."""
+        return {
+            "worst": self.d_prime,
+            "correct": self.percent_correct,
+            "bits": self.information_bits,
+            "bits-per-s": self.bits_per_s,
+        }[objective]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, for JSON."""
+        return {
+            "worst_pair": list(self.worst_pair),
+            "d_prime": self.d_prime,
+            "percent_correct": self.percent_correct,
+            "information_bits": self.information_bits,
+            "bits_per_s": self.bits_per_s,
+        }
+
+
+def appraise(
+    icons: Sequence[Icon],
+    rig: Rig,
+    *,
+    people: int | People = 200,
+    seed: int = 0,
+    tracking: str | None = None,
+    norm: Norm = "max",
+    samples: int = SAMPLES,
+    task: Task = USUAL,
+) -> Appraisal:
+    """Predict how well people tell these icons apart, with the same people and noise as `rank`.
+
+    Raises `ValueError` for fewer than two icons, and what `simulate_many` raises.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> six = read_cue("six-icons")
+    >>> appraise([six["cooling-step"], six["warming-step"]], Rig.load("thenar"), people=4).worst_pair
+    ('cooling-step', 'warming-step')
+    """
+    if len(icons) < 2:
+        raise ValueError("two icons at least are needed to be told apart")
+    crowd = draw_people(people, seed) if isinstance(people, int) else people
+    d_prime, durations = distances(icons, rig, crowd, tracking, norm, task=task)
+    return appraised([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
+
+
+def appraised(
+    names: Sequence[str],
+    d_prime: Array,
+    lapse: Array,
+    durations_s: Array,
+    seed: int,
+    samples: int = SAMPLES,
+    task: Task = USUAL,
+) -> Appraisal:
+    """An appraisal from d′ (people, icons, icons) and durations (s)."""
+    bias = task.favour(0, len(d_prime), len(names), seed)
+    probability = confuse(d_prime, lapse=lapse, bias=bias, seed=seed, samples=samples).probability
+    bits = float(information_bits(probability).mean())
+    middle = np.median(d_prime, axis=0)
+    first, second = np.triu_indices(len(names), 1)
+    k = int(middle[first, second].argmin())
+    a, b = int(first[k]), int(second[k])
+    return Appraisal(
+        worst_pair=(names[a], names[b]),
+        d_prime=float(middle[a, b]),
+        percent_correct=float(percent_correct(probability).mean()),
+        information_bits=bits,
+        bits_per_s=bits / float(np.mean(durations_s)),
+    )
+
+
+def distances(
+    icons: Sequence[Icon],
+    rig: Rig,
+    crowd: People,
+    tracking: str | None = None,
+    norm: Norm = "max",
+    *,
+    rigs: Sequence[Rig] | None = None,
+    rate_Hz: float = RATE_HZ,
+    end_s: float | None = None,
+    task: Task = USUAL,
+) -> tuple[Array, Array]:
+    """Pairwise d′ (people, icons, icons) from memory and durations (s) of the icons.
+
+    `rigs` are those of the people, when they are not the rig with each person's contact and skin.
+    """
+    from thermicon.circuit import duration_s, simulate_many
+
+    observer = Observer.load()
+    durations = np.array([duration_s(icon, rig) for icon in icons])
+    end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
+    each = crowd.rigs(rig) if rigs is None else rigs
+    batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
+    felt = feel(Played(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer)
+    return between(felt, norm, crowd.memory, observer, task), durations

@@ -1,0 +1,277 @@
+"""The best k of n icons: exact where that can be proven, else the best of seeded restarts under an honest bound.
+
+Icons are compared at the range of the pool they come from, so that a pair is as far apart in every choice; the chosen
+are then judged again at their own range.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.carry_over import CarryOver, among
+from ..identification.intervals import ParameterIntervals
+from ..identification.task import USUAL, Task
+from ..observer.observer import Norm
+from ..observer.people import People
+from .appraise import Appraisal, appraise
+from .request import ChoiceError, Choosing, Usable, usable
+from .subset_identification import Namings, Objective
+from .upper_bounds import upper_bound
+from .widest import Limits, OutOfBudget, widest
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+ENUMERATED = 20
+MOST_SUBSETS = 200_000
+"""Pools of up to 20 icons, and any with so few choices, are looked through to the last one."""
+RESTARTS = 6
+ONE_BY_ONE = 50
+"""So many people are taken one by one, to see for how many the choice is also their own best."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picked:
+    """Places of the chosen, the objective's value, what no choice exceeds, whether that is reached, choices seen."""
+
+    chosen: tuple[int, ...]
+    value: float
+    bound: float
+    optimal: bool
+    seen: int
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """The chosen icons in the order of the file, and how sure it is that no other choice is better.
+
+    `value` and `bound` are at the range of the pool: median d′ of the worst pair over all people, or proportion
+    correct, bits or bits a second of the first `people`. `excluded` are icons that could not be chosen, and why.
+    `best_share` is the proportion of the first 50 people for whom no other choice parts its worst pair farther,
+    `loss` what the middle one of them loses by it in d′ (both None but for `worst`). `parameter_intervals` are what the
+    observer's parameters leave open for the chosen (None: not asked for).
+    """
+
+    icons: tuple[str, ...]
+    objective: Objective
+    value: float
+    optimal: bool
+    bound: float
+    worst_pair: tuple[str, str]
+    total_s: float
+    total_J: float
+    pool: int
+    people: int
+    seen: int
+    excluded: tuple[tuple[str, str], ...]
+    best_share: float | None
+    loss: float | None
+    at_own_range: Appraisal
+    parameter_intervals: ParameterIntervals | None = None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for `rank --json`."""
+        open_ = self.parameter_intervals
+        return {
+            "icons": list(self.icons),
+            "objective": self.objective,
+            "value": self.value,
+            "optimal": self.optimal,
+            "bound": self.bound,
+            "worst_pair": list(self.worst_pair),
+            "total_s": self.total_s,
+            "total_J": self.total_J,
+            "pool": self.pool,
+            "people": self.people,
+            "looked_at": self.seen,
+            "excluded": [{"icon": name, "reason": reason} for name, reason in self.excluded],
+            "best_for_people": self.best_share,
+            "median_loss": self.loss,
+            "at_own_range": {
+                **self.at_own_range.to_dict(),
+                "percent_correct_parameter_interval": None if open_ is None else list(open_.percent_correct),
+                "information_bits_parameter_interval": None if open_ is None else list(open_.information_bits),
+            },
+        }
+
+    def __repr__(self) -> str:
+        how = "proven best" if self.optimal else f"none exceeds {self.bound:.3g}"
+        return f"Choice({', '.join(self.icons)}: {self.objective} {self.value:.3g}, {how})"
+
+
+def choose(
+    asked: Choosing,
+    icons: Sequence[Icon],
+    rig: Rig,
+    traces: Sequence[Trace],
+    d_prime: Array,
+    crowd: People,
+    *,
+    seed: int = 0,
+    tracking: str | None = None,
+    norm: Norm = "max",
+    task: Task = USUAL,
+    left: CarryOver | None = None,
+) -> Choice:
+    """Choose among icons of which `d_prime` (people, icons, icons) and the nominal traces are known.
+
+    `task` is what `d_prime` was found in, and `left` what icons leave behind for the next there (None: nothing).
+
+    Raises `ChoiceError` where too few icons are usable or no choice keeps the limits.
+    """
+    pool = usable(asked, icons, traces, rig)
+    places = list(pool.places)
+    d = d_prime[:, places][:, :, places]
+    must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
+    limits = _limits(asked, pool)
+    namings = None
+    if asked.objective != "worst":
+        favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
+        namings = Namings.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
+    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
+    if picked is None:
+        raise ChoiceError(_nothing_fits(asked, pool))
+    chosen = [places[k] for k in picked.chosen]
+    names = [icons[k].name for k in chosen]
+    share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
+    return Choice(
+        icons=tuple(names),
+        objective=asked.objective,
+        value=picked.value,
+        optimal=picked.optimal,
+        bound=picked.bound,
+        worst_pair=_worst_pair(np.median(d_prime, axis=0)[np.ix_(chosen, chosen)], names),
+        total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
+        total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
+        pool=len(places),
+        people=len(d) if namings is None else len(namings.lapse),
+        seen=picked.seen,
+        excluded=pool.excluded,
+        best_share=share,
+        loss=loss,
+        at_own_range=appraise(
+            [icons[k] for k in chosen],
+            rig,
+            people=crowd,
+            seed=seed,
+            tracking=tracking,
+            norm=norm,
+            task=among(task, left, chosen),
+        ),
+    )
+
+
+def pick(
+    middle: Array,
+    namings: Namings | None,
+    count: int,
+    objective: Objective,
+    must: Sequence[int] = (),
+    limits: Limits | None = None,
+    seed: int = 0,
+) -> Picked | None:
+    """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
+    within = limits or Limits.none(len(middle))
+    if namings is None or objective == "worst":
+        try:
+            found = widest(middle, count, must, within)
+        except OutOfBudget:
+            raise ChoiceError("whether any choice keeps the totals could not be decided: loosen one of them") from None
+        return None if found is None else Picked(found.chosen, found.value, found.bound, found.proven, found.nodes)
+    n, free = len(middle), count - len(must)
+    if n <= ENUMERATED or math.comb(n - len(must), free) <= MOST_SUBSETS:
+        best = namings.enumerated(count, objective, must, within.costs, within.most)
+        return None if best is None else Picked(best[0], best[1], best[1], True, best[2])
+    return _climbed(middle, namings, count, objective, must, within, seed)
+
+
+def _climbed(
+    middle: Array, namings: Namings, count: int, objective: Objective, must: Sequence[int], limits: Limits, seed: int
+) -> Picked | None:
+    """The best of the widest choice and of random ones, each bettered by single swaps until none helps."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
+    others = [k for k in range(len(middle)) if k not in must]
+    starts = [pick(middle, None, count, "worst", must, limits)]
+    if starts[0] is None:
+        return None
+    first = starts[0].chosen
+    drawn = [
+        [*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))] for _ in range(RESTARTS)
+    ]
+    best, value, seen = first, -math.inf, 0
+    for start in [list(first), *(one for one in drawn if limits.kept(one))]:
+        chosen, score = start, namings.score(start, objective)
+        while True:
+            allowed = _swaps(chosen, must, limits, len(middle))
+            found = namings.swapped(chosen, objective, allowed)
+            seen += int(allowed.sum())
+            place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
+            if not found[place, other] > score:
+                break
+            score, chosen[place] = float(found[place, other]), other
+        ordered = tuple(sorted(chosen))
+        if score > value + 1e-12:
+            best, value = ordered, namings.score(ordered, objective)
+    bound = upper_bound(namings, count, objective)
+    return Picked(best, value, max(bound, value), value >= bound, seen)
+
+
+def _swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> Array:
+    allowed = np.ones((len(chosen), n), dtype=bool)
+    allowed[:, list(chosen)] = False
+    for place, thing in enumerate(chosen):
+        if thing in must:
+            allowed[place] = False
+        elif limits.most:
+            rest = [k for k in chosen if k != thing]
+            for other in np.flatnonzero(allowed[place]):
+                allowed[place, other] = limits.kept([*rest, int(other)])
+    return allowed
+
+
+def _limits(asked: Choosing, pool: Usable) -> Limits:
+    rows = [
+        (costs, most)
+        for costs, most in ((pool.durations_s, asked.most_s), (pool.energies_J, asked.most_J))
+        if most is not None
+    ]
+    if not rows:
+        return Limits.none(len(pool.places))
+    return Limits(np.stack([costs for costs, _ in rows]), tuple(most for _, most in rows))
+
+
+def _for_people(d: Array, picked: Picked, must: Sequence[int], limits: Limits) -> tuple[float, float]:
+    """Share of people for whom no other choice parts its worst pair farther, and what the middle person loses."""
+    own = list(picked.chosen)
+    losses = []
+    for one in d[:ONE_BY_ONE]:
+        mine = float(one[np.ix_(own, own)][np.triu_indices(len(own), 1)].min())
+        best = widest(one, len(own), must, limits, most_nodes=2_000, ties=False)
+        losses.append(max(0.0, (mine if best is None else best.value) - mine))
+    return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))
+
+
+def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
+    first, second = np.triu_indices(len(names), 1)
+    k = int(middle[first, second].argmin())
+    return names[first[k]], names[second[k]]
+
+
+def _nothing_fits(asked: Choosing, pool: Usable) -> str:
+    told = []
+    for costs, most, unit, what in (
+        (pool.durations_s, asked.most_s, "s", "shortest last"),
+        (pool.energies_J, asked.most_J, "J", "most frugal take"),
+    ):
+        if most is not None:
+            least = math.fsum(np.sort(costs)[: asked.count])
+            told.append(f"{most:g} {unit} (the {asked.count} {what} {least:.3g} {unit})")
+    forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
+    return f"no {asked.count} of the {len(pool.places)} icons{forced} stay within a total of {' and '.join(told)}"

@@ -1,0 +1,73 @@
+"""Whom a search asks: the nominal person, who is quick, or a few people, who are not; both give d′ within a pool."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.observer import Norm, Observer
+from ..observer.people import draw_people
+from .appraise import distances
+from .candidates import Gene
+from .nominal import dprimes, end_of, sense
+from .subset_identification import Namings, Objective
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+
+PEOPLE = 24
+
+
+class Nominal:
+    """The nominal person; `against` is what speaks against each icon of the pool asked last, or None."""
+
+    def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int) -> None:
+        self.rig, self.objective, self.norm, self.seed = rig, objective, norm, seed
+        self.lapse = np.array([Observer.load().lapse])
+        self.against: tuple[str | None, ...] = ()
+
+    def distances(self, icons: Sequence[Icon]) -> Array:
+        """d′ (1, icons, icons) from memory."""
+        felt = sense(icons, self.rig, end_of(self._durations(icons).tolist()))
+        self.against = felt.all_against()
+        return dprimes(felt, felt, self.norm)[None]
+
+    def namings(self, d_prime: Array, icons: Sequence[Icon]) -> Namings:
+        """Who is named what, for the objectives that count errors."""
+        return Namings.of(d_prime, self.lapse, self._durations(icons), self.seed)
+
+    def _durations(self, icons: Sequence[Icon]) -> Array:
+        from thermicon.circuit import duration_s
+
+        return np.array([duration_s(icon, self.rig) for icon in icons])
+
+
+class Few(Nominal):
+    """The first 24 people of a seed, each with contact, skin and thresholds of their own."""
+
+    def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int, tracking: str | None) -> None:
+        super().__init__(rig, objective, norm, seed)
+        self.crowd, self.tracking = draw_people(PEOPLE, seed), tracking
+        self.rigs, self.lapse = self.crowd.rigs(rig), self.crowd.lapse
+
+    def distances(self, icons: Sequence[Icon]) -> Array:
+        """d′ (24, icons, icons) from memory; safety and reach are those of the rig."""
+        self.against = sense(icons, self.rig, end_of(self._durations(icons).tolist())).all_against()
+        return distances(icons, self.rig, self.crowd, self.tracking, self.norm, rigs=self.rigs, rate_Hz=25.0)[0]
+
+    def better(self, one: list[Gene], other: list[Gene]) -> list[Gene]:
+        """The better of two sets for these people; the first where they are equal."""
+        values = []
+        for genes in (one, other):
+            icons = [gene.icon for gene in genes]
+            d = self.distances(icons)
+            middle = np.median(d, axis=0)[np.triu_indices(len(icons), 1)]
+            few = self.objective == "worst"
+            values.append(
+                float(middle.min()) if few else self.namings(d, icons).score(range(len(icons)), self.objective)
+            )
+        return one if values[0] >= values[1] else other

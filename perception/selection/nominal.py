@@ -1,0 +1,83 @@
+"""The nominal person beside a set: quick d′ between icons that are tried out and those that stay."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.distance import differences, identification_dprime
+from ..observer.observer import Norm, Observer
+from ..sensation.percept import perceive_many, uniform_clock
+from .request import against
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+RATE_HZ = 25.0
+TAIL_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Sensed:
+    """Sensations (icons, n_time) of the nominal person on one clock, and the traces that they come from."""
+
+    cold: Array
+    warm: Array
+    dt_s: float
+    traces: tuple[Trace, ...]
+
+    def against(self, place: int) -> str | None:
+        """What speaks against playing an icon, None where nothing does; judged only when asked, since it takes long."""
+        return against(self.traces[place])
+
+    def all_against(self) -> tuple[str | None, ...]:
+        """What speaks against each icon."""
+        return tuple(map(against, self.traces))
+
+
+def sense(icons: Sequence[Icon], rig: Rig, end_s: float, observer: Observer | None = None) -> Sensed:
+    """Play icons on the rig until `end_s` and feel them."""
+    from thermicon.circuit import simulate_all
+
+    person = Observer.load() if observer is None else observer
+    traces = simulate_all(list(icons), rig, end_s=end_s, rate_Hz=RATE_HZ)
+    dt, rows = uniform_clock(traces[0].time_s)
+    cold, warm = perceive_many(
+        np.array([trace.cold_receptor_C[:rows] for trace in traces]),
+        np.array([trace.warm_receptor_C[:rows] for trace in traces]),
+        dt,
+        person,
+        area_m2=rig.contact.area_m2,
+        site=rig.site,
+    )
+    return Sensed(cold, warm, dt, tuple(traces))
+
+
+def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None = None) -> Array:
+    """d′ from memory (tried, kept) of every icon that is tried to every one that is kept, on the longer clock."""
+    person = Observer.load() if observer is None else observer
+    n = max(tried.cold.shape[1], kept.cold.shape[1])
+    one, other = (_held(tried.cold, n), _held(tried.warm, n)), (_held(kept.cold, n), _held(kept.warm, n))
+    found = np.empty((len(one[0]), len(other[0])))
+    for row in range(len(found)):
+        cold, warm = (
+            np.stack([np.broadcast_to(mine[row], theirs.shape), theirs], axis=1)
+            for mine, theirs in zip(one, other, strict=True)
+        )
+        found[row] = differences(cold, warm, tried.dt_s, person)[norm][:, 0, 1]
+    return identification_dprime(found, person, norm, tried.dt_s * (n - 1))
+
+
+def end_of(durations_s: Sequence[float]) -> float:
+    """When a run of the longest of them has faded, on a whole row: its end and 10 s."""
+    return math.ceil((max(durations_s) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+
+
+def _held(psi: Array, n: int) -> Array:
+    return np.pad(psi, ((0, 0), (0, n - psi.shape[1])), mode="edge")

@@ -1,0 +1,165 @@
+"""What a choice is asked for, which icons can be chosen from, and why others cannot."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from .subset_identification import OBJECTIVES, Objective
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+
+class ChoiceError(ValueError):
+    """No choice can be made as asked; the text says why and what would help."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choosing:
+    """How many icons to choose and what for; `must` are names of icons that are in any choice.
+
+    `objective` is `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`. All chosen icons together last
+    at most `most_s` (s) and take at most `most_J` (J) of the driver, where given. Raises `ChoiceError` for what can
+    be asked of no set.
+
+    >>> Choosing(3, must=("a", "a")).must
+    ('a',)
+    """
+
+    count: int
+    objective: Objective = "worst"
+    must: tuple[str, ...] = ()
+    most_s: float | None = None
+    most_J: float | None = None
+
+    def __post_init__(self) -> None:
+        if isinstance(self.must, str):
+            raise ChoiceError(f"must is a tuple of names, such as must=({self.must!r},)")
+        if self.count != int(self.count):
+            raise ChoiceError(f"{self.count:g} icons cannot be chosen: give a whole number")
+        object.__setattr__(self, "must", tuple(dict.fromkeys(self.must)))
+        if self.objective not in OBJECTIVES:
+            raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {self.objective!r}")
+        if self.count < 2:
+            raise ChoiceError(f"{self.count} cannot be chosen: at least 2 icons are needed to be told apart")
+        if len(self.must) > self.count:
+            raise ChoiceError(f"{len(self.must)} icons must be among {self.count}: choose more, or ask for fewer")
+        for name, most, unit in (("time", self.most_s, "s"), ("energy", self.most_J, "J")):
+            if most is not None and not (math.isfinite(most) and most > 0):
+                raise ChoiceError(f"the total {name} must be above 0, not {most:g} {unit}")
+
+
+@dataclass(frozen=True, slots=True)
+class Usable:
+    """Places of the icons that can be chosen from, duration (s) and energy (J) of each, and why others cannot."""
+
+    places: tuple[int, ...]
+    durations_s: Array
+    energies_J: Array
+    excluded: tuple[tuple[str, str], ...]
+
+
+def usable(asked: Choosing, icons: Sequence[Icon], traces: Sequence[Trace], rig: Rig) -> Usable:
+    """Sort out what is unsafe, cannot be reached, or moves like an icon before it.
+
+    Raises `ChoiceError` for an icon that must be in and is unknown or sorted out, and where too few are left.
+    """
+    check_asked(asked, [icon.name for icon in icons])
+    if asked.most_J is not None and rig.thermode is not None:
+        raise ChoiceError(f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy")
+    shapes: dict[object, str] = {}
+    excluded: dict[str, str] = {}
+    wanted = sorted(range(len(icons)), key=lambda k: (icons[k].name not in asked.must, k))
+    for k in wanted:
+        why = against(traces[k])
+        twin = None if why else shapes.setdefault(shape_of(icons[k], rig), icons[k].name)
+        if why is not None:
+            excluded[icons[k].name] = why
+        elif twin != icons[k].name:
+            excluded[icons[k].name] = f"moves in the same way as {twin}"
+    for name in asked.must:
+        if name in excluded:
+            raise ChoiceError(f"{name} must be among the chosen but cannot be: it {excluded[name]}")
+    places = tuple(k for k, icon in enumerate(icons) if icon.name not in excluded)
+    if len(places) < asked.count:
+        raise ChoiceError(
+            _too_few(asked.count, len(icons), len(places), [i.name for i in icons if i.name in excluded], excluded)
+        )
+    from thermicon.circuit import duration_s
+
+    durations = np.array([duration_s(icons[k], rig) for k in places])
+    energies = np.array([energy_J(traces[k], d) for k, d in zip(places, durations.tolist(), strict=True)])
+    listed = tuple((icon.name, excluded[icon.name]) for icon in icons if icon.name in excluded)
+    return Usable(places, durations, energies, listed)
+
+
+def energy_J(trace: Trace, until_s: float) -> float:
+    """Energy (J) that the driver puts into the module until a time: ∫ V·I dt, with the current held between rows.
+
+    NaN on a thermode, which states none.
+
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"))
+    >>> energy_J(trace, 4.0) < energy_J(trace, 8.0)
+    True
+    """
+    if not trace.has_current:
+        return math.nan
+    steps = np.diff(np.minimum(trace.time_s, until_s))
+    return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
+
+
+def shape_of(icon: Icon, rig: Rig) -> object:
+    """What two icons share that play alike: control and corner points."""
+    from thermicon.circuit import hold
+    from thermicon.circuit.solver.inverse import baseline_C
+
+    base = baseline_C(icon, rig)
+    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    corners = icon.lower(start)
+    return icon.frame.control, base, corners
+
+
+def against(trace: Trace) -> str | None:
+    """What speaks against playing an icon: it is not safe, or the rig does not reach it; None where nothing does."""
+    from thermicon.circuit import judge_safety
+
+    verdict = judge_safety(trace)
+    if not verdict.safe:
+        return f"is not safe: {verdict.reason}"
+    if not trace.reachable:
+        return f"is not reached: {trace.reason}"
+    return None
+
+
+def check_asked(asked: Choosing, names: Sequence[str]) -> None:
+    """Raise `ChoiceError` for more icons than there are, or one that must be in and is not there."""
+    from thermicon.icons.model.words import nearest
+
+    if asked.count > len(names):
+        raise ChoiceError(_too_few(asked.count, len(names), len(names), [], {}))
+    for name in asked.must:
+        if name not in names:
+            near = nearest(name, names)
+            hint = (
+                f"did you mean {near}?" if near else f"there are {', '.join(names[:20])}" + (" …" if names[20:] else "")
+            )
+            raise ChoiceError(f"no icon is called {name!r}, which must be among the chosen; {hint}")
+
+
+def _too_few(count: int, all_: int, left: int, names: Sequence[str], excluded: dict[str, str]) -> str:
+    if not excluded:
+        there = "there is only 1 icon" if all_ == 1 else f"there are only {all_} icons"
+        return f"{count} icons cannot be chosen: {there}"
+    told = "; ".join(f"{name} {excluded[name]}" for name in names[:3])
+    more = f"; and {len(names) - 3} more" if len(names) > 3 else ""
+    rest = "none is left" if left == 0 else f"only {left} of {all_} are left"
+    return f"{count} icons cannot be chosen: {rest} ({told}{more})"

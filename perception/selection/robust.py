@@ -1,0 +1,187 @@
+"""Which of several sets is best when people, contact, ambient and rig turn out otherwise.
+
+Each draw is one virtual person on one rig: contact and skin are the person's, ambient, module and heat sink are drawn
+about the rig. Every set meets the same draws and the same noise, so that what differs is the set.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.confusion import confuse
+from ..identification.measures import information_bits, percent_correct
+from ..observer.observer import check_norm
+from ..observer.people import draw_people
+from .appraise import distances
+from .request import ChoiceError
+from .subset_identification import OBJECTIVES, Objective
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon, IconSet
+
+DRAWS = 100
+AMBIENT_SD_K = 2.0
+GAIN_SD = 0.05
+SINK_SD = 0.2
+"""Assumed, for want of data: a room within 2 K, a current within 5 %, a heat sink within 20 % (SD)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Survival:
+    """Names of sets; `best` is the share of draws in which each is best, ties shared, so that they add up to 1.
+
+    `values` (sets, draws) is the objective in every draw, `median` and `low` its middle and its 5th per cent.
+    """
+
+    names: tuple[str, ...]
+    objective: Objective
+    draws: int
+    best: tuple[float, ...]
+    median: tuple[float, ...]
+    low: tuple[float, ...]
+    values: Array
+
+    @property
+    def survivor(self) -> str:
+        """The set that is best most often; equal ones by their order."""
+        return self.names[int(np.argmax(self.best))]
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
+        return f"Survival(best by {self.objective} in {self.draws} draws: {told})"
+
+
+@dataclass(frozen=True, slots=True)
+class Duel:
+    """Probability that set A beats set B (ties count half), its standard error, and the median gain of A over B."""
+
+    probability: float
+    standard_error: float
+    gain: float
+    objective: Objective
+    draws: int
+
+    def __repr__(self) -> str:
+        return (
+            f"Duel(A beats B by {self.objective} with probability {self.probability:.2f} ± {self.standard_error:.2f}, "
+            f"median gain {self.gain:+.3g}, {self.draws} draws)"
+        )
+
+
+def beats(
+    a: Sequence[Icon] | IconSet,
+    b: Sequence[Icon] | IconSet,
+    rig: Rig,
+    *,
+    objective: Objective = "worst",
+    draws: int = DRAWS,
+    seed: int = 0,
+    tracking: str | None = None,
+    norm: str = "max",
+) -> Duel:
+    """Probability that set A is better than set B for a person and a rig drawn at random.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> six = read_cue("six-icons")
+    >>> few = [six["cooling-step"], six["cold-to-warm"], six["warming-step"]]
+    >>> beats(few, six, Rig.load("thenar"), draws=8).probability
+    1.0
+    """
+    found = survives({"A": a, "B": b}, rig, objective=objective, draws=draws, seed=seed, tracking=tracking, norm=norm)
+    p = found.best[0]
+    gain = float(np.median(found.values[0] - found.values[1]))
+    return Duel(p, math.sqrt(max(p * (1.0 - p), 0.0) / draws), gain, objective, draws)
+
+
+def survives(
+    choices: Mapping[str, Sequence[Icon] | IconSet],
+    rig: Rig,
+    *,
+    objective: Objective = "worst",
+    draws: int = DRAWS,
+    seed: int = 0,
+    tracking: str | None = None,
+    norm: str = "max",
+) -> Survival:
+    """Which of several sets is best, and how often, over people, contact, ambient and rig.
+
+    `worst` is the d′ of the worst pair for the person, the others as in `Choosing`. Icons that sets share are played
+    once. Raises `ChoiceError` for fewer than two sets, a set of one icon, and no draws.
+    """
+    from thermicon.circuit import duration_s
+
+    if objective not in OBJECTIVES:
+        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
+    if draws < 1:
+        raise ChoiceError(f"at least one draw is needed, not {draws}")
+    sets = {name: tuple(each) for name, each in choices.items()}
+    if len(sets) < 2:
+        raise ChoiceError("two sets at least are needed to say which is better")
+    pool: list[Icon] = []
+    for name, each in sets.items():
+        if len(each) < 2:
+            raise ChoiceError(f"{name} has only {len(each)} icon: two at least are needed to be told apart")
+        pool += [icon for icon in each if icon not in pool]
+    rows = {name: [pool.index(icon) for icon in each] for name, each in sets.items()}
+    durations = np.array([duration_s(icon, rig) for icon in pool])
+    crowd = draw_people(draws, seed)
+    d, _ = distances(pool, rig, crowd, tracking, check_norm(norm), rigs=drawn_rigs(crowd.rigs(rig), seed))
+    values = np.array([_values(d, crowd.lapse, durations, rows[name], objective, seed) for name in sets])
+    top = values >= values.max(axis=0) - 1e-12
+    best = (top / top.sum(axis=0)).mean(axis=1)
+    return Survival(
+        names=tuple(sets),
+        objective=objective,
+        draws=draws,
+        best=tuple(map(float, best)),
+        median=tuple(map(float, np.median(values, axis=1))),
+        low=tuple(map(float, np.percentile(values, 5.0, axis=1))),
+        values=values,
+    )
+
+
+def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
+    """Each rig with ambient, gain of the driver and heat sink drawn about its own values; the n-th is always the same.
+
+    Under closed control the gain has no effect on what is played, under `replay` it scales the current.
+    """
+    streams = np.random.SeedSequence([seed, 11]).spawn(3)
+    ambient, gain, sink = (np.random.default_rng(stream).standard_normal(len(rigs)) for stream in streams)
+    return [
+        rig.with_(
+            **{
+                "ambient.temperature_C": rig.ambient.temperature_C + AMBIENT_SD_K * float(np.clip(ambient[k], -2, 2)),
+                **(_pump_drawn(rig, float(sink[k]), float(gain[k])) if rig.thermode is None else {}),
+            }
+        )
+        for k, rig in enumerate(rigs)
+    ]
+
+
+def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
+    """Heat sink and module with their draws; a thermode has neither."""
+    return {
+        "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * sink),
+        "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * gain),
+    }
+
+
+def _values(d: Array, lapse: Array, durations: Array, rows: Sequence[int], objective: Objective, seed: int) -> Array:
+    own = d[np.ix_(range(len(d)), rows, rows)]
+    if objective == "worst":
+        first, second = np.triu_indices(len(rows), 1)
+        least: Array = own[:, first, second].min(axis=1)
+        return least
+    probability = confuse(own, lapse=lapse, seed=seed).probability
+    if objective == "correct":
+        return percent_correct(probability)
+    bits = information_bits(probability)
+    return bits if objective == "bits" else bits / float(durations[list(rows)].mean())

@@ -1,0 +1,245 @@
+"""A better set out of families: their continuous parameters moved until the model tells the icons apart best.
+
+The best set among the members that the families count out is surrounded by icons that differ a little from its own;
+the best set of that pool is found as in `choose`, surrounded again, and so on, in steps that shrink: first on the
+nominal person, then on a few people. What is found is judged on all people beside the set that it began with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.observer import check_norm
+from ..observer.people import draw_people
+from .appraise import Appraisal, appraise
+from .candidates import Gene, drawn
+from .evaluators import Few, Nominal
+from .request import ChoiceError
+from .subset_identification import OBJECTIVES, Namings, Objective
+from .widest import widest, worst
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Family, Icon, IconSet
+
+Progress = Callable[[int, int], None]
+EVALUATIONS = 2000
+SAMPLED = 400
+BATCH = 16
+REFINING = 4
+PER_ROUND = 3
+"""About every icon of the set 16 are tried in a round on the nominal person; a third as many rounds try 4 on a few."""
+WIDEST, REFINED, FINEST, SHRINK = 0.25, 0.05, 0.005, 0.85
+ALIKE = -1.0
+"""Instead of a d′: two members of one family, of which each gives one icon."""
+NODES = 20_000
+
+
+@dataclass(frozen=True, slots=True)
+class Searched:
+    """The set that was found and the one it began with, each appraised on all people, and what was spent on it."""
+
+    found: IconSet
+    start: tuple[Icon, ...]
+    before: Appraisal
+    after: Appraisal
+    objective: Objective
+    seed: int
+    evaluations: int
+    refined: int
+
+    def __repr__(self) -> str:
+        before, after = self.before.value(self.objective), self.after.value(self.objective)
+        return f"Searched({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
+
+
+def search(
+    icons: IconSet,
+    rig: Rig,
+    *,
+    count: int | None = None,
+    objective: Objective = "worst",
+    evaluations: int = EVALUATIONS,
+    people: int = 200,
+    seed: int = 0,
+    tracking: str | None = None,
+    norm: str = "max",
+    progress: Progress | None = None,
+) -> Searched:
+    """Look for values of the families' parameters that make the set better: one icon a family, or `count` in all.
+
+    Icons of the file that are no families stay as they are. Spans are continuous between their ends, counts and lists
+    are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set. Raises
+    `ChoiceError` for a file without families, for fewer than two icons, or where no set can be played.
+    `evaluations` counts icons that are played to the nominal person.
+    """
+    fixed, free = _asked(icons, count, objective)
+    run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)
+    nominal, few = Nominal(rig, objective, named, seed), Few(rig, objective, named, seed, tracking)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
+
+    def tell(tried: int) -> None:
+        if progress is not None:
+            progress(min(tried, evaluations), evaluations)
+
+    start = run.start(nominal, rng)
+    rounds = max(0, round((evaluations - run.tried) / (BATCH * free)))
+    held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
+    screened = run.tried
+    best = run.improve(few.better(start, held), few, max(1, rounds // PER_ROUND), REFINING, rng, REFINED, tell)
+    crowd = draw_people(people, seed)
+    finalists = [[gene.icon for gene in genes] for genes in (start, best)]
+    before, after = (appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named) for one in finalists)
+    if after.value(objective) < before.value(objective):
+        finalists[1], after = finalists[0], before
+    return Searched(
+        found=_as_set(icons, finalists[1], len(fixed), seed),
+        start=tuple(finalists[0]),
+        before=before,
+        after=_renamed(after, finalists[1], len(fixed)),
+        objective=objective,
+        seed=seed,
+        evaluations=screened,
+        refined=run.tried - screened,
+    )
+
+
+def _asked(icons: IconSet, count: int | None, objective: str) -> tuple[tuple[Icon, ...], int]:
+    from thermicon.icons import Icon
+    from thermicon.icons.model.icon import played_icons
+
+    if objective not in OBJECTIVES:
+        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
+    families = icons.families
+    if not families:
+        raise ChoiceError("nothing to search: the file has no family, such as icon dip(depth in 1..6 step 1 °C) { … }")
+    for family in families:
+        if next(iter(played_icons(family.template)), None) is not None:
+            raise ChoiceError(f"family {family.name} plays another icon, which a search cannot carry along")
+    fixed = tuple(entry for entry in icons.entries if isinstance(entry, Icon))
+    wanted = len(fixed) + len(families) if count is None else count
+    if wanted < 2:
+        raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
+    if wanted <= len(fixed):
+        raise ChoiceError(f"{wanted} icons leave nothing to search: the file has {len(fixed)} that are no families")
+    return fixed, wanted - len(fixed)
+
+
+class _Run:
+    """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
+
+    def __init__(self, fixed: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool) -> None:
+        self.fixed = [Gene(icon) for icon in fixed]
+        self.families, self.free, self.each = families, free, each
+        self.tried = 0
+
+    def start(self, judge: Nominal | Few, rng: np.random.Generator) -> list[Gene]:
+        """The best of the members that the families count out, or of a sample of them."""
+        pool = [*self.fixed, *drawn(self.families, SAMPLED, rng)]
+        found = self.best(pool, judge, None)
+        if found is None:
+            bad = [reason for reason in judge.against if reason is not None]
+            raise ChoiceError(
+                f"no {self.free + len(self.fixed)} icons can be played together: {len(bad)} of {len(pool)} that were "
+                f"tried cannot be played at all{', the first of which ' + bad[0] if bad else ''}"
+            )
+        return found
+
+    def improve(
+        self,
+        held: list[Gene],
+        judge: Nominal | Few,
+        rounds: int,
+        batch: int,
+        rng: np.random.Generator,
+        step: float,
+        tell: Any,
+    ) -> list[Gene]:
+        """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
+        for _ in range(rounds):
+            about = held[len(self.fixed) :]
+            near = [gene.moved(rng, step * float(rng.exponential())) for gene in about for _ in range(batch)]
+            pool = [*held, *(gene for gene in near if gene is not None)]
+            better = self.best(pool, judge, held)
+            moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
+            held = better if better is not None else held
+            step = step if moved else max(SHRINK * step, FINEST)
+            tell(self.tried)
+        return held
+
+    def best(self, pool: list[Gene], judge: Nominal | Few, held: list[Gene] | None) -> list[Gene] | None:
+        """The best set out of a pool, plain icons first; None where no set can be played."""
+        self.tried += len(pool)
+        d = judge.distances([gene.icon for gene in pool])
+        must = len(self.fixed)
+        good = [k for k in range(len(pool)) if k < must or judge.against[k] is None]
+        pool, d = [pool[k] for k in good], d[:, good][:, :, good]
+        if len(pool) < must + self.free:
+            return None
+        middle = np.median(d, axis=0)
+        if self.each:
+            own = np.array([self._place(gene) for gene in pool])
+            middle[(own[:, None] == own) & (own >= 0)] = ALIKE
+        first = widest(middle, must + self.free, tuple(range(must)), most_nodes=NODES)
+        if first is None or worst(middle, first.chosen) <= ALIKE:
+            return None
+        chosen = list(first.chosen)
+        if judge.objective != "worst":
+            begin = list(range(must + self.free)) if held is not None else chosen
+            chosen = climbed(judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must)
+        return [pool[k] for k in sorted(chosen, key=lambda k: (k >= must, self._place(pool[k]), k))]
+
+    def _place(self, gene: Gene) -> int:
+        return -1 if gene.family is None else self.families.index(gene.family)
+
+
+def climbed(namings: Namings, chosen: list[int], objective: Objective, middle: Array, must: int) -> list[int]:
+    """Single swaps that better an objective until none does; the first `must` stay, and no two alike come in."""
+    score = namings.score(chosen, objective)
+    while True:
+        allowed = np.ones((len(chosen), len(middle)), dtype=bool)
+        allowed[:, chosen] = False
+        for place, thing in enumerate(chosen):
+            rest = [k for k in chosen if k != thing]
+            allowed[place] &= (middle[rest] > ALIKE).all(axis=0) & (thing >= must)
+        found = namings.swapped(chosen, objective, allowed)
+        place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
+        if not found[place, other] > score + 1e-9:
+            return chosen
+        score, chosen[place] = float(found[place, other]), other
+
+
+def _names(icons: Sequence[Icon], fixed: int) -> list[str]:
+    """Names of plain icons: that of the family and a number, where it is free."""
+    taken = [icon.name for icon in icons[:fixed]]
+    for icon in icons[fixed:]:
+        head, n = icon.name.partition("_")[0], 1
+        while f"{head}-{n}" in taken:
+            n += 1
+        taken.append(f"{head}-{n}")
+    return taken
+
+
+def _renamed(appraisal: Appraisal, icons: Sequence[Icon], fixed: int) -> Appraisal:
+    new = dict(zip((icon.name for icon in icons), _names(icons, fixed), strict=True))
+    a, b = appraisal.worst_pair
+    return replace(appraisal, worst_pair=(new[a], new[b]))
+
+
+def _as_set(icons: IconSet, found: Sequence[Icon], fixed: int, seed: int) -> IconSet:
+    """The found icons as a set of plain icons that say where they come from."""
+    from thermicon.icons import Icon, IconSet
+
+    entries = list(found[:fixed])
+    for icon, name in zip(found[fixed:], _names(found, fixed)[fixed:], strict=True):
+        origin = f"from {icon.name.replace('_', ' ')}"
+        tags = (*icon.metadata.tags, "found by search", f"seed {seed}", origin)
+        entries.append(Icon(name, icon.statements, icon.frame, replace(icon.metadata, tags=tags)))
+    name = f"{icons.name}-found" if icons.name else ""
+    title = f"{icons.title}, found by search" if icons.title else "Found by search"
+    return IconSet(name, title, icons.frame, icons.metadata, tuple(entries))

@@ -1,0 +1,1 @@
+"""Receptor temperature to sensation, detection and percept."""

@@ -1,0 +1,157 @@
+"""A bench to run experiments on: a rig at rest, and stimuli played at its skin or display.
+
+Calibration and the simulated procedures play their stimuli here, through the circuit, so that a
+threshold means the same thing in both: the size that was prescribed at the named surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.observer import Observer
+from ..observer.variants import Variable, receptor_input
+from .percept import uniform_clock
+from .receptors import receptor_drive
+from .sensation import sensation
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from thermicon.circuit import Rig, Trace
+
+Surface = Literal["skin", "display"]
+RATE_HZ = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stimuli:
+    """Played stimuli, k of them to one common end: step `dt_s`, traces, and how many of their rows count."""
+
+    dt_s: float
+    rows: int
+    traces: tuple[Trace, ...]
+
+    @property
+    def area_m2(self) -> float:
+        """Area of contact, m²."""
+        return self.traces[0].area_m2
+
+    @property
+    def site(self) -> str:
+        """Where on the body."""
+        return self.traces[0].site
+
+    @property
+    def time_s(self) -> Array:
+        """Clock (rows,), s."""
+        clock: Array = self.dt_s * np.arange(self.rows, dtype=np.float64)
+        return clock
+
+    def received(self, variable: Variable, channel: Channel) -> Array:
+        """What the receptors of a channel go by, shape (k, rows): °C, or W/m² into the skin."""
+        return np.stack([receptor_input(trace, variable, channel)[: self.rows] for trace in self.traces])
+
+    def surface_C(self, surface: Surface) -> Array:
+        """Temperature of the face of the skin or of the display, °C, shape (k, rows)."""
+        return np.stack([getattr(trace, f"{surface}_C")[: self.rows] for trace in self.traces])
+
+    def felt(
+        self, observer: Observer, threshold_cold: ArrayLike = 1.0, threshold_warm: ArrayLike = 1.0
+    ) -> tuple[Array, Array]:
+        """Sensations (cold, warm) of n persons, shape (n, k, rows), by their multipliers of the thresholds (n,)."""
+        own = [np.atleast_1d(np.asarray(one, dtype=np.float64)) for one in (threshold_cold, threshold_warm)]
+        at_cold, at_warm = (
+            receptor_drive(self.received(observer.variable, channel), self.dt_s, channel, observer)
+            for channel in CHANNELS
+        )
+        cold, warm = (
+            sensation(
+                np.broadcast_to(drive, (multiple.size, *drive.shape)),
+                channel,
+                observer,
+                area_m2=self.area_m2,
+                site=self.site,
+                threshold=multiple[:, None],
+            )
+            for drive, channel, multiple in zip((at_cold, at_warm), CHANNELS, own, strict=True)
+        )
+        return cold, warm
+
+    def __repr__(self) -> str:
+        missed = sum(not trace.reachable for trace in self.traces)
+        said = f", {missed} not reached" if missed else ""
+        return f"Stimuli({len(self.traces)} on {self.traces[0].rig_name}, {self.time_s[-1]:.3g} s{said})"
+
+
+@dataclass(frozen=True, slots=True)
+class Bench:
+    """A rig that rests at `baseline_C`, with stimuli prescribed at the `surface` of skin or display.
+
+    >>> from thermicon.circuit import Rig
+    >>> bench = Bench(Rig.load("thenar"))
+    >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0)
+    Stimuli(1 on thenar, 3 s)
+    """
+
+    rig: Rig
+    baseline_C: float = 32.0
+    surface: Surface = "skin"
+
+    def __post_init__(self) -> None:
+        if self.surface not in get_args(Surface):
+            raise ValueError(f"a stimulus is prescribed at skin or display, not at {self.surface!r}")
+
+    def play(self, courses: Sequence[str], end_s: float) -> Stimuli:
+        """Play courses, each the body of an icon, from rest until `end_s`; at baseline, or held, after their end."""
+        from thermicon.circuit import duration_s, simulate
+        from thermicon.icons import parse
+
+        head = f"cue 1\nset bench {{\n  control {self.surface}\n  baseline {self.baseline_C:.9g} °C\n}}\n"
+        icons = list(parse(head + "\n".join(f"icon cue-{k} {{\n{body}\n}}" for k, body in enumerate(courses))))
+        longest = max(duration_s(icon, self.rig) for icon in icons)
+        if longest > end_s + 1e-9:
+            raise ValueError(f"a course of {longest:g} s does not end by {end_s:g} s")
+        traces = [
+            simulate(icon, self.rig, rate_Hz=RATE_HZ, tail_s=max(0.0, end_s - duration_s(icon, self.rig)))
+            for icon in icons
+        ]
+        rows = min([round(end_s * RATE_HZ) + 1, *(uniform_clock(trace.time_s)[1] for trace in traces)])
+        return Stimuli(uniform_clock(traces[0].time_s)[0], rows, tuple(traces))
+
+
+def ramp(channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float = 0.0, *, back: bool = False) -> str:
+    """Course that cools or warms by a size at a rate, holds, and with `back` returns at that rate.
+
+    >>> ramp("cold", 0.5, 1.0, hold_s=2.0, back=True)
+    'cool by 0.5 K at 1 K/s; hold for 2 s; return at 1 K/s'
+    """
+    verb = "cool" if channel == "cold" else "warm"
+    parts = [f"{verb} by {size_K:.9g} K at {rate_K_per_s:.9g} K/s"]
+    parts += [f"hold for {hold_s:.9g} s"] if hold_s > 0.0 else []
+    parts += [f"return at {rate_K_per_s:.9g} K/s"] if back else []
+    return "; ".join(parts)
+
+
+def curve(change_K: Array, step_s: float) -> str:
+    """Course through changes from baseline, one every `step_s`, straight in between; ends where the last one is."""
+    parts, level = [], 0.0
+    for target in np.round(np.asarray(change_K, dtype=np.float64), 6).tolist():
+        moved = target - level
+        if moved == 0.0:
+            parts.append(f"hold for {step_s:.9g} s")
+        else:
+            parts.append(f"{'warm' if moved > 0 else 'cool'} by {abs(moved):.9g} K over {step_s:.9g} s")
+        level = target
+    return "\n".join(parts)
+
+
+def raised_cosine(channel: Channel, size_K: float, duration_s: float, step_s: float = 0.05) -> str:
+    """Course of one smooth pulse, size·(1 − cos 2πt/T)/2, whose corners lie on the curve every `step_s`."""
+    time = step_s * np.arange(1, round(duration_s / step_s) + 1)
+    return curve(sign_of(channel) * 0.5 * size_K * (1.0 - np.cos(2.0 * np.pi * time / duration_s)), step_s)

@@ -1,0 +1,87 @@
+"""Where data end: a sentence for every way in which an icon lies outside what the predictions rest on.
+
+The limits are data (`data/coverage.toml`): temperatures and rates of skin and receptors, and the sites
+for which detection thresholds are published.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.records import Record, Table, load_records
+
+from ..arrays import Array
+from ..number_text import significant
+from ..observer.observer import DATA
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Trace
+
+CALIBRATED = "thenar"
+MIRRORS = ("left", "right")
+
+
+@lru_cache(maxsize=1)
+def load_coverage() -> Table:
+    """The limits as records: `temperature`, `rate` and, one a site, `site`.
+
+    >>> load_coverage().one("temperature").interval
+    (15.0, 45.0)
+    """
+    return load_records(DATA / "coverage.toml", extra=("recorded",))
+
+
+def outside_data(trace: Trace) -> tuple[str, ...]:
+    """Sentences, one for each way in which a simulated icon is outside the data; empty where it is inside."""
+    table = load_coverage()
+    places = (
+        ("the skin", trace.skin_C),
+        ("the cold receptor", trace.cold_receptor_C),
+        ("the warm receptor", trace.warm_receptor_C),
+    )
+    found = [*_temperatures(table.one("temperature"), places, trace.time_s), *_rates(table.one("rate"), places, trace)]
+    return (*found, *outside_site(trace.site))
+
+
+def outside_site(site: str) -> tuple[str, ...]:
+    """A sentence where no detection threshold is published for a site.
+
+    >>> outside_site("fingertip")
+    ('no detection threshold is on record for the fingertip: those of the thenar are used',)
+    """
+    known = {record.site for record in load_coverage().select("site")}
+    words = [word for word in site.lower().split() if word not in MIRRORS]
+    if "-".join(words) in known:
+        return ()
+    return (f"no detection threshold is on record for the {site}: those of the {CALIBRATED} are used",)
+
+
+def _temperatures(record: Record, places: tuple[tuple[str, Array], ...], time_s: Array) -> list[str]:
+    """The place that goes furthest below and above, one sentence each: the others follow from it."""
+    low, high = record.interval
+    said = []
+    name, coldest = min(places, key=lambda place: float(place[1].min()))
+    if coldest.min() < low:
+        shown, limit = significant(float(coldest.min()), low)
+        said.append(f"{name} falls to {shown} °C ({time_s[coldest.argmin()]:.1f} s); data begin at {limit} °C")
+    name, warmest = max(places, key=lambda place: float(place[1].max()))
+    if warmest.max() > high:
+        shown, limit = significant(float(warmest.max()), high)
+        said.append(f"{name} rises to {shown} °C ({time_s[warmest.argmax()]:.1f} s); data end at {limit} °C")
+    return said
+
+
+def _rates(record: Record, places: tuple[tuple[str, Array], ...], trace: Trace) -> list[str]:
+    most = record.interval[1]
+    steepest = []
+    for name, temperature_C in places:
+        rate = np.abs(np.diff(temperature_C) / np.diff(trace.time_s))
+        steepest.append((float(rate.max()), name, float(trace.time_s[int(rate.argmax())])))
+    fastest, name, when = max(steepest, key=lambda found: found[0])
+    if fastest <= most:
+        return []
+    shown, limit = significant(fastest, most)
+    return [f"{name} changes at {shown} K/s ({when:.1f} s); data end at {limit} K/s"]

@@ -1,0 +1,192 @@
+"""The observer's parameters as intervals, and observers drawn from within them.
+
+A parameter is a record of `data/observer.toml` whose interval has two different ends. What is drawn
+per person (conduction, decision, lapse) belongs to the spread between people and is left alone here.
+The drive of a threshold step is no free number: it is set anew for every draw, so that the published
+thresholds stay what they are whatever adaptation and integration do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from thermicon.circuit.records import Record, Table, load_records
+
+from ..arrays import Array
+from ..observer.observer import CHANNELS, DATA, NORMS, Channel, Norm, Observer, load_thresholds, on_forearm
+from .receptors import receptor_drive
+
+PER_PERSON = ("conduction velocity", "path length to the cord", "decision time", "lapse rate")
+ANCHORED = "drive of a threshold step"
+ROUNDS, CLOSE = 12, 1e-9
+LOG_FROM = 1.5
+"""An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number of the chain that may lie anywhere between `low` and `high`, and where it comes from.
+
+    `use` is the record's: `assumed` has no data behind it.
+    """
+
+    name: str
+    low: float
+    value: float
+    high: float
+    unit: str
+    source: str
+    use: str
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high or not self.low <= self.value <= self.high:
+            raise ValueError(
+                f"{self.name}: {self.low:g}, {self.value:g}, {self.high:g} is not an interval about a value"
+            )
+
+    def at(self, share: float) -> float:
+        """The value at a share (0–1) of the interval.
+
+        >>> Parameter("time", 1.0, 2.0, 4.0, "s", "assumed", "assumed").at(0.5)
+        2.0
+        """
+        if self.low > 0.0 and self.high / self.low > LOG_FROM:
+            return self.low * math.pow(self.high / self.low, share)
+        return self.low + share * (self.high - self.low)
+
+    def __repr__(self) -> str:
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"Parameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
+
+
+@lru_cache(maxsize=1)
+def observer_table() -> Table:
+    """The records of the shipped observer."""
+    return load_records(DATA / "observer.toml")
+
+
+def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[Parameter, ...]:
+    """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
+    known = observer_table()
+    return tuple(_parameter(record) for record in known if _free(record, norm, site, known))
+
+
+def latin(parameters: int, draws: int, seed: int) -> Array:
+    """Shares of shape (draws, parameters) in 0–1, one in each of `draws` equal strata of every parameter.
+
+    >>> bool((np.sort((latin(2, 4, seed=0) * 4).astype(int), axis=0) == np.arange(4)[:, None]).all())
+    True
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
+    strata = (
+        np.stack([rng.permutation(draws) for _ in range(parameters)], axis=-1) if parameters else np.empty((draws, 0))
+    )
+    shares: Array = (strata + rng.random(strata.shape)) / draws
+    return shares
+
+
+def observer_at(values: Mapping[str, float]) -> Observer:
+    """The shipped observer with some parameters (by `Parameter.name`) at other values, its thresholds kept.
+
+    >>> slow = observer_at({"noise correlation time": 0.5})
+    >>> slow.noise_correlation_s, slow.a == Observer.load().a
+    (0.5, True)
+    """
+    known = observer_table()
+    names = {parameter_name(record) for record in known}
+    if unknown := sorted(set(values) - names):
+        raise ValueError(f"the observer has no parameter {unknown[0]!r}: it has {', '.join(sorted(names))}")
+    moved = Observer.from_table(Table(known.name, tuple(_moved(record, values) for record in known)))
+    if not values:
+        return moved
+    for channel in CHANNELS:
+        moved = _anchored(moved, channel)
+    return moved
+
+
+def parameter_name(record: Record) -> str:
+    """Name of a parameter: its quantity, with the channel where each has its own, the site or the method.
+
+    >>> parameter_name(Record("memory noise", "log units", "a task", value=0.3, channel="both", method="max"))
+    'memory noise (max)'
+    """
+    method = record.method if record.method in NORMS else ""
+    place = record.site if record.quantity == "path length to the cord" else ""
+    channel = record.channel if record.channel in CHANNELS else ""
+    said = ", ".join(part for part in (channel, place, method) if part)
+    return f"{record.quantity} ({said})" if said else record.quantity
+
+
+def _free(record: Record, norm: Norm, site: str, known: Table) -> bool:
+    """Whether a record is an uncertain number that the observer, judged by this norm at this site, makes use of."""
+    low, high = record.interval
+    if record.value is None or low == high or record.quantity in PER_PERSON or record.quantity.startswith(ANCHORED):
+        return False
+    if record.method in NORMS and record.method != norm:
+        return False
+    moved = Table(known.name, tuple(replace(r, value=low) if r is record else r for r in known))
+    return low != record.value and _at_site(moved, site) != _at_site(known, site)
+
+
+def _at_site(known: Table, site: str) -> Observer:
+    """The observer without what only other sites make use of."""
+    observer = Observer.from_table(known)
+    if on_forearm(site):
+        return observer
+    cold, warm = (replace(observer.receptor(channel), forearm_factor=1.0) for channel in CHANNELS)
+    return replace(observer, cold=cold, warm=warm)
+
+
+def _parameter(record: Record) -> Parameter:
+    low, high = record.interval
+    return Parameter(parameter_name(record), low, record.central, high, record.unit, record.source, record.use)
+
+
+def _moved(record: Record, values: Mapping[str, float]) -> Record:
+    value = values.get(parameter_name(record))
+    return record if value is None else replace(record, value=value, low=None, high=None)
+
+
+def _anchored(observer: Observer, channel: Channel) -> Observer:
+    """The observer whose threshold drive is as far above a threshold step's peak as the shipped one's.
+
+    Gain control makes the peak hang on the threshold drive itself, so that it takes a few rounds.
+    """
+    goal = _in_thresholds(Observer.load(), channel)
+    for _ in range(ROUNDS):
+        receptor, off = observer.receptor(channel), _in_thresholds(observer, channel) / goal
+        if abs(off - 1.0) < CLOSE:
+            break
+        receptor = replace(receptor, threshold_drive=receptor.threshold_drive * off)
+        observer = replace(observer, cold=receptor) if channel == "cold" else replace(observer, warm=receptor)
+    return observer
+
+
+def _in_thresholds(observer: Observer, channel: Channel) -> float:
+    """Peak drive of a threshold-size fast step in multiples of the threshold drive."""
+    dt, temperature_C = _threshold_steps()[channel]
+    peak = float(receptor_drive(temperature_C, dt, channel, observer).max())
+    return peak / observer.receptor(channel).threshold_drive
+
+
+@lru_cache(maxsize=1)
+def _threshold_steps() -> Mapping[Channel, tuple[float, Array]]:
+    """Step in s and temperature at its receptor of a threshold-size fast step of the skin, in each channel."""
+    from thermicon.circuit import Rig, simulate
+    from thermicon.icons import parse
+
+    table, rig, found = load_thresholds(), Rig.load("thenar"), {}
+    rate = table.one("rate of the threshold step").central
+    for channel in CHANNELS:
+        size = table.one("detection threshold", channel=channel, site="thenar").central
+        verb = "cool" if channel == "cold" else "warm"
+        body = f"{verb} by {size:.9g} °C at {rate:.9g} °C/s; hold for 5 s"
+        (icon,) = parse(f"cue 1\nset anchor {{ control skin; baseline 32 °C }}\nicon {channel} {{ {body} }}")
+        trace = simulate(icon, rig, rate_Hz=100.0)
+        found[channel] = (0.01, trace.cold_receptor_C if channel == "cold" else trace.warm_receptor_C)
+    return found

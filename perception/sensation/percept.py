@@ -1,0 +1,179 @@
+"""What a cue feels like: two traces of sensation, when and where it was first felt, and when it peaked.
+
+Three clocks, each named where it is used: the receptor clock starts with the cue; the percept clock
+is later by conduction; the response clock by conduction and decision.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array, as_rows
+from ..observer.channels import CHANNELS, Channel
+from ..observer.observer import Observer
+from ..observer.variants import receptor_input
+from .coverage import outside_data
+from .detection import channel_name, detect
+from .receptors import receptor_drive
+from .sensation import sense
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from thermicon.circuit import Trace
+
+
+@dataclass(frozen=True, slots=True)
+class Percept:
+    """Sensation over time in d′ units, on the clock named by `clock`.
+
+    The receptor clock starts with the cue and counts no conduction; `onset_s` is on the response
+    clock (crossing + conduction + decision) and None where nothing was felt, like `channel`.
+    `conduction_s` is what the percept clock is later by, cold and warm; `outside_data` has a sentence for
+    every way in which the trace lies outside what the prediction rests on.
+    """
+
+    psi_cold: Array
+    psi_warm: Array
+    dt_s: float
+    onset_s: float | None
+    channel: Channel | None
+    detected_probability: float
+    icon: str | None = None
+    clock: str = "receptor"
+    conduction_s: tuple[float, float] = (0.0, 0.0)
+    outside_data: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for name in ("psi_cold", "psi_warm"):
+            own = np.array(getattr(self, name), dtype=np.float64)
+            if own.ndim != 1 or not np.isfinite(own).all():
+                raise ValueError(f"{name} must be one trace of finite numbers, not shape {own.shape}")
+            own.setflags(write=False)
+            object.__setattr__(self, name, own)
+        if self.psi_cold.shape != self.psi_warm.shape:
+            raise ValueError(f"psi_cold has {self.psi_cold.size} samples and psi_warm {self.psi_warm.size}")
+        if not self.dt_s > 0.0:
+            raise ValueError(f"dt_s = {self.dt_s:g} s must be above 0")
+
+    @property
+    def time_s(self) -> Array:
+        """Clock of the traces, s."""
+        clock: Array = self.dt_s * np.arange(self.psi_cold.size, dtype=np.float64)
+        return clock
+
+    def peak_s(self, channel: Channel) -> float | None:
+        """When the sensation of a channel is strongest, s on the receptor clock; None where it does not rise.
+
+        Between samples the peak is that of the parabola through the largest one and its neighbours.
+        """
+        psi = self.psi_cold if channel == "cold" else self.psi_warm
+        k = int(psi.argmax())
+        if not psi[k] > psi[0]:
+            return None
+        if k == psi.size - 1:
+            return self.dt_s * k
+        before, top, after = (float(v) for v in psi[k - 1 : k + 2])
+        bend = before - 2.0 * top + after
+        return self.dt_s * (k + (0.5 * (before - after) / bend if bend < 0.0 else 0.0))
+
+    def felt_peak_s(self, channel: Channel) -> float | None:
+        """When the sensation of a channel is felt to peak, s on the percept clock; None where it does not rise."""
+        peak = self.peak_s(channel)
+        return None if peak is None else peak + self.conduction_s[channel == "warm"]
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw both sensations; returns the axes."""
+        from ..plots.draw import plot_sensation
+
+        return plot_sensation(self, ax)
+
+    def __repr__(self) -> str:
+        beyond = ", outside the data" if self.outside_data else ""
+        felt = "not felt" if self.onset_s is None else f"felt at {self.onset_s:.2f} s by {self.channel}"
+        return (
+            f"Percept({self.icon or 'unnamed'}: {felt}, p {self.detected_probability:.3f}, "
+            f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
+            f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
+        )
+
+    def _repr_html_(self) -> str:
+        from ..plots.draw import as_svg, plot_sensation
+
+        return as_svg(plot_sensation(self, None))
+
+
+def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:
+    """Percept of one simulated trace by a nominal person (or `observer`, of temperature or of heat flow).
+
+    `area_m2` is the trace's own area of contact unless given; the site is the trace's. The chain is
+    receptor drive, sensation, detection.
+    """
+    person = Observer.load() if observer is None else observer
+    area = trace.area_m2 if area_m2 is None else area_m2
+    dt, rows = uniform_clock(trace.time_s)
+    at_cold, at_warm = (receptor_input(trace, person.variable, channel)[:rows] for channel in CHANNELS)
+    cold, warm = perceive_many(at_cold, at_warm, dt, person, area_m2=area, site=trace.site)
+    path = person.path_m(trace.site)
+    found = detect(cold, warm, dt, person, path_m=path)
+    felt = float(found.onset_s)
+    return Percept(
+        psi_cold=cold,
+        psi_warm=warm,
+        dt_s=dt,
+        onset_s=None if np.isnan(felt) else felt,
+        channel=channel_name(int(found.channel)),
+        detected_probability=float(found.probability),
+        icon=trace.icon,
+        conduction_s=(path / person.cold.velocity_m_per_s, path / person.warm.velocity_m_per_s),
+        outside_data=outside_data(trace),
+    )
+
+
+def perceive_many(
+    cold_received: ArrayLike,
+    warm_received: ArrayLike,
+    dt_s: float,
+    observer: Observer,
+    *,
+    area_m2: float | None = None,
+    site: str | None = None,
+    threshold_cold: ArrayLike = 1.0,
+    threshold_warm: ArrayLike = 1.0,
+) -> tuple[Array, Array]:
+    """Sensations (cold, warm) of many traces, shape (..., n_time) like what the receptors receive.
+
+    That is °C at the depth of each channel or, for an observer of heat flow, W/m² into the skin there
+    (`receptor_column` names the columns). The threshold multipliers are one number or one for each
+    leading index.
+    """
+    felt = []
+    multiples = {"cold": threshold_cold, "warm": threshold_warm}
+    for channel, received in zip(CHANNELS, (cold_received, warm_received), strict=True):
+        psi = receptor_drive(received, dt_s, channel, observer)
+        # In place: memory as large as the input is what takes long in a large batch.
+        sense(as_rows(psi)[0], psi, channel, observer, area_m2=area_m2, site=site, threshold=multiples[channel])
+        felt.append(psi)
+    return felt[0], felt[1]
+
+
+def uniform_clock(time_s: ArrayLike) -> tuple[float, int]:
+    """Step (s) of a uniform clock and how many rows it has; a shorter last step is left off.
+
+    >>> uniform_clock([0.0, 0.5, 1.0, 1.2])
+    (0.5, 3)
+    """
+    clock = np.asarray(time_s, dtype=np.float64)
+    if clock.size < 2:
+        raise ValueError("a percept needs a trace of at least two rows")
+    rows = clock.size
+    if rows > 2 and clock[-1] - clock[-2] < (clock[1] - clock[0]) * (1.0 - 1e-6):
+        rows -= 1
+    dt = float(clock[rows - 1] - clock[0]) / (rows - 1)
+    if not np.allclose(np.diff(clock[:rows]), dt, rtol=1e-6, atol=1e-9):
+        raise ValueError("a percept needs a uniform clock: simulate at one rate (rate_Hz)")
+    return dt, rows

@@ -1,0 +1,1 @@
+"""Which constants of the observer move a prediction most."""

@@ -1,0 +1,1 @@
+"""Published experiments simulated, and how far the predictions are from what was measured."""

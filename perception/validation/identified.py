@@ -1,0 +1,216 @@
+"""Icons named from memory, for every variant of the observer: confusions, and what hangs on parameters.
+
+The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow or count
+impulses, and the plausible observers that stand behind the other experiments too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.confusion import SAMPLES, normalised
+from ..identification.intervals import EVERY, PEOPLE
+from ..identification.intervals import SAMPLES as FEW_SAMPLES
+from ..identification.measures import information_bits, percent_correct, plugin_bits
+from ..identification.population import Played, feel, judge
+from ..kernels.parallel import in_order
+from ..observer.observer import Observer
+from ..observer.people import People, draw_people
+from ..observer.variants import VARIABLES, Model, Variable, receptor_column
+from ..ranking.chunks import EXPERIMENTS, RATE_HZ
+from ..ranking.rank import TAIL_S
+from .plausible import plausible_observers
+from .predicted import Predicted
+from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+
+Score = Callable[[Array], float]
+"""One number from the confusions (people, icons, icons) of a crowd."""
+
+
+@dataclass(frozen=True, slots=True)
+class Identified:
+    """Confusions of one variant: of every person, and of fewer people for the nominal and each plausible observer."""
+
+    variable: Variable
+    model: Model
+    labels: tuple[str, ...]
+    probability: Array
+    few: Array
+    drawn: Array
+
+    @property
+    def pooled(self) -> Array:
+        """Mean over people, rows sum to 1."""
+        return normalised(self.probability.mean(axis=0))
+
+    def predicted(
+        self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str, top: float = math.inf
+    ) -> Predicted:
+        """A score with its interval: what each plausible observer changes is added, and stays within 0 and `top`."""
+        value, nominal = score(self.probability), score(self.few)
+        each = tuple(float(np.clip(value + score(one) - nominal, 0.0, top)) for one in self.drawn)
+        low, high = np.percentile(each, [2.5, 97.5]).tolist() if each else (None, None)
+        return Predicted(
+            experiment, quantity, "both", value, unit, low, high, self.variable, self.model, conditions, draws=each
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A set that was played to many people; `identify` then asks one variant of the observer."""
+
+    labels: tuple[str, ...]
+    crowd: People
+    played: tuple[Played, ...]
+    seed: int
+
+    def identify(self, variable: Variable, model: Model, draws: int) -> Identified:
+        """Confusions of one variant from memory, by the largest difference over time."""
+        played = self.played[VARIABLES.index(variable)]
+        few = self.crowd.part(0, PEOPLE)
+        thin = played.thinned(len(few), EVERY)
+        nominal = Observer.load(variable=variable, model=model)
+
+        def thinly(observer: Observer) -> Array:
+            felt = feel(thin, few, observer)
+            return judge(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
+
+        whole = judge(feel(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
+        others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
+        drawn = tuple(in_order(thinly, others))
+        kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
+        return Identified(variable, model, self.labels, whole.probability, thinly(nominal), kept)
+
+
+def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
+    """Play a set to virtual people, each on their own skin and contact, as `rank` does."""
+    from thermicon.circuit import duration_s, simulate_many
+
+    members, crowd = list(icons), draw_people(people, seed)
+    longest = max(duration_s(icon, rig) for icon in members)
+    end = math.ceil((longest + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
+    probes = [probe for pair in columns for probe in pair]
+    batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
+    played = tuple(
+        Played(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2) for cold, warm in columns
+    )
+    return Shown(tuple(icon.name for icon in members), crowd, played, seed)
+
+
+def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
+    """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
+    said = f"named from memory, {found.probability.shape[0]} people, max norm"
+    most = math.log2(len(found.labels))
+
+    def share_of_people(share: float) -> Score:
+        return lambda p: float(np.percentile(percent_correct(p), share))
+
+    def bits(p: Array) -> float:
+        return plugin_bits(p, trials, seed, EXPERIMENTS).mean
+
+    asked: list[tuple[str, str, Score, float]] = [
+        ("proportion correct", "proportion", lambda p: float(percent_correct(p).mean()), 1.0),
+        ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
+        ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
+        ("plug-in information", "bit", bits, most),
+        ("information", "bit", lambda p: float(information_bits(p).mean()), most),
+    ]
+    asked += [(f"proportion correct, {name}", "proportion", _named(k), 1.0) for k, name in enumerate(found.labels)]
+    made = [
+        found.predicted("six icons", name, unit, score, conditions=said, top=top) for name, unit, score, top in asked
+    ]
+    low, high = np.percentile(percent_correct(found.probability), [16.0, 84.0]).tolist()
+    made[0] = replace(made[0], people=(low, high))
+    made[3] = replace(made[3], conditions=f"{said}; plug-in estimate of {trials} trials a person")
+    return tuple(made)
+
+
+def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
+    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, max norm"
+    made = []
+    for pair in PAIRS:
+        both = " and ".join(pair)
+        largest = max(one.largest for one in alike if one.pair == pair)
+        made.append(
+            Predicted(
+                "wave shapes", f"largest difference of {both}", "both", largest, "1", None, None,
+                found.variable, found.model, "skin temperature over the swing, largest of four groups",
+            )
+        )  # fmt: skip
+        made.append(
+            found.predicted(
+                "wave shapes", f"confusion of {both} over any other", "1", _main(found.labels, pair), conditions=said
+            )
+        )
+        made.append(
+            found.predicted(
+                "wave shapes",
+                f"confusion of {both}",
+                "proportion",
+                _mixed(found.labels, pair),
+                conditions=said,
+                top=1.0,
+            )
+        )
+    for shape in SHAPES:
+        places = [found.labels.index(wave_name(shape, *group)) for group in GROUPS]
+        scores = [_named(place) for place in places]
+        made.append(
+            found.predicted(
+                "wave shapes", f"proportion correct, {shape}", "proportion", _mean(scores), conditions=said, top=1.0
+            )
+        )
+    return tuple(made)
+
+
+def pair_ratios(found: Identified, pair: tuple[str, str]) -> tuple[tuple[float, float], ...]:
+    """For each group: how often two shapes are mixed up, and the most that either is with an icon of another kind."""
+    return tuple(_against(normalised(found.probability.mean(axis=0)), found.labels, pair, group) for group in GROUPS)
+
+
+def _against(
+    pooled: Array, labels: Sequence[str], pair: tuple[str, str], group: tuple[str, int]
+) -> tuple[float, float]:
+    own = [labels.index(wave_name(shape, *group)) for shape in SHAPES]
+    first, second = (labels.index(wave_name(shape, *group)) for shape in pair)
+    mixed = 0.5 * (pooled + pooled.T)
+    others = [k for k in range(len(labels)) if k not in own]
+    return float(mixed[first, second]), float(mixed[[first, second]][:, others].max())
+
+
+def _main(labels: Sequence[str], pair: tuple[str, str]) -> Score:
+    def least(probability: Array) -> float:
+        pooled = normalised(probability.mean(axis=0))
+        return min(mixed / other for mixed, other in (_against(pooled, labels, pair, group) for group in GROUPS))
+
+    return least
+
+
+def _mixed(labels: Sequence[str], pair: tuple[str, str]) -> Score:
+    def mean(probability: Array) -> float:
+        pooled = normalised(probability.mean(axis=0))
+        return float(np.mean([_against(pooled, labels, pair, group)[0] for group in GROUPS]))
+
+    return mean
+
+
+@lru_cache(maxsize=64)
+def _named(k: int) -> Score:
+    return lambda p: float(p[:, k, k].mean())
+
+
+def _mean(scores: Sequence[Score]) -> Score:
+    return lambda p: float(np.mean([score(p) for score in scores]))

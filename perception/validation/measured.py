@@ -1,0 +1,99 @@
+"""What a simulated procedure measured, and the persons it was run on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import Channel
+from ..observer.observer import Observer
+from ..observer.people import People
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """One number for each person, in `unit`; inf where the strongest stimulus was not felt.
+
+    Thresholds are changes from the baseline at the surface where the stimulus was prescribed, K,
+    without sign. Without people there is one person, the nominal one.
+    """
+
+    procedure: str
+    channel: Channel
+    unit: str
+    each: Array
+    conditions: str
+
+    def __post_init__(self) -> None:
+        own = np.array(self.each, dtype=np.float64)
+        if own.ndim != 1 or own.size == 0 or np.isnan(own).any():
+            raise ValueError(f"{self.procedure}: one number is needed for each person, not {own.shape}")
+        own.setflags(write=False)
+        object.__setattr__(self, "each", own)
+
+    @property
+    def value(self) -> float | None:
+        """Median over people; None where half of them felt nothing."""
+        return self.quantile(0.5)
+
+    @property
+    def unfelt(self) -> float:
+        """Share of people who did not feel the strongest stimulus."""
+        return float(np.isinf(self.each).mean())
+
+    def quantile(self, share: float) -> float | None:
+        """Value that a share of people lies below; None where so many felt nothing."""
+        ordered = np.sort(self.each)
+        place = share * (ordered.size - 1)
+        low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
+        found = low if low == high else low + (place - np.floor(place)) * (high - low)
+        return float(found) if np.isfinite(found) else None
+
+    @property
+    def log10_sd(self) -> float | None:
+        """SD over people of the decimal logarithm; None for one person, or where somebody felt nothing."""
+        if self.each.size < 2 or self.unfelt > 0.0 or not (self.each > 0.0).all():
+            return None
+        return float(np.log10(self.each).std(ddof=1))
+
+    def __repr__(self) -> str:
+        value = "not felt" if self.value is None else f"{self.value:.3g} {self.unit}"
+        low, high = self.quantile(0.025), self.quantile(0.975)
+        spread = "" if self.each.size == 1 or low is None or high is None else f" [{low:.3g}, {high:.3g}]"
+        crowd = "1 person" if self.each.size == 1 else f"{self.each.size} people"
+        return f"Measured({self.procedure}, {self.channel}: {value}{spread}, {crowd}; {self.conditions})"
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """Columns (n,) that procedures need: threshold multipliers, conduction of each channel s, decision s."""
+
+    threshold_cold: Array
+    threshold_warm: Array
+    conduction_s: tuple[Array, Array]
+    decision_s: Array
+
+    def __len__(self) -> int:
+        return int(self.decision_s.size)
+
+
+def crowd_of(observer: Observer, site: str, people: People | None) -> Crowd:
+    """The people at a site, or the nominal person when there are none.
+
+    >>> len(crowd_of(Observer.load(), "thenar", None))
+    1
+    """
+    path = observer.path_m(site)
+    if people is None:
+        one = np.ones(1)
+        velocities = observer.cold.velocity_m_per_s, observer.warm.velocity_m_per_s
+        return Crowd(one, one, (path / velocities[0] * one, path / velocities[1] * one), observer.decision_s * one)
+    own = path * people.path
+    return Crowd(
+        people.threshold_cold,
+        people.threshold_warm,
+        (own / people.velocity_cold_m_per_s, own / people.velocity_warm_m_per_s),
+        people.decision_s,
+    )

@@ -1,0 +1,244 @@
+"""Psychophysical procedures, simulated: the same observer asked in the ways that laboratories ask.
+
+Published thresholds differ tenfold by method. A forced choice needs no criterion; yes/no, limits,
+levels and reaction times have one, set by its false alarms. Each function plays stimuli on a bench
+and returns a number for every person. The rig is the bench's for all: people differ here in
+thresholds, conduction and decision, not in skin or touch.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from statistics import NormalDist
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import Channel
+from ..observer.observer import Observer
+from ..observer.people import People
+from ..sensation.bench import Bench, Stimuli, ramp
+from ..sensation.detection import criterion_of, detect
+from ..sensation.first_passage import ResponseTimes, response_times
+from .measured import Crowd, Measured, crowd_of
+
+UNIT_PROPORTION = NormalDist().cdf(2.0**-0.5)
+"""Proportion correct of d′ = 1 in a choice of two, Φ(1/√2) = 0.76: what calibration takes a threshold to be."""
+SIZES_K = np.geomspace(0.005, 8.0, 33)
+"""Sizes that are played; thresholds between them are interpolated on log size."""
+LONGEST_S = 600.0
+FEEBLE = 1e-12
+
+
+def forced_choice(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    *,
+    rate_K_per_s: float = 1.0,
+    hold_s: float = 3.0,
+    proportion: float = UNIT_PROPORTION,
+    people: People | None = None,
+) -> Measured:
+    """Threshold (K) in a choice of two intervals, one with a ramp that is held, correct with `proportion`.
+
+    The choice is correct with Φ(d′/√2), d′ being the largest sensation of either channel above rest.
+
+    >>> from thermicon.circuit import Rig
+    >>> found = forced_choice(Observer.load(), Bench(Rig.load("thenar")), "cold")
+    >>> round(found.value, 3), found.unit
+    (0.11, 'K')
+    """
+    if not 0.5 < proportion < 1.0:
+        raise ValueError(f"the proportion correct in a choice of two lies between 0.5 and 1, not {proportion:g}")
+    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    d_prime = np.sqrt(2.0) * NormalDist().inv_cdf(proportion)
+    felt = _peaks(played, observer, crowd)
+    return Measured(
+        "forced choice of two",
+        channel,
+        "K",
+        _where_reached(np.log(np.maximum(felt, FEEBLE)), float(np.log(d_prime))),
+        f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {proportion:.3g} correct",
+    )
+
+
+def yes_no(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    *,
+    rate_K_per_s: float = 1.0,
+    hold_s: float = 3.0,
+    hits: float = 0.5,
+    false_alarms: float | None = None,
+    people: People | None = None,
+) -> Measured:
+    """Threshold (K) at which a share of ramps, `hits`, is reported, corrected for false alarms.
+
+    `false_alarms` is their share in an empty trial as long as the shortest one; None keeps the
+    observer's cautious criterion.
+    """
+    if not 0.0 < hits < 1.0:
+        raise ValueError(f"the share of hits lies between 0 and 1, not {hits:g}")
+    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    asked = observer
+    if false_alarms is not None:
+        asked = replace(observer, criterion=criterion_of(false_alarms, observer.noise_correlation_s, hold_s))
+    said = _said_yes(played, asked, crowd)
+    return Measured(
+        "yes/no",
+        channel,
+        "K",
+        _where_reached(said, hits),
+        f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {hits:g} reported, criterion {asked.criterion:.2f} d′",
+    )
+
+
+def method_of_limits(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    *,
+    rate_K_per_s: float = 1.0,
+    limit_K: float = 12.0,
+    people: People | None = None,
+) -> Measured:
+    """Threshold (K): how far a steady ramp has come at the bench's surface when half of the trials are answered.
+
+    The answer waits for the cautious criterion, conduction and decision; it may be a false alarm.
+    """
+    played, found = _responses(observer, bench, channel, rate_K_per_s, limit_K, people)
+    moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
+    pressed = found.quantile(0.5)
+    inside = pressed <= limit_K / rate_K_per_s
+    each = np.where(inside, np.interp(np.where(inside, pressed, 0.0), played.time_s, moved), np.inf)
+    return Measured("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
+
+
+def choice_reaction_time(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    *,
+    rate_K_per_s: float = 5.0,
+    size_K: float = 8.0,
+    people: People | None = None,
+) -> ResponseTimes:
+    """Distributions, one a person, of the time from the start of a ramp to the answer warm or cold."""
+    return _responses(observer, bench, channel, rate_K_per_s, size_K, people)[1]
+
+
+def method_of_levels(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    *,
+    rate_K_per_s: float = 1.0,
+    hold_s: float = 1.0,
+    first_K: float = 2.0,
+    last_K: float = 0.1,
+    runs: int = 100,
+    seed: int = 0,
+    people: People | None = None,
+) -> Measured:
+    """Threshold (K) of a staircase of ramps: smaller after yes, larger after no, in steps halved at every turn.
+
+    A run starts at `first_K` with steps as large, ends when the step is below `last_K`, and counts the
+    mean of its last reported and last unreported level. Each person runs once; the nominal one `runs` times.
+    """
+    if runs < 1 or not 0.0 < last_K < first_K:
+        raise ValueError(f"levels need a run and 0 < last_K < first_K, not {runs}, {last_K:g} and {first_K:g}")
+    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
+    each = []
+    for said in _said_yes(played, observer, crowd):
+        each += [_staircase(said, first_K, last_K, rng) for _ in range(1 if people is not None else runs)]
+    conditions = f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, from {first_K:g} K down to steps of {last_K:g} K"
+    return Measured("method of levels", channel, "K", np.array(each), conditions)
+
+
+@lru_cache(maxsize=32)
+def _ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -> list[Stimuli]:
+    """A ramp of every size, each until the end of its own hold; slow ones take at most `LONGEST_S`."""
+    sizes = SIZES_K[LONGEST_S * rate_K_per_s >= SIZES_K]
+    return [
+        bench.play([ramp(channel, size, rate_K_per_s)], np.ceil(100.0 * (size / rate_K_per_s + hold_s)) / 100.0)
+        for size in sizes.tolist()
+    ]
+
+
+def _peaks(played: list[Stimuli], observer: Observer, crowd: Crowd) -> Array:
+    """Largest sensation above rest for every person and size, shape (n, sizes)."""
+    found = []
+    for one in played:
+        both = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
+        found.append(np.maximum(*((psi - psi[..., :1]).max(axis=-1) for psi in both))[:, 0])
+    return np.stack(found, axis=1)
+
+
+def _said_yes(played: list[Stimuli], observer: Observer, crowd: Crowd) -> Array:
+    """Probability of a report, corrected for false alarms, for every person and size, shape (n, sizes)."""
+    found = []
+    for one in played:
+        cold, warm = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
+        found.append(detect(cold, warm, one.dt_s, observer).probability[:, 0])
+    return np.stack(found, axis=1)
+
+
+def _where_reached(values: Array, target: float) -> Array:
+    """Size (n,) at which values (n, sizes) first reach a target, on log size; inf where they never do.
+
+    Raises ValueError where the smallest size reaches it: the answer lies outside of what was played.
+    """
+    sizes = SIZES_K[: values.shape[1]]
+    found = np.full(values.shape[0], np.inf)
+    for person, own in enumerate(values):
+        k = int(np.argmax(own >= target))
+        if k == 0 and own[0] >= target:
+            raise ValueError(f"a step of {sizes[0]:g} K is felt already: the threshold is smaller than what is played")
+        if own[k] >= target:
+            found[person] = np.exp(np.interp(target, own[k - 1 : k + 1], np.log(sizes[k - 1 : k + 1])))
+    return found
+
+
+def _staircase(said: Array, first_K: float, last_K: float, rng: np.random.Generator) -> float:
+    """One run over the probabilities of a report (sizes,); inf when the largest size stays unreported."""
+    log_sizes = np.log(SIZES_K[: said.size])
+    largest = float(SIZES_K[said.size - 1])
+    level, step, last = first_K, first_K, {True: np.inf, False: 0.0}
+    before: bool | None = None
+    while step >= last_K:
+        yes = bool(rng.random() < np.interp(np.log(level), log_sizes, said))
+        if not yes and level >= largest:
+            return float(np.inf)
+        step = 0.5 * step if before is not None and yes != before else step
+        last[yes], before = level, yes
+        nearer = level - step if yes else min(level + step, largest)
+        while nearer <= 0.0:
+            step *= 0.5
+            nearer = level - step
+        level = nearer
+    return 0.5 * (last[True] + last[False])
+
+
+def _said(bench: Bench, rate_K_per_s: float) -> str:
+    return f"{rate_K_per_s:g} K/s at the {bench.surface} from {bench.baseline_C:g} °C on {bench.rig.name}"
+
+
+@lru_cache(maxsize=32)
+def _ramp(bench: Bench, channel: Channel, rate_K_per_s: float, size_K: float) -> Stimuli:
+    return bench.play([ramp(channel, size_K, rate_K_per_s)], round(size_K / rate_K_per_s + 2.0, 2))
+
+
+def _responses(
+    observer: Observer, bench: Bench, channel: Channel, rate: float, size_K: float, people: People | None
+) -> tuple[Stimuli, ResponseTimes]:
+    played = _ramp(bench, channel, rate, size_K)
+    crowd = crowd_of(observer, bench.rig.site, people)
+    cold, warm = played.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
+    found = response_times(
+        cold[:, 0], warm[:, 0], played.dt_s, observer, conduction_s=crowd.conduction_s, decision_s=crowd.decision_s
+    )
+    return played, found
