@@ -86,7 +86,7 @@ def page() -> str:
         "Everything that can be wrong with a cue file has a code. All errors of a file are told in one go, each with",
         "its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
         "",
-        "Made from `icons/data/mistakes.toml` by `python tests/icons/test_catalogue.py`, which runs every example.",
+        "Made by `python tests/icons/files/test_catalogue.py` from `icons/data/mistakes.toml`; every example is run.",
     ]
     part = ""
     for entry in catalogue().values():

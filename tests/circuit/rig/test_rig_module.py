@@ -1,0 +1,222 @@
+"""The module of a rig, given by parameters, by data sheets or by name: three ways, never two at once."""
+
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Rig, RigError
+from thermicon.circuit.rig.datasheet import Datasheet, at_mean_C
+from thermicon.circuit.rig.modules import build_of, load_module, module_names
+
+THENAR = Rig.load("thenar")
+TEC = {"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66, "t_hot_C": 25, "q_max_W": 50}
+TEC_WARM = {"i_max_A": 6.4, "v_max_V": 16.4, "dt_max_K": 75, "t_hot_C": 50, "q_max_W": 57}
+GIVEN = "seebeck_V_per_K = 0.0521\nresistance_ohm = 6.35\nthermal_resistance_K_per_W = 6.56\n"
+
+
+def _parameters(rig: Rig) -> tuple[float, float, float]:
+    return (rig.module.seebeck_V_per_K, rig.module.resistance_ohm, rig.module.thermal_resistance_K_per_W)
+
+
+def _without(*keys: str) -> dict[str, float]:
+    return {key: value for key, value in TEC.items() if key not in keys}
+
+
+def _file(tmp_path: Path, module: str) -> Path:
+    text = (Path(__file__).parents[3] / "circuit/rigs/thenar.toml").read_text("utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace(GIVEN, module), "utf-8")
+    return path
+
+
+def test_a_data_sheet_in_a_rig_file(tmp_path: Path) -> None:
+    sheet = "[[module.datasheet]]\ni_max_A = 6.4\nv_max_V = 14.4\ndt_max_K = 66\nt_hot_C = 25\nq_max_W = 50\n"
+    path = _file(tmp_path, "")
+    text = path.read_text("utf-8").replace("[heat_sink]", sheet + "\n[heat_sink]")
+    path.write_text(text, "utf-8")
+    rig, found = Rig.load(path), Datasheet(**TEC).four_figures()
+    assert rig.module == found.peltier(2.6, 2.6)
+    assert rig.module_source.startswith("data sheet given in the rig (TE-127-1.0-2.5, derived")
+    assert rig.warnings == ()
+
+
+def test_a_whole_list_of_sheets_replaces_the_parameters() -> None:
+    rig = THENAR.with_(**{"module.datasheet": [TEC]})
+    assert rig.module == Datasheet(**TEC).four_figures().peltier(2.6, 2.6)
+    assert rig.module_source == (
+        "data sheet given in the rig (no source stated): four figures with the hot side at 25 °C, Qmax reproduced."
+    )
+    assert rig.with_(**{"module.datasheet.0.q_max_W": 48}).module == (
+        Datasheet(6.4, 14.4, 66, 25, 48).four_figures().peltier(2.6, 2.6)
+    )
+    assert rig.with_(**{"module.hot_plate_J_per_K": 9}).module.hot_plate_J_per_K == 9
+    assert THENAR.module_source.startswith("parameters given: TE-127-1.0-2.5, derived from its leg geometry")
+    changed = THENAR.with_(**{"module.resistance_ohm": 6.0})
+    assert (changed.module.resistance_ohm, changed.module_source) == (6.0, "parameters given: no source stated")
+    assert THENAR.with_(**{"module.resistance_ohm": 6.35}) == THENAR
+
+
+def test_without_qmax_three_figures_and_on_demand_too() -> None:
+    three = Datasheet(**TEC).three_figures().peltier(2.6, 2.6)
+    silent = THENAR.with_(**{"module.datasheet": [_without("q_max_W")]})
+    assert silent.module == three
+    assert silent.module_source.endswith("three figures with the hot side at 25 °C, no Qmax to hold them against.")
+    assert silent.warnings == ()
+    told = THENAR.with_(**{"module.datasheet": [TEC], "module.extraction": "three"})
+    assert told.module == three
+    assert told.module_source.endswith("Qmax missed by +12.6 % (+6.28 W).")
+    assert told.warnings == (
+        "module: three figures of its data sheet miss the printed Qmax by +12.6 % (+6.28 W), more than 10 %; "
+        'extraction = "four" reproduces it',
+    )
+    mixed = THENAR.with_(**{"module.datasheet": [_without("q_max_W"), TEC_WARM]})
+    assert "three figures with the hot side at 25 and 50 °C" in mixed.module_source
+
+
+def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
+    found = [Datasheet(**sheet).four_figures() for sheet in (TEC, TEC_WARM)]
+    rig = THENAR.with_(**{"module.datasheet": [TEC, TEC_WARM], "heat_sink.temperature_C": 25})
+    assert _parameters(rig) == pytest.approx(at_mean_C(found, 28.5))
+    assert found[0].seebeck_V_per_K < rig.module.seebeck_V_per_K < found[1].seebeck_V_per_K
+    assert rig.module_source.endswith("Qmax reproduced, taken at a mean module temperature of 28.5 °C.")
+    assert rig.warnings == ()
+    warm = rig.with_(**{"heat_sink.temperature_C": 40})
+    assert _parameters(warm) == pytest.approx(at_mean_C(found[1:], 0.0))
+    assert warm.warnings == (
+        "module: the mean of heat sink and resting skin, 36.0 °C, lies above the 8.5 … 31.2 °C that its two data "
+        "sheets stand for; the parameters at 31.2 °C are used",
+    )
+    assert "lies below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
+
+
+@pytest.mark.parametrize("name", module_names())
+def test_every_shipped_module_serves_a_rig_by_name(name: str) -> None:
+    rig = THENAR.with_(**{"module.name": name})
+    found = [sheet.four_figures() for sheet in load_module(name)]
+    assert _parameters(rig) == pytest.approx(at_mean_C(found, 36.0))
+    assert rig.module_source.startswith(f"{name}, ")
+    assert "Qmax reproduced" in rig.module_source
+    derived = [text for text in rig.warnings if "no datasheet was seen" in text]
+    assert bool(derived) == (name == "TE-127-1.0-2.5")
+
+
+def test_a_module_by_name_brings_its_plates_unless_others_are_set_with_it() -> None:
+    named = THENAR.with_(**{"module.name": "TEC1-12706"})
+    assert (named.module.hot_plate_J_per_K, named.module.cold_plate_J_per_K) == (4.6, 4.6)
+    assert "plates of 4.6 J/K a side (assumed from its footprint)" in named.module_source
+    own = THENAR.with_(**{"module.name": "TEC1-12706", "module.cold_plate_J_per_K": 5.5})
+    assert (own.module.hot_plate_J_per_K, own.module.cold_plate_J_per_K) == (4.6, 5.5)
+    assert "plates of" not in own.module_source
+    assert named.with_(**{"module.datasheet": [TEC]}).module.hot_plate_J_per_K == 4.6
+
+
+def test_plates_on_record_are_alumina_over_the_footprint_with_half_the_legs() -> None:
+    alumina = 3.9 * 0.88 * 0.065  # J/(K·cm²) of a plate of 0.65 mm
+    legs = 2 * 127 * 0.1 * 0.1 * 0.25 * 7.7 * 0.154 / 2 / 9.0  # Bi2Te3 of the shipped rigs' module, half of it a side
+    for name in module_names():
+        build = build_of(name)
+        if build.face_cm2 is None:
+            assert build.plate_J_per_K is None
+            continue
+        assert build.plate_J_per_K == pytest.approx(0.29 * build.face_cm2, rel=0.02)
+        assert alumina + legs < build.plate_J_per_K / build.face_cm2 < 1.2 * (alumina + legs)  # the rest is copper
+
+
+def test_what_stays_from_another_module_is_said() -> None:
+    def said(name: str, rig: Rig = THENAR, **more: object) -> str:
+        return " ".join(rig.with_(**{"module.name": name, **more}).warnings)
+
+    assert said("CP1.0-127-06L") == ""  # of the same size
+    assert "its face is 16 cm², and contact.area_cm2 stays the 9 cm² of the rig; set it to what" in said(
+        "TM-127-1.4-4.0"
+    )
+    assert said("TM-127-1.4-4.0", **{"contact.area_cm2": 12}) == ""
+    wide = said("CP1.0-127-06L", **{"contact.area_cm2": 12})
+    assert "contact.area_cm2 = 12 cm² is more than its face of 9 cm²; set contact.area_cm2 to at most that" in wide
+    small = said("1MD04-003-08")
+    assert "its plates are not on record, so those of the rig stay, 2.6 (hot) and 2.6 J/K (cold); set " in small
+    assert "its face is not on record, and contact.area_cm2 stays the 9 cm²" in small
+    assert "driver.current_limit_A = 1.5 A is above its Imax of 1 A" in small
+    known = {"module.hot_plate_J_per_K": 0.1, "module.cold_plate_J_per_K": 0.1, "contact.area_cm2": 0.2}
+    assert said("1MD04-003-08", **known, **{"driver.current_limit_A": 0.8}) == ""
+
+
+def test_a_name_from_the_command_line_and_a_wrong_one() -> None:
+    assert THENAR.with_set(["module.name=CP60340"]).module_source.startswith("CP60340, maker's datasheet")
+    with pytest.raises(RigError, match=r"rig thenar: module\.name = CP6034: no such module; did you mean CP60340\?"):
+        THENAR.with_(**{"module.name": "CP6034"})
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"module.name": "CP60340", "module.resistance_ohm": 2.0},
+            r"module: resistance_ohm and name are two ways of giving it; keep one and remove the other",
+        ),
+        (
+            {"module.resistance_ohm": 2.0, "module.name": "CP60340"},
+            r"module: resistance_ohm and name are two ways of giving it",
+        ),
+        (
+            {"module.name": "CP60340", "module.datasheet": [TEC]},
+            r"module: datasheet and name are two ways of giving it; keep one and remove the other",
+        ),
+        (
+            {"module.resistance_ohm": None},
+            r"^rig thenar: module\.resistance_ohm is missing; add it, in Ω$",
+        ),
+        ({"module.extraction": "three"}, r"module\.extraction: only for a data sheet or a name; remove the key"),
+        (
+            {"module.datasheet": [TEC], "module.extraction": "five"},
+            r"module\.extraction = 'five': must be 'three' or 'four'",
+        ),
+        ({"module.datasheet": []}, r"module\.datasheet: 0 tables; give one, or two for two hot-side temperatures"),
+        ({"module.datasheet": [TEC] * 3}, r"module\.datasheet: 3 tables; give one, or two"),
+        (
+            {"module.datasheet": [TEC, TEC]},
+            r"module\.datasheet: both stand for 8\.5 °C .* must differ by at least 1 K, so leave one out",
+        ),
+        ({"module.datasheet": [_without("v_max_V")]}, r"module\.datasheet\.0\.v_max_V is missing; add it, in V"),
+        (
+            {"module.datasheet": [{**TEC, "i_max_A": 0}]},
+            r"module\.datasheet\.0\.i_max_A = 0 A: must be greater than 0 A",
+        ),
+        ({"module.datasheet": [{**TEC, "dt_max_K": 200}]}, r"dt_max_K = 200 K: must be at most 150 K"),
+        (
+            {"module.datasheet": [{**TEC, "dtmax_K": 66}]},
+            r"module\.datasheet\.0\.dtmax_K: unknown key; did you mean module\.datasheet\.0\.dt_max_K",
+        ),
+        (
+            {"module.datasheet": [TEC, {**TEC_WARM, "q_max_W": 5}]},
+            r"module\.datasheet\.1\.q_max_W = 5 W: must lie between .* W",
+        ),
+        (
+            {"module.datasheet": [_without("q_max_W")], "module.extraction": "four"},
+            r"module\.datasheet\.0\.q_max_W is missing; four figures need it",
+        ),
+        ({"module.datasheet.0.i_max_A": 3}, r"this rig's module has no data sheet; set module\.datasheet, a list"),
+    ],
+)
+def test_a_module_that_cannot_be_is_refused_in_words(changes: dict[str, object], words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        THENAR.with_(**changes)
+
+
+def test_a_sheet_that_is_not_there_is_answered_with_those_that_are() -> None:
+    rig = THENAR.with_(**{"module.datasheet": [TEC]})
+    with pytest.raises(RigError, match=r"no such data sheet; there are 0 \(hot side at 25 °C\)"):
+        rig.with_(**{"module.datasheet.1.i_max_A": 3})
+
+
+def test_a_file_that_names_no_module_or_one_twice(tmp_path: Path) -> None:
+    with pytest.raises(RigError, match=r"module: nothing says which module; give seebeck_V_per_K, .* shipped module"):
+        Rig.load(_file(tmp_path, ""))
+    with pytest.raises(RigError, match=r"seebeck_V_per_K and name are two ways of giving it; keep one"):
+        Rig.load(_file(tmp_path, GIVEN + 'name = "CP60340"\n'))
+    with pytest.raises(RigError) as caught:
+        Rig.load(_file(tmp_path, "seebeck_V_per_K = 0.0521\n"))
+    assert [line.partition(": ")[2] for line in str(caught.value).splitlines()] == [
+        "module.resistance_ohm is missing; add it, in Ω",
+        "module.thermal_resistance_K_per_W is missing; add it, in K/W",
+    ]

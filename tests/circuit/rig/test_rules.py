@@ -1,0 +1,202 @@
+"""Limits at the door of a rig file: tightened freely, loosened only with a reason, never beyond what is published."""
+
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Drive, Limits, Rig, RigError, gate, judge_safety, simulate_current
+from thermicon.circuit.rig.rigfile import SafetyTable
+from thermicon.circuit.rig.rules import limit_table, safety_keys
+
+THENAR = Rig.load("thenar")
+REASON = "heat-pain study 12/2025, approved by the ethics board"
+PLAIN = (Path(__file__).parents[3] / "circuit/rigs/thenar.toml").read_text("utf-8")
+
+
+def with_table(tmp_path: Path, table: str) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(PLAIN.replace("[source]", f"{table}\n\n[source]"), "utf-8")
+    return path
+
+
+def test_the_table_of_a_rig_file_has_the_keys_of_the_limits() -> None:
+    assert set(SafetyTable.model_fields) == {*safety_keys(), "session_min", "reason"}
+
+
+def test_every_bound_has_a_source_and_lies_outside_the_limit() -> None:
+    for rule in Limits.shipped().rules:
+        assert rule.source
+        if rule.bound is not None:
+            assert rule.bound_source
+            assert rule.bound >= rule.limit if rule.upper else rule.bound <= rule.limit
+    assert all(record.get("severity") in ("hard", "soft") for record in limit_table())
+
+
+def test_limits_are_tightened_freely(tmp_path: Path) -> None:
+    table = "[safety]\nskin_highest_C = 38\nskin_highest_soft_C = 37\nskin_rate_K_per_s = 4"
+    rig = Rig.load(with_table(tmp_path, table))
+    assert rig.limits.changed == (
+        "skin_highest_C 38 °C instead of 42 °C",
+        "skin_highest_soft_C 37 °C instead of 40 °C",
+        "skin_rate_K_per_s 4 K/s instead of 10 K/s",
+    )
+    assert rig.limits.loosened == ()
+    assert rig.warnings == ()
+    rates = [rule.limit for rule in rig.limits.rules if rule.key == "skin_rate_K_per_s"]
+    assert rates == [4.0, -4.0]
+    assert repr(rig.limits).startswith("Limits(22 rules, skin_highest_C 38 °C instead of 42 °C")
+
+
+def test_a_tightened_limit_holds_for_simulate_too() -> None:
+    drive = Drive([0, 20], [0.02, 0.02])
+    assert judge_safety(simulate_current(drive, THENAR)).colour == "green"
+    tight = THENAR.with_(**{"safety.skin_highest_C": 35})
+    verdict = judge_safety(simulate_current(drive, tight))
+    assert verdict.colour == "red"
+    assert verdict.reason is not None
+    assert "above the hard limit of 35 °C" in verdict.reason
+    assert "(the rig's [safety]; shipped 42, thermicon, a choice of this project" in verdict.reason
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        (
+            "skin_highest_C = 42.5",
+            r"mine\.toml: safety\.skin_highest_C = 42\.5 °C: is looser than the shipped limit of 42 °C; give "
+            r"safety\.reason, a sentence of at least 20 characters on why this is justified, or use 42 °C",
+        ),
+        ('skin_highest_C = 42.5\nreason = "because"', r"give safety\.reason, a sentence of at least 20 characters"),
+        (
+            f'skin_highest_C = 44\nreason = "{REASON}"',
+            r"safety\.skin_highest_C = 44 °C: cannot be loosened beyond 43 °C \(IEC 60601-1 Table 24, 43 °C for "
+            r"contact of 10 min or longer\); use at most 43 °C",
+        ),
+        (
+            f'skin_lowest_C = 5\nreason = "{REASON}"',
+            r"safety\.skin_lowest_C = 5 °C: cannot be loosened beyond 7 °C \(numbness below 7 °C, ISO 13732-3\); "
+            r"use at least 7 °C",
+        ),
+        (f'henriques_integral = 0.6\nreason = "{REASON}"', r"= 0\.6: cannot be loosened beyond 0\.53 \(first-degree"),
+        (
+            f'skin_rate_K_per_s = 12\nreason = "{REASON}"',
+            r"skin_rate_K_per_s = 12 K/s: cannot be loosened beyond 10 K/s \(no published figure allows more\); use at "
+            r"most 10 K/s",
+        ),
+        ("thermal_dose_min_CEM43 = -1", r"= -1 min CEM43: must be greater than 0 min CEM43"),
+        (
+            "display_lowest_C = 30\ndisplay_highest_C = 29",
+            r"safety\.display_lowest_C = 30 °C: is not below safety\.display_highest_C = 29 °C; leave some room",
+        ),
+        ("skin_hihest_C = 40", r"safety\.skin_hihest_C: unknown key; did you mean safety\.skin_highest_C"),
+        ('skin_highest_C = "warm"', r"safety\.skin_highest_C = 'warm': must be a number in °C"),
+    ],
+)
+def test_what_a_rig_file_may_not_say(tmp_path: Path, table: str, words: str) -> None:
+    with pytest.raises(RigError, match=words):
+        Rig.load(with_table(tmp_path, f"[safety]\n{table}"))
+
+
+def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
+    path = with_table(tmp_path, "[safety]\nskin_lowest_C = 3\nhenriques_integral = 0.02")
+    with pytest.raises(RigError) as caught:
+        Rig.load(path)
+    assert len(str(caught.value).splitlines()) == 2
+
+
+def test_a_loosened_limit_carries_its_reason_everywhere(tmp_path: Path) -> None:
+    rig = Rig.load(with_table(tmp_path, f'[safety]\nskin_highest_C = 42.8\nreason = "{REASON}"'))
+    assert rig.warnings == (
+        f"limits of safety are loosened: skin_highest_C 42.8 °C instead of 42 °C. Reason given: {REASON}",
+    )
+    found = gate(Drive([0, 1], [0.08, 0.08]), rig)
+    said = found.to_dict()["limits"]
+    assert isinstance(said, dict)
+    assert said["loosened"] == ["skin_highest_C 42.8 °C instead of 42 °C"]
+    assert said["reason"] == REASON
+    assert f"limits LOOSENED: skin_highest_C 42.8 °C instead of 42 °C. Reason given: {REASON}" in found.text
+
+
+def test_limits_from_python() -> None:
+    assert Limits.of({"hot_plate_highest_C": 50.0}).changed == ("hot_plate_highest_C 50 °C instead of 60 °C",)
+    with pytest.raises(ValueError, match=r"safety\.hot_plate: no such limit; there is skin_highest_C, skin_lowest_C"):
+        Limits.of({"hot_plate": 50.0})
+    with pytest.raises(ValueError, match="hot_plate_highest_C = 70 °C: cannot be loosened beyond 60 °C"):
+        Limits.of({"hot_plate_highest_C": 70.0}, REASON)
+
+
+def test_uncertainty_is_filled_from_records_and_checked() -> None:
+    assert THENAR.uncertainty.contact_resistance_relative == 0.3
+    assert THENAR.uncertainty.ambient_K == 3.0
+    assert THENAR.uncertainty.gain_relative == 0.1
+    other = THENAR.with_(**{"uncertainty.gain_relative": 0.2})
+    assert (other.uncertainty.gain_relative, other.uncertainty.ambient_K) == (0.2, 3.0)
+    assert other.warnings == ()
+    with pytest.raises(RigError, match=r"uncertainty\.ambient_K = -1 K: must be at least 0 K"):
+        THENAR.with_(**{"uncertainty.ambient_K": -1})
+    with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 2: must be at most 0\.9"):
+        THENAR.with_(**{"uncertainty.gain_relative": 2})
+    with pytest.raises(RigError, match=r"uncertainty\.gain_rel: unknown key; did you mean uncertainty\.gain_relative"):
+        THENAR.with_(**{"uncertainty.gain_rel": 0.2})
+
+
+MEASURED = "gain measured against a shunt, 2026-05-12"
+
+
+@pytest.mark.parametrize("reason", ["", 'reason = "I know"'])
+def test_who_claims_to_be_surer_gives_a_reason(tmp_path: Path, reason: str) -> None:
+    path = with_table(tmp_path, f"[uncertainty]\ngain_relative = 0\nambient_K = 1.5\n{reason}")
+    with pytest.raises(RigError) as caught:
+        Rig.load(path)
+    first, second = str(caught.value).splitlines()
+    assert first.endswith(
+        "mine.toml: uncertainty.ambient_K = 1.5 K: is smaller than the shipped 3 K, which loosens the gate of safety; "
+        "give uncertainty.reason, a sentence of at least 20 characters on how this is known "
+        "(--set 'uncertainty.reason=\"measured ...\"'), or use 3 K or more"
+    )
+    assert "uncertainty.gain_relative = 0: is smaller than the shipped 0.1, " in second
+
+
+def test_a_smaller_uncertainty_carries_its_reason_everywhere() -> None:
+    with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 0: is smaller than the shipped 0\.1"):
+        THENAR.with_set(["uncertainty.gain_relative=0"])
+    rig = THENAR.with_set(["uncertainty.gain_relative=0.02", f'uncertainty.reason="{MEASURED}"'])
+    assert rig.warnings == (
+        f"the worst case of safety is milder: gain ±2 % instead of ±10 %. Reason given: {MEASURED}",
+    )
+    found = gate(Drive([0, 1], [0.08, 0.08]), rig)
+    assert f"uncertainty SMALLER than shipped: gain ±2 % instead of ±10 %. Reason given: {MEASURED}" in found.text
+    said = found.to_dict()["uncertainty"]
+    assert isinstance(said, dict)
+    assert (said["reason"], said["smaller_than_shipped"]) == (MEASURED, ["gain ±2 % instead of ±10 %"])
+    assert "SMALLER" not in gate(Drive([0, 1], [0.08, 0.08]), THENAR).text
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"safety.skin_highest_C": 38},
+            "safety.skin_highest_C = 38 °C is hard and lies below the soft limit of 40 °C, so that nothing is amber "
+            "before it is red; set safety.skin_highest_soft_C below 38 °C too",
+        ),
+        (
+            {"safety.display_lowest_C": 12},
+            "safety.display_lowest_C = 12 °C is hard and lies above the soft limit of 10 °C, so that nothing is amber "
+            "before it is red; set safety.display_lowest_soft_C above 12 °C too",
+        ),
+        (
+            {"safety.skin_lowest_C": 35, "safety.skin_lowest_soft_C": 36},
+            "the resting skin of 32 °C (skin.rest_C) is itself below the hard limit safety.skin_lowest_C = 35 °C, so "
+            "that every icon that begins there is red from its start; change the limit or the baseline",
+        ),
+        (
+            {"safety.skin_highest_soft_C": 31},
+            "the resting skin of 32 °C (skin.rest_C) is itself above the soft limit safety.skin_highest_soft_C = 31 °C"
+            ", so that every icon that begins there is amber from its start; change the limit or the baseline",
+        ),
+    ],
+)
+def test_limits_that_make_no_sense_together_are_warned_of(changes: dict[str, object], words: str) -> None:
+    assert THENAR.with_(**changes).warnings == (words,)
+    assert THENAR.warnings == ()

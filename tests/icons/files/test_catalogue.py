@@ -1,0 +1,73 @@
+"""Every example of the catalogue of errors does what it promises. Run as a script, this file writes docs/errors.md."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from thermicon.icons import CueErrors, parse, read_cue
+from thermicon.icons.files.catalogue import Entry, catalogue, explain, page
+from thermicon.icons.files.exchange import from_json
+from thermicon.icons.model.errors import TITLES
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "errors.md"
+ENTRIES = list(catalogue().values())
+SHOWN = [entry for entry in ENTRIES if entry.wrong]
+
+
+def test_every_code_is_listed() -> None:
+    assert list(catalogue()) == sorted(TITLES)
+    assert all(entry.meaning.endswith(".") and bool(entry.wrong) != bool(entry.cure) for entry in ENTRIES)
+
+
+@pytest.mark.parametrize("entry", SHOWN, ids=lambda entry: entry.code)
+def test_the_wrong_example_gives_this_error_alone(entry: Entry) -> None:
+    read = from_json if entry.form == "json" else parse
+    with pytest.raises(CueErrors, match=entry.code) as caught:
+        read(entry.wrong, f"alerts.{entry.form}")
+    assert [error.code for error in caught.value.errors] == [entry.code]
+    assert str(caught.value) == entry.message()
+
+
+@pytest.mark.parametrize("entry", SHOWN, ids=lambda entry: entry.code)
+def test_the_right_example_is_right(entry: Entry) -> None:
+    assert (from_json if entry.form == "json" else parse)(entry.right).entries
+
+
+def test_the_codes_without_an_example_are_those_of_the_door(tmp_path: Path) -> None:
+    made = {"E004": b"#" * 300_000, "E005": b" \n", "E006": b"cue 1\0", "E007": "icon é".encode("latin-1")}
+    for code, data in made.items():
+        (tmp_path / code).write_bytes(data)
+    paths = {"E001": tmp_path / "none.cue", "E002": tmp_path, **{code: tmp_path / code for code in made}}
+    recorded = {"E013", "E014", "E015", "E016"}  # read by tests/icons/recordings/test_recorded.py
+    assert {entry.code for entry in ENTRIES if not entry.wrong} == {*paths, "E003"} | recorded
+    for code, path in paths.items():
+        with pytest.raises(CueErrors, match=code):
+            read_cue(path)
+
+
+def test_explain_gives_the_section() -> None:
+    text = explain(" e102 ")
+    assert text.startswith("E102 missing unit\nEvery number has a unit")
+    assert "\n  alerts.cue:3:11  E102 missing unit\n" in text
+    assert explain("102") == text
+    assert "Split the set" in explain("E004")
+
+
+@pytest.mark.parametrize(
+    ("code", "nearest"),
+    [("E199", "E1"), ("missing units", "E102 missing unit"), ("", "E"), ("x" * 1000, "nearest are")],
+)
+def test_an_unknown_code_is_told_with_its_neighbours(code: str, nearest: str) -> None:
+    with pytest.raises(ValueError, match=rf"there is no error .*; the nearest are .*{nearest}|nearest are") as caught:
+        explain(code)
+    assert nearest in str(caught.value)
+    assert len(re.findall(r"E\d\d\d ", str(caught.value))) == 2
+
+
+def test_the_page_is_what_the_generator_makes() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page(), "run: python tests/icons/files/test_catalogue.py"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")

@@ -1,0 +1,217 @@
+"""The formatter: what it writes means the same, keeps every comment, and is left alone by the next run."""
+
+import re
+from collections import Counter
+from itertools import pairwise
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import thermicon.icons
+from tests.icons.model.test_roundtrip import families, icons, sets
+from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, library_names, parse
+from thermicon.icons.language.layout import tidy_number
+
+COMMENTS = ["# one", "#", '# a "text" { } ; (', "#two  ", "# °C −5 °", "##"]
+NUMBERS = ["{}", "+{}", "{}.", "0{}", "{}e0", "{}E+00", "{}.0"]
+BLANK = [" ", "  ", "\t", "\u00a0", " \u202f"]
+
+
+def body(statements: list[str], settings: str = "") -> str:
+    return f"cue 1\n\n{settings}icon x {{\n" + "".join(f"  {line}\n" for line in statements) + "}\n"
+
+
+class Scribbler:
+    """Writes one sound file, with the liberties that the language leaves to its author."""
+
+    def __init__(self, seed: int) -> None:
+        self.random = Random(seed)
+
+    def pick(self, *options: Any) -> Any:
+        return self.random.choice(options)
+
+    def comment(self) -> str:
+        return self.pick("", *BLANK) + self.pick(*COMMENTS) if self.pick(True, False) else ""
+
+    def lines(self) -> str:
+        """Where a line may end, it may end several times, and each line may hold a comment."""
+        return "".join(f"{self.comment()}{self.pick('', *BLANK)}\n" for _ in range(self.pick(0, 1, 1, 2, 4)))
+
+    def end(self) -> str:
+        return (
+            self.pick(" ; ", ";", f";{self.comment()}\n", f"{self.comment()}\n") + self.lines() + self.pick("", *BLANK)
+        )
+
+    def number(self, value: int) -> str:
+        return self.pick(*NUMBERS).format(value)
+
+    def size(self) -> str:
+        return self.number(self.pick(1, 2)) + self.pick("", " ", "\t") + self.pick("K", "°C", "degC")
+
+    def time(self) -> str:
+        return self.pick(f"{self.number(2)} s", f"{self.number(2)}s", ".5s", "500 ms", "5e-1 s", "+0.50s")
+
+    def statement(self, names: list[str], depth: int = 2) -> str:
+        gap = self.pick(*BLANK)
+        size, time = self.pick(*names, self.size()), self.time()
+        lines = [
+            f"cool by {size} over {time}{self.end()}return at 3 K/s",
+            f"pulse warm{gap}by{gap}{size} for {time}",
+            f"change by {self.pick('-2', '−.5 ', '+2. ', '2')}K at 3 degC/s{self.end()}return over {time}",
+            f"hold{gap}for {time}",
+            f"sine by {size} every 1 s for 2 s starting cool{gap}cut",
+        ]
+        if depth:
+            lines.append(f"repeat{gap}{self.pick('2', '+2')}{gap}{{{self.block(names, depth - 1)}}}")
+        return self.pick(*lines)
+
+    def block(self, names: list[str], depth: int) -> str:
+        inner = [self.statement(names, depth) for _ in range(self.pick(1, 2))]
+        return self.lines() + self.end().join(inner) + self.pick(" ", self.end())
+
+    def icon(self, name: str) -> str:
+        names = self.pick([], ["a"], ["a", "bb"])
+        over = ""
+        if names:
+            values = ["[1 ,2 , 3]", " 1..3 step 1", "  1 .. 3 step+1"]
+            parts = [f"{each} in{self.pick(*values)} K" for each in names]
+            over = f"({self.lines()}" + f",{self.lines()}".join(parts) + f"{self.lines()})"
+            over = self.pick("", " ") + over
+        keys = [f'{key} "{text}"' for key, text in (("means", "x" * 60), ("by", "y # z"), ("tags", "a, b" * 20))]
+        keys = keys[: self.pick(0, 1, 2, 3)]
+        header = "".join(f" {self.lines()}{key}" for key in keys) + f"{self.pick('', ' ')}{self.lines()}{{"
+        used = "".join(f"{self.end()}pulse by {each} for 1 s" for each in names)
+        return f"icon {name}{over}{header}{self.block(names, 2).rstrip(' ;')}{used}{self.pick(' ', self.end())}}}"
+
+    def file(self) -> str:
+        blocks = [f"cue{self.pick(*BLANK)}1"]
+        if self.pick(True, False):
+            site = f"site wrist{self.end()}" if self.pick(True, False) else ""
+            level = self.pick("32.", "32", "+32 ")
+            end = self.pick("", self.end())
+            blocks.append(f'set {self.pick("", "s")} "t"{{{self.lines()}{site}baseline {level}degC{end}}}')
+        blocks += [self.icon(name) for name in ("x", "y")[: self.pick(1, 2)]]
+        return self.lines() + self.end().join(blocks) + self.pick("", self.comment(), self.end())
+
+
+def comments_of(text: str) -> Counter[str]:
+    """Comments of a text, found in a way of their own: a "#" outside quotation marks."""
+    bare = re.sub(r'"(?:[^"\\\n]|\\.)*"|(#[^\n]*)', lambda match: match[1] or '""', text)
+    return Counter(match.rstrip() for match in re.findall(r"#[^\n]*", bare))
+
+
+@settings(max_examples=150)
+@given(st.integers(0, 10**9))
+def test_any_sound_text(seed: int) -> None:
+    text = Scribbler(seed).file()
+    written = format_text(text)
+    assert parse(written) == parse(text)
+    assert format_text(written) == written
+    assert comments_of(written) == comments_of(text)
+    lines = written.split("\n")
+    assert all(line == line.rstrip() for line in lines)
+    assert written.endswith("\n")
+    assert not written.endswith("\n\n")
+    assert "\n\n\n" not in written
+    assert not any("{" in a.partition("#")[0] and not b for a, b in pairwise(lines))
+
+
+@settings(max_examples=100)
+@given(st.one_of(icons(), families(), sets()))
+def test_the_text_of_a_model_is_in_canonical_layout(model: Icon | Family | IconSet) -> None:
+    assert format_text(str(model)) == str(model)
+
+
+@pytest.mark.parametrize("name", library_names())
+def test_shipped_files_are_in_canonical_layout(name: str) -> None:
+    text = (Path(thermicon.icons.__path__[0]) / "library" / f"{name}.cue").read_text(encoding="utf-8")
+    assert format_text(text) == text
+
+
+@pytest.mark.parametrize(
+    ("written", "tidy"),
+    [
+        ("cool by 6K at+3. K/s", "cool by 6 K at 3 K/s"),
+        ("change by −6 degC at 3degC/s", "change by -6 °C at 3 °C/s"),
+        ("hold for 500 ms", "hold for 500 ms"),
+        ("hold for .5\ts", "hold for 0.5 s"),
+        ("hold for 0.50 s", "hold for 0.50 s"),
+        ("hold for 1E−3 min", "hold for 1e-3 min"),
+        ("total  at   most 10s", "total at most 10 s"),
+    ],
+)
+def test_a_statement(written: str, tidy: str) -> None:
+    rest = "hold for 1 s"
+    assert format_text(body([written, rest])) == body([tidy, rest])
+
+
+@pytest.mark.parametrize("digits", ["." + "1" * 39, "−." + "1" * 38, "+0" + "." + "1" * 37])
+def test_a_tidy_number_is_not_too_long_to_read(digits: str) -> None:
+    text = format_text(f"cue 1; icon x {{ change by {digits} K over 1 s }}")
+    assert parse(text) == parse(format_text(text))
+    assert len(tidy_number(digits)) <= 40
+
+
+def test_one_liners_are_opened_up_and_comments_stay_with_their_lines() -> None:
+    text = (
+        "# about the file\ncue 1 # version\nicon a{repeat 3{warm by 1 K at 1 K/s;hold for 1 s}# end of repeat\n\n\n"
+        " #own\n  hold for 1 s;;   # last\n\n}\nicon b{rest for 1 s}# short\n# at the end"
+    )
+    assert format_text(text) == (
+        "# about the file\ncue 1  # version\n\n"
+        "icon a {\n  repeat 3 {\n    warm by 1 K at 1 K/s\n    hold for 1 s\n  }  # end of repeat\n\n"
+        "  #own\n  hold for 1 s  # last\n}\n\n"
+        "icon b {\n  rest for 1 s\n}  # short\n\n# at the end\n"
+    )
+
+
+def test_headers_take_one_line_or_a_line_for_each_part() -> None:
+    def made(header: str) -> str:
+        return format_text(f"cue 1\n{header} {{ hold for 1 s }}").removeprefix("cue 1\n\n").partition("  hold")[0]
+
+    assert made('icon x\n\n means "a"\n  by "b"\n') == 'icon x means "a" by "b" {\n'
+    long = "m" * 60
+    assert made(f'icon x means "{long}" by "{long}"') == f'icon x\n  means "{long}"\n  by "{long}"\n{{\n'
+    assert made(f'icon x means "{long}{long}"') == f'icon x means "{long}{long}" {{\n'
+    assert made('icon x # c\n means "a" # d\n # e\n') == 'icon x  # c\n  means "a"  # d\n  # e\n{\n'
+
+
+def test_parameters_take_one_line_or_a_line_each() -> None:
+    def made(over: str, header: str = "") -> str:
+        text = f"cue 1; icon x {over}{header} {{ pulse by a for b; pulse by a for b }}"
+        return format_text(text).removeprefix("cue 1\n\n").partition("  pulse")[0]
+
+    assert made("( a in[1,2]K,\n\n b in 1 .. 3 step .5 s )") == "icon x(a in [1, 2] K, b in 1..3 step 0.5 s) {\n"
+    assert made("( # c\na in [1] K, # d\n# e\nb in [2] s # f\n# g\n)") == (
+        "icon x(  # c\n  a in [1] K,  # d\n  # e\n  b in [2] s  # f\n  # g\n) {\n"
+    )
+    assert made("(a in [1] K, b in [2] s) # c\n", 'means "d"') == (
+        'icon x(a in [1] K, b in [2] s)  # c\n  means "d"\n{\n'
+    )
+    many = ", ".join(map(str, range(1, 29)))
+    assert made(f"(a in [{many}] K, b in [{many}] s)") == f"icon x(\n  a in [{many}] K,\n  b in [{many}] s\n) {{\n"
+
+
+def test_names_that_are_words_or_units_stay() -> None:
+    text = "cue 1\n\nicon degC {\n  hold for 1 s\n}\n\nicon icon {\n  play degC\n}\n"
+    assert format_text(text) == text
+
+
+@pytest.mark.parametrize("newline", ["\r\n", "\r"])
+def test_line_ends_and_a_byte_order_mark(newline: str) -> None:
+    text = "cue 1\n\nicon x {\n  hold for 1 s  # c\n}\n"
+    assert format_text("\ufeff" + text.replace("\n", newline)) == text
+    assert format_text(text.replace("\n", newline).encode("utf-8-sig")) == text
+
+
+def test_what_cannot_be_parsed_is_told_as_parse_tells_it() -> None:
+    text = "cue 1\nicon x { hold for 4 }\nicon y { rest for -1 s }"
+    with pytest.raises(CueErrors, match="E102") as told:
+        format_text(text, "a.cue")
+    with pytest.raises(CueErrors, match="E102") as parsed:
+        parse(text, "a.cue")
+    assert str(told.value) == str(parsed.value)

@@ -1,0 +1,243 @@
+"""Tens of thousands of damaged cue, rig, device and drive files and settings: each is read or refused in words, soon.
+
+``pytest -m slow tests/notebooks/cli/test_fuzz_inputs.py`` examines 50,000 of them in some minutes on two cores;
+THERMICON_FUZZ=2000 fewer. Mutations are seeded, so that a failure comes again.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import random
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import FrameType
+from typing import Any
+
+import pytest
+
+from thermicon.notebooks.text.messages import is_ours
+
+COUNT, CHUNKS = int(os.environ.get("THERMICON_FUZZ", "50000")), 50
+COMMANDS = 200
+SLOWEST_S, MOST_BYTES = 5.0, 1e9
+
+NUMBERS = [
+    "0", "-0.0", "1", "-1", "1e308", "-1e308", "5e-324", "1e-300", "nan", "inf", "-inf", "9" * 30, "9" * 4400,
+    "2147483648", "4294967296", "1e7", "1e9", "1024", "0x7fffffff", "1_000", "²", "٣", "true", '"x"', "[]", "{}",
+    "[1, 2]", "1979-05-27",
+]  # fmt: skip
+PIECES = [
+    "\x1b[2J", "\u202e", "\0", "\ufeff", "\r", "\r\n", "\n", "\u2028", "*/", "../", '"', "'", "[", "]", "{", "}", "=",
+    ",", ".", "#", "é", "a" * 300, "[" * 200, "a." * 200, "[[skin.layer]]\n", "[skin]\n", "\ud800",
+]  # fmt: skip
+KEYS = ["contact.area_cm2", "skin.layer.0.thickness_mm", "skin.layer.dermis.perfusion_per_s", "driver.update_Hz"]
+
+
+def texts(folder: str) -> list[str]:
+    entries = sorted((files("thermicon.circuit") / folder).iterdir(), key=lambda entry: entry.name)
+    return [entry.read_text(encoding="utf-8") for entry in entries if entry.name.endswith(".toml")]
+
+
+RIGS, DEVICES = texts("rigs"), texts("devices")
+CUES = [
+    entry.read_text(encoding="utf-8")
+    for entry in sorted((files("thermicon.icons") / "library").iterdir(), key=lambda entry: entry.name)
+]
+DRIVES = [
+    "time_s,current_A\n0,0.1\n1,0.2\n2.5,-0.3\n",
+    "time_s,current_A,code\r\n0,0.1,5\r\n0.01,0.2,6\r\n",
+    '"time_s" , "current_A"\n\n0,0\n1e-3,1\n',
+]
+SETTINGS = [
+    *(f"{key}=1" for key in KEYS),
+    "probe.0.name=x",
+    "module.datasheet=[{}]",
+    "skin.layer=[]",
+    "safety.reason=x",
+]
+
+
+def mutate(text: str, rng: random.Random) -> str:
+    """Change a number, a character, a word or a line."""
+    change = rng.randrange(6)
+    if change < 2 and (spots := list(re.finditer(r"-?\d[\d.e+-]*", text))):
+        spot = rng.choice(spots)
+        return text[: spot.start()] + rng.choice(NUMBERS) + text[spot.end() :]
+    at = rng.randrange(len(text) + 1)
+    if change == 2:
+        return text[:at] + rng.choice(PIECES) + text[at:]
+    if change == 3:
+        return text[:at] + text[at + rng.randint(1, 12) :]
+    if change == 4:
+        lines = text.split("\n")
+        lines[rng.randrange(len(lines))] = rng.choice(lines)
+        return "\n".join(lines)
+    words = re.split(r"(\W)", text)
+    words[rng.randrange(len(words))] = rng.choice(words)
+    return "".join(words)
+
+
+def read_cue(data: bytes, path: Path) -> None:
+    from thermicon.icons import parse
+
+    parse(data, "a.cue")
+
+
+def read_rig(data: bytes, path: Path) -> None:
+    from thermicon.circuit import Rig
+
+    path = path.with_suffix(".toml")
+    path.write_bytes(data)
+    rig = Rig.load(path)
+    str(rig), rig.warnings, rig.about()
+
+
+def read_device(data: bytes, path: Path) -> None:
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.samples import rate_of
+
+    path = path.with_suffix(".toml")
+    path.write_bytes(data)
+    device = Device.load(path)
+    if device.driven_by != "set-points":
+        device.scale(1.0)
+        rate_of(device, 100.0, 8.0)
+
+
+def read_drive(data: bytes, path: Path) -> None:
+    from thermicon.circuit import Rig, read_drive, simulate_current
+
+    path.write_bytes(data)
+    simulate_current(read_drive(path), Rig.load("thenar"), rate_Hz=10.0)
+
+
+def read_setting(data: bytes, path: Path) -> None:
+    from thermicon.circuit import Rig
+
+    Rig.load("thenar").with_set([data.decode("utf-8", "replace")])
+
+
+KINDS: list[tuple[list[str], Callable[[bytes, Path], None], int]] = [
+    (CUES, read_cue, 3),
+    (RIGS, read_rig, 3),
+    (DEVICES, read_device, 3),
+    (DRIVES, read_drive, 2),
+    (SETTINGS, read_setting, 2),
+]
+
+
+def mutated(rng: random.Random) -> tuple[bytes, Callable[[bytes, Path], None]]:
+    """A damaged input, and what reads it."""
+    corpus, reader, _ = rng.choices(KINDS, [weight for *_, weight in KINDS])[0]
+    text = rng.choice(corpus)
+    for _ in range(rng.choice([1, 1, 1, 2, 3, 6])):
+        text = mutate(text, rng)
+    data = text.encode("utf-8", "surrogatepass")
+    if rng.random() < 0.1:
+        spoilt = bytearray(data or b"x")
+        spoilt[rng.randrange(len(spoilt))] = rng.randrange(256)
+        data = bytes(spoilt)
+    return data, reader
+
+
+class TooSlow(Exception):
+    """An input was not read in time."""
+
+
+@contextmanager
+def limited() -> Iterator[None]:
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise TooSlow
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, 4 * SLOWEST_S)  # of a machine that does other things too
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def memory() -> float:
+    import resource
+
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return float(peak if sys.platform == "darwin" else peak * 1024)
+
+
+def examine(chunk: int) -> tuple[float, str, float, list[str], int]:
+    """Slowest input of a chunk with its time, the rise of memory, what went wrong, and how many were taken."""
+    rng = random.Random(f"inputs {chunk}")
+    slowest, wrong, taken = (0.0, ""), [], 0
+    with TemporaryDirectory() as folder:
+        read_drive(DRIVES[0].encode(), Path(folder) / "warm.csv")  # compiled before it is timed
+        start = memory()
+        for number in range(COUNT // CHUNKS):
+            data, reader = mutated(rng)
+            begin = time.process_time()
+            try:
+                with limited():
+                    reader(data, Path(folder) / "input.csv")
+                taken += 1
+            except Exception as error:
+                if not is_ours(error):
+                    wrong.append(f"{reader.__name__} {number} of chunk {chunk}: {error!r} from {data[:3000]!r}")
+                elif any(ord(char) < 32 and char not in "\n\t" for char in str(error)):
+                    wrong.append(f"{reader.__name__} {number} of chunk {chunk}: control character in {str(error)!r}")
+            slowest = max(slowest, (time.process_time() - begin, f"{reader.__name__}: {data[:3000]!r}"))
+    return *slowest, memory() - start, wrong, taken
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no alarm clock here")
+def test_damaged_inputs_are_read_or_refused_in_words() -> None:
+    with ProcessPoolExecutor(2, multiprocessing.get_context("fork")) as pool:
+        found: list[Any] = list(pool.map(examine, range(CHUNKS)))
+    wrong = [line for each in found for line in each[3]]
+    slowest = max((each[0], each[1]) for each in found)
+    print(f"{COUNT:,} inputs, {sum(each[4] for each in found):,} sound; slowest {slowest[0]:.2f} s; "
+          f"memory rose by {max(each[2] for each in found) / 1e6:.0f} MB; {len(wrong)} wrong")  # fmt: skip
+    assert not wrong, "\n".join(wrong[:10])
+    assert slowest[0] < SLOWEST_S, slowest[1]
+    assert max(each[2] for each in found) < MOST_BYTES
+
+
+@pytest.mark.slow
+def test_damaged_inputs_through_the_command(process: Callable[..., Any], tmp_path: Path) -> None:
+    rng = random.Random("commands")
+    for _ in range(COMMANDS):
+        data, reader = mutated(rng)
+        words = {
+            "read_cue": ("check", "a.cue"),
+            "read_rig": ("check", "six-icons", "--rig", "a.toml"),
+            "read_device": ("export", "cooling-step-skin", "--to", "csv", "--device", "a.toml", "-o", "out", "--force"),
+            "read_drive": ("simulate", "--current", "a.csv"),
+        }.get(reader.__name__, ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")))
+        for name in words:
+            if name in ("a.cue", "a.toml", "a.csv"):
+                (tmp_path / name).write_bytes(data)
+        said = process(*words, cwd=tmp_path)
+        assert said.exit_code in (0, 1, 2, 3), (words, data, said)
+        assert "Traceback" not in said.stderr, (words, data, said.stderr)
+
+
+def test_a_handful_of_damaged_inputs(tmp_path: Path) -> None:
+    rng = random.Random("a handful")
+    refused = 0
+    for _ in range(60):
+        data, reader = mutated(rng)
+        try:
+            reader(data, tmp_path / "input.csv")
+        except Exception as error:
+            assert is_ours(error), (reader.__name__, data, error)
+            refused += 1
+    assert refused > 20

@@ -1,0 +1,212 @@
+"""``thermicon lab``: which notebooks are written and which are kept, and how the servers start and end."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.notebooks.cli.main import lab
+
+Cli = Callable[..., Any]
+FIRST = "01_first_icon.ipynb"
+ALL = [*sorted(path.name for path in (Path(__file__).parents[3] / "notebooks").glob("*.ipynb"))]
+
+
+def change(path: Path, text: str, key: str = "source") -> None:
+    """Write a text into the second cell of a notebook, as JupyterLab saves it."""
+    notebook = json.loads(path.read_text(encoding="utf-8"))
+    notebook["cells"][1][key] = [text]
+    path.write_text(json.dumps(notebook, indent=1), encoding="utf-8")
+
+
+def source(path: Path) -> str:
+    return "".join(json.loads(path.read_text(encoding="utf-8"))["cells"][1]["source"])
+
+
+def test_the_notebooks_are_put_into_a_folder(cli: Cli, tmp_path: Path) -> None:
+    said = cli("lab", tmp_path / "mine", "--files-only")
+    assert (said.exit_code, said.stdout) == (0, "")
+    assert said.stderr == f"{tmp_path / 'mine'}: wrote {len(ALL)} notebooks\n"
+    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == ALL
+    assert ALL[0] == FIRST
+    assert "workbench.ipynb" in ALL
+    again = cli("lab", tmp_path / "mine", "--files-only")
+    assert again.stderr == f"{tmp_path / 'mine'}: nothing to write, all there\n"
+
+
+def test_without_a_folder_they_get_one_of_their_own(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli("lab", "--files-only").stderr.startswith("thermicon-notebooks: wrote ")
+    assert (tmp_path / "thermicon-notebooks" / FIRST).is_file()
+
+
+def test_what_a_person_changed_is_kept_unless_forced(cli: Cli, tmp_path: Path) -> None:
+    cli("lab", tmp_path, "--files-only")
+    change(tmp_path / FIRST, "mine")
+    said = cli("lab", tmp_path, "--files-only")
+    assert said.stderr.splitlines()[-1] == f"{tmp_path / FIRST}: kept, since you changed it; --force replaces it"
+    assert source(tmp_path / FIRST) == "mine"
+    forced = cli("lab", tmp_path, "--files-only", "--force")
+    assert forced.stderr == f"{tmp_path}: wrote 1 notebook, {len(ALL) - 1} notebooks there already\n"
+    assert source(tmp_path / FIRST).startswith("%load_ext")
+
+
+def test_what_was_only_run_is_kept_with_its_outputs(cli: Cli, tmp_path: Path) -> None:
+    cli("lab", tmp_path, "--files-only")
+    change(tmp_path / FIRST, "an output", "outputs")
+    before = (tmp_path / FIRST).read_bytes()
+    assert cli("lab", tmp_path, "--files-only").stderr.endswith("nothing to write, all there\n")
+    assert (tmp_path / FIRST).read_bytes() == before
+
+
+def test_an_older_copy_that_was_only_run_is_replaced(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    newest = lab.shipped_notebooks()
+    older = json.loads(json.dumps(newest))
+    older[FIRST]["cells"][1]["source"] = ["as it was"]
+    with monkeypatch.context() as then:
+        then.setattr(lab, "shipped_notebooks", lambda: older)
+        cli("lab", tmp_path, "--files-only")
+    change(tmp_path / FIRST, "an output", "outputs")
+    assert source(tmp_path / FIRST) == "as it was"
+    assert "wrote 1 notebook, " in cli("lab", tmp_path, "--files-only").stderr
+    assert source(tmp_path / FIRST) == "".join(newest[FIRST]["cells"][1]["source"])
+
+
+@pytest.mark.parametrize("text", ["", "no notebook", "[]", "{}", '{"cells": [1]}'])
+def test_any_other_file_of_that_name_is_kept(cli: Cli, tmp_path: Path, text: str) -> None:
+    (tmp_path / FIRST).write_text(text, encoding="utf-8")
+    said = cli("lab", tmp_path, "--files-only")
+    assert said.exit_code == 0
+    assert f"{FIRST}: kept" in said.stderr
+    assert (tmp_path / FIRST).read_text(encoding="utf-8") == text
+
+
+def test_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    said = cli("lab", tmp_path / "file", "--files-only")
+    assert said.exit_code == 1
+    assert said.stderr == f"cannot write into {tmp_path / 'file'}: it is a file; give the name of a folder\n"
+
+
+def test_the_folder_above_must_be_there(cli: Cli, tmp_path: Path) -> None:
+    said = cli("lab", tmp_path / "no" / "mine", "--files-only")
+    assert said.exit_code == 1
+    assert "does not exist; make it first" in said.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32" or os.geteuid() == 0, reason="nothing is unwritable here")
+def test_an_unwritable_folder_is_told(cli: Cli, tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    said = cli("lab", tmp_path, "--files-only")
+    assert said.exit_code == 1
+    assert "is not writable for you" in said.stderr
+
+
+def test_a_full_disk_leaves_nothing(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    said = cli("lab", tmp_path / "mine", "--files-only")
+    assert said.exit_code == 1
+    assert said.stderr == f"cannot write into {tmp_path / 'mine'}: No space left on device\n"
+    assert not (tmp_path / "mine").exists()
+
+
+def test_without_voila_the_cure_is_told_and_nothing_written(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lab, "find_spec", lambda _: None)
+    said = cli("lab", tmp_path / "mine", "--page")
+    assert said.exit_code == 1
+    assert said.stderr == "--page needs voila, which is not installed: pip install 'thermicon[page]'\n"
+    assert not (tmp_path / "mine").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [(("--page", "--files-only"), "there is no page to serve"), (("--port", "70000"), "70000 is outside 1 to 65535")],
+)
+def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple[str, ...], told: str) -> None:
+    said = cli("lab", tmp_path / "mine", *words)
+    assert said.exit_code == 2
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+    assert not (tmp_path / "mine").exists()
+
+
+def test_the_name_of_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
+    said = cli("lab", tmp_path / "alerts.cue", "--files-only")
+    assert said.exit_code == 2
+    assert "is the name of a file, not of a folder" in " ".join(said.stderr.replace("│", " ").split())
+    assert not (tmp_path / "alerts.cue").exists()
+
+
+def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    failing = [sys.executable, "-c", "raise SystemExit(4)"]
+    monkeypatch.setattr(lab, "command_of", lambda *_: failing)
+    said = cli("lab", tmp_path)
+    assert said.exit_code == 1
+    assert "ended with an error (exit code 4)" in said.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
+@pytest.mark.parametrize(("words", "path"), [((), "/api"), (("--page",), "/voila/static/style.css")])
+@pytest.mark.parametrize("how", ["Ctrl-C", "asked to end"])
+def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: str, how: str) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config/jupyter_server_config.py").write_text("c.ServerApp.allow_root = True\n", encoding="utf-8")
+    own = {f"JUPYTER_{name.upper()}_DIR": str(tmp_path / name) for name in ("config", "data", "runtime")}
+    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "lab", tmp_path / "mine", "--no-browser"]
+    program = subprocess.Popen(
+        [*command, *words, "--port", str(port)],
+        env={**os.environ, **own},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        # A shell that runs tests in the background has them ignore Ctrl-C, and children inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    try:
+        wait_for(f"http://127.0.0.1:{port}{path}")
+        if how == "Ctrl-C":
+            os.killpg(program.pid, signal.SIGINT)
+        else:
+            program.terminate()
+        _, said = program.communicate(timeout=25)
+    finally:
+        if program.poll() is None:
+            os.killpg(program.pid, signal.SIGKILL)
+            program.wait()
+    assert program.returncode == 130, said
+    assert said.splitlines()[-1] == "interrupted"
+    assert "Traceback" not in said
+    with socket.socket() as again, pytest.raises(ConnectionRefusedError):
+        again.connect(("127.0.0.1", port))
+
+
+def wait_for(address: str) -> None:
+    for _ in range(400):
+        try:
+            urllib.request.urlopen(address, timeout=5).close()
+            return
+        except urllib.error.HTTPError:
+            return
+        except OSError:
+            time.sleep(0.1)
+    raise AssertionError(f"no answer from {address}")

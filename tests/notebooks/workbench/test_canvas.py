@@ -1,0 +1,93 @@
+"""The canvas widget without a browser: what it sends, what it keeps, what it hands on."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy
+import pytest
+
+from thermicon.notebooks.workbench.canvas import PARTS, STYLES, Canvas, module_text, style_text
+
+FOLDER = Path(__file__).parents[3] / "notebooks" / "canvas_parts"
+
+
+@pytest.fixture
+def sent(monkeypatch: pytest.MonkeyPatch) -> list[tuple[dict[str, Any], list[bytes]]]:
+    """What a canvas sends to the page."""
+    found: list[tuple[dict[str, Any], list[bytes]]] = []
+    monkeypatch.setattr(Canvas, "send", lambda self, content, buffers=None: found.append((content, buffers or [])))
+    return found
+
+
+def test_a_frame_goes_out_with_its_view_and_float32_buffers(sent):
+    canvas = Canvas(view="heat")
+    canvas.frame({"seq": 3, "labels": ["a"]}, [numpy.array([[1.5, numpy.nan]])])
+    meta, buffers = sent[-1]
+    assert meta == {"type": "frame", "view": "heat", "seq": 3, "labels": ["a"]}
+    values = numpy.frombuffer(buffers[0], dtype="<f4")
+    assert values[0] == 1.5
+    assert numpy.isnan(values[1])
+
+
+def test_a_page_that_greets_gets_the_newest_frame_with_the_newest_text(sent):
+    canvas = Canvas()
+    handed: list[dict[str, Any]] = []
+    canvas.on_message(handed.append)
+    canvas.frame({"seq": 0, "text": "cue 1"})
+    canvas._receive(canvas, {"type": "text", "seq": 1, "text": "cue 1;"}, [])
+    canvas.frame({"seq": 1, "text": None}, [[1.0]])
+    canvas._receive(canvas, {"type": "hello"}, [])
+    meta, buffers = sent[-1]
+    assert (meta["seq"], meta["text"], len(buffers)) == (1, "cue 1;", 1)
+    assert [message["type"] for message in handed] == ["text"]
+
+
+def test_a_greeting_before_the_first_frame_is_handed_on(sent):
+    canvas = Canvas()
+    handed: list[dict[str, Any]] = []
+    canvas.on_message(handed.append)
+    canvas._receive(canvas, {"type": "hello"}, [])
+    assert handed == [{"type": "hello"}]
+    assert sent == []
+
+
+def test_no_data_is_kept_in_traits_and_the_module_is_small():
+    canvas = Canvas()
+    canvas.frame({"seq": 0, "text": "x" * 10_000}, [numpy.zeros(100_000)])
+    state = canvas.get_state()
+    assert len(str({name: value for name, value in state.items() if name not in ("_esm", "_css")})) < 1_500
+    assert len(state["_esm"].encode()) + len(state["_css"].encode()) < 90_000
+
+
+def test_every_part_is_joined_and_short_and_imports_nothing():
+    assert {path.stem for path in FOLDER.glob("*.js")} == set(PARTS)
+    assert {path.stem for path in FOLDER.glob("*.css")} == set(STYLES)
+    text = module_text()
+    assert "\nimport " not in text
+    assert text.count("export default") == 1
+    assert '"hold"' in text.partition("\n")[0]
+    assert "°C/s" in text.partition("\n")[0]
+    assert all(len(path.read_text(encoding="utf-8").splitlines()) < 400 for path in FOLDER.iterdir())
+    assert "--tm-paper" in style_text()
+
+
+def test_an_impossible_view_is_refused():
+    with pytest.raises(Exception, match="'design', 'traces', 'heat'"):
+        Canvas(view="desing")
+
+
+def test_the_package_does_not_bring_anywidget():
+    code = "import sys, thermicon.notebooks; print('anywidget' in sys.modules, 'ipywidgets' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout.split() == ["False", "False"]
+
+
+def test_the_dark_colours_are_the_same_with_and_without_jupyterlab():
+    text = (FOLDER / "theme.css").read_text(encoding="utf-8")
+    blocks = [dict(re.findall(r"(--tm-[a-z-]+): ([^;]+);", block)) for block in text.split(".tm-root {")[1:]]
+    light, jupyter, system = blocks
+    assert {"--tm-paper", "--tm-raised"} == {name for name in jupyter if jupyter[name] != system[name]}
+    assert light.keys() == jupyter.keys() == system.keys()

@@ -1,0 +1,114 @@
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import rank
+from thermicon.perception.ranking import chunks, cluster
+from thermicon.perception.ranking.cluster import ClusterError, on_cluster
+
+ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
+
+
+def free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])
+
+
+@contextmanager
+def scheduler(folder: Path) -> Iterator[str]:
+    """A real scheduler in a process of its own."""
+    port = free_port()
+    command = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port)]
+    with (folder / "scheduler.log").open("w") as log:
+        process = subprocess.Popen([*command, "--no-dashboard"], stdout=log, stderr=log)
+    try:
+        until = time.monotonic() + 60.0
+        while time.monotonic() < until:
+            with socket.socket() as probe:
+                if probe.connect_ex(("127.0.0.1", port)) == 0:
+                    break
+            time.sleep(0.1)
+        yield f"tcp://127.0.0.1:{port}"
+    finally:
+        process.terminate()
+        process.wait(30)
+
+
+def worker(address: str, folder: Path) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--no-nanny", "--nthreads", "1"]
+    with (folder / f"worker{time.monotonic_ns()}.log").open("w") as log:
+        return subprocess.Popen([*command, "--no-dashboard", "--local-directory", str(folder)], stdout=log, stderr=log)
+
+
+def test_a_dead_address_is_said_within_seconds() -> None:
+    address = f"tcp://127.0.0.1:{free_port()}"
+    start = time.monotonic()
+    with pytest.raises(ClusterError, match=rf"no cluster answers at {re.escape(address)} within 5 s: start one with"):
+        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+    assert time.monotonic() - start < 30.0
+
+
+@pytest.mark.parametrize("address", ["nonsense", "tcp://", "foo://bar:1", "tcp://here"])
+def test_an_address_that_is_none(address: str) -> None:
+    with pytest.raises(ClusterError, match=rf"'{address}' is not the address of a scheduler: give one such as tcp"):
+        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+
+
+def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    asked = chunks.Work(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "max")
+    with pytest.raises(ClusterError, match=r"needs the package distributed: install it with pip install 'thermicon\["):
+        list(on_cluster(asked, [0], "tcp://127.0.0.1:1"))
+
+
+@pytest.mark.slow
+def test_a_scheduler_without_workers(tmp_path: Path) -> None:
+    with scheduler(tmp_path) as address, pytest.raises(ClusterError, match=r"has no workers: start some with `dask wo"):
+        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+
+
+@pytest.mark.slow
+def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    people, kept = 1000, tmp_path / "kept"
+    local = rank(ICONS, RIG, people=people, parameters=0).to_json()
+    monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
+    with scheduler(tmp_path) as address:
+        workers = [worker(address, tmp_path) for _ in range(3)]
+        killed: list[int] = []
+        over = threading.Event()
+
+        def kill_one() -> None:
+            while not list(kept.glob("*/*.parquet")) and not over.is_set():
+                time.sleep(0.01)
+            os.kill(workers[0].pid, signal.SIGKILL)
+            killed.append(len(list(kept.glob("*/*.parquet"))))
+
+        assassin = threading.Thread(target=kill_one)
+        assassin.start()
+        try:
+            far = rank(ICONS, RIG, people=people, parameters=0, cluster=address, keep=kept).to_json()
+        finally:
+            over.set()
+            assassin.join(10)
+            for one in workers:
+                one.kill()
+            codes = [one.wait(60) for one in workers]
+    assert codes[0] == -signal.SIGKILL
+    assert killed
+    assert killed[0] < len(list(kept.glob("*/*.parquet")))
+    assert far == local

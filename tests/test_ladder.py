@@ -1,0 +1,117 @@
+"""The ladder of rooms: inside a package a room imports only from rooms below it, lazy imports included.
+
+Imports for types alone (under ``TYPE_CHECKING``) are not executed and do not count: drawing rooms stand at the bottom
+and name the objects that they draw by type only.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+LADDER = {
+    "icons": ("pictures", "model", "language", "files", "recordings", "papers"),
+    "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "studies"),
+    "perception": (
+        *("kernels", "observer", "plots", "sensation", "identification", "comparison"),
+        *("selection", "ranking", "sensitivity", "validation"),
+    ),
+    "notebooks": ("text", "files", "figures", "pages", "cli", "workbench"),
+}
+"""Rooms from the bottom up. Modules that stand in no room are below all of them, the front door is above."""
+MOST_MODULES = 25
+
+
+def room_of(package: str, path: Path) -> str:
+    """The room of a module, the empty string for one that stands in none."""
+    return ".".join(path.relative_to(ROOT / package).parts[:-1])
+
+
+def type_only(tree: ast.Module) -> set[int]:
+    """Identities of the nodes that only type checkers read."""
+    return {
+        id(node)
+        for block in ast.walk(tree)
+        if isinstance(block, ast.If) and isinstance(block.test, ast.Name) and block.test.id == "TYPE_CHECKING"
+        for statement in block.body
+        for node in ast.walk(statement)
+    }
+
+
+def own_imports(package: str, path: Path) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Line and path inside the package of everything that a module imports from its own package."""
+    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    here, unread = ("thermicon", package, *path.relative_to(ROOT / package).parts[:-1]), type_only(tree)
+    for node in ast.walk(tree):
+        if id(node) in unread:
+            continue
+        if isinstance(node, ast.Import):
+            names = [tuple(alias.name.split(".")) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            base = here[: len(here) - node.level + 1] if node.level else ()
+            module = (*base, *(node.module.split(".") if node.module else ()))
+            names = [(*module, alias.name) for alias in node.names]
+        else:
+            continue
+        yield from ((node.lineno, name[2:]) for name in names if name[:2] == ("thermicon", package))
+
+
+def room_named(package: str, name: tuple[str, ...]) -> str | None:
+    """The room that an imported name comes from; None for the front door."""
+    for length in range(len(name), 0, -1):
+        place = ROOT / package / Path(*name[:length])
+        if place.is_dir():
+            return ".".join(name[:length])
+        if place.with_suffix(".py").is_file():
+            return ".".join(name[: length - 1])
+    return None
+
+
+def modules(package: str) -> list[Path]:
+    """Every module of a package but its front door."""
+    return [
+        path
+        for path in sorted((ROOT / package).rglob("*.py"))
+        if path.parent.name != package or path.stem != "__init__"
+    ]
+
+
+@pytest.mark.parametrize("package", LADDER)
+def test_a_room_imports_from_rooms_below_it(package: str) -> None:
+    floor = {"": -1} | {room: k for k, room in enumerate(LADDER[package])}
+    wrong = []
+    for path in modules(package):
+        room = room_of(package, path)
+        for line, name in own_imports(package, path):
+            target = room_named(package, name)
+            if target is None or (target != room and floor[target] >= floor[room]):
+                wrong.append(f"{path.relative_to(ROOT)}:{line} imports {'.'.join(name)}")
+    assert not wrong, f"the ladder of {package} is {' < '.join(LADDER[package])}:\n" + "\n".join(wrong)
+
+
+@pytest.mark.parametrize("package", LADDER)
+def test_imports_inside_a_package_are_relative(package: str) -> None:
+    wrong = []
+    for path in modules(package):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if (
+                isinstance(node, ast.ImportFrom)
+                and not node.level
+                and f"{node.module}.".startswith(f"thermicon.{package}.")
+            ):
+                wrong.append(f"{path.relative_to(ROOT)}:{node.lineno}")
+    assert not wrong
+
+
+@pytest.mark.parametrize("package", LADDER)
+def test_rooms_are_those_of_the_ladder_and_hold_no_more_than_a_reader_can_see(package: str) -> None:
+    counts: dict[str, int] = {}
+    for path in modules(package):
+        room = room_of(package, path)
+        counts[room] = counts.get(room, 0) + (path.stem != "__init__")
+    assert set(counts) - {""} == set(LADDER[package])
+    assert {room: n for room, n in counts.items() if n > MOST_MODULES} == {}
