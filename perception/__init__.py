@@ -24,8 +24,8 @@ from .identification.distance import (
     differences,
     identification_dprime,
 )
-from .identification.confusion import Confusion, confuse, equal_percent_correct
-from .identification.measures import Plugin, information_bits, percent_correct, plugin_bits
+from .identification.confusion import Confusion, confuse, equal_proportion_correct
+from .identification.measures import Plugin, information_bits, proportion_correct, plugin_bits
 from .observer.people import People, age_factor, draw_people, people_records
 from .sensation.bench import Bench, Stimuli
 from .sensation.first_passage import ResponseTimes, response_times
@@ -94,8 +94,8 @@ __all__ = [
     "back_to_back_dprime",
     "confuse",
     "Confusion",
-    "equal_percent_correct",
-    "percent_correct",
+    "equal_proportion_correct",
+    "proportion_correct",
     "information_bits",
     "plugin_bits",
     "Plugin",

@@ -106,7 +106,7 @@ def show_search(found: Searched, title: str, people: int, rig: str) -> None:
     made = table("", "before", "after", numbers=("before", "after"))
     for what, before, after in (
         ("worst pair, d′", number(found.before.d_prime), number(found.after.d_prime)),
-        ("correct", percent(found.before.percent_correct), percent(found.after.percent_correct)),
+        ("correct", percent(found.before.proportion_correct), percent(found.after.proportion_correct)),
         ("bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
         ("bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
     ):

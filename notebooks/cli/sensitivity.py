@@ -92,11 +92,11 @@ def show_sensitivity(found: Sensitivity, title: str) -> None:
     for effect in found.effects:
         parameter = effect.parameter
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        low, high = effect.percent_correct_ends
+        low, high = effect.proportion_correct_ends
         made.add_row(
             parameter.name,
             f"{parameter.low:.3g}–{parameter.high:.3g}{unit}",
-            size(effect.percent_correct, found.method),
+            size(effect.proportion_correct, found.method),
             size(effect.information_bits, found.method, "bits"),
             f"{percent(low)} – {percent(high)}",
         )
@@ -141,5 +141,5 @@ def sentences(found: Sensitivity) -> list[str]:
         "",
         f"{kind}; beside them per cent correct at the low and at the high end of each interval alone. "
         f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
-        f"{percent(found.percent_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
+        f"{percent(found.proportion_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
     ]

@@ -84,8 +84,8 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[str]
         yield cards([(f"{apart} of {len(result['pairs'])}", "pairs told apart by rules")] if result["pairs"] else [])
         return
     spread = "" if ranking.people == 1 else "; for 95 % of people {} to {}"
-    low, high = whole["percent_correct_interval"]
-    shown = [(percent(whole["percent_correct"]), "named correctly" + spread.format(percent(low), percent(high)))]
+    low, high = whole["proportion_correct_interval"]
+    shown = [(percent(whole["proportion_correct"]), "named correctly" + spread.format(percent(low), percent(high)))]
     if whole["information_bits"] is not None:
         low, high = whole["information_bits_interval"]
         shown.append(
@@ -161,7 +161,7 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
         trouble = ["not safe"] * (not row["safe"]) + ["not reached"] * (not row["reachable"])
         made.append(
             [
-                *("*" if apart else str(place), row["icon"], Cell(percent(row["percent_correct"]), strong=True)),
+                *("*" if apart else str(place), row["icon"], Cell(percent(row["proportion_correct"]), strong=True)),
                 *(percent(row["detected_probability"]), seconds(row["onset_s"]), row["channel"] or "–"),
                 *(told.rival(result["confusion"], labels.index(row["icon"])), ", ".join(trouble) or "yes"),
             ]

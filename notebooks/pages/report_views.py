@@ -77,7 +77,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[str
     for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
         yield element("h3", icon.name)
         facts = [
-            f"{percent(score['percent_correct'])} correct",
+            f"{percent(score['proportion_correct'])} correct",
             f"detected by {percent(score['detected_probability'])}",
         ]
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())

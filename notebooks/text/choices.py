@@ -82,11 +82,11 @@ def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
     own = chosen["at_own_range"]
     yield (
         f"  - at their own range: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
-        f"{scored('correct', own['percent_correct'])}, {scored('bits', own['information_bits'])}, "
+        f"{scored('correct', own['proportion_correct'])}, {scored('bits', own['information_bits'])}, "
         f"{scored('bits-per-s', own['bits_per_s'])}"
     )
-    if own["percent_correct_parameter_interval"]:
-        low, high = own["percent_correct_parameter_interval"]
+    if own["proportion_correct_parameter_interval"]:
+        low, high = own["proportion_correct_parameter_interval"]
         least, most = own["information_bits_parameter_interval"]
         yield (
             f"  - over the range of the model's parameters {percent(low)} to {percent(high)} correct, "

@@ -44,7 +44,7 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
             percent(icon["detected_probability"]),
             seconds(icon["onset_s"]),
             icon["channel"] or "–",
-            percent(icon["percent_correct"]),
+            percent(icon["proportion_correct"]),
             rival(result["confusion"], labels.index(icon["name"])),
         )
     best = ["", *choice_lines(result["chosen"])] if result["chosen"] else []
@@ -91,10 +91,10 @@ def set_lines(result: dict[str, Any]) -> list[str]:
 def number_lines(result: dict[str, Any]) -> list[str]:
     """Return what the whole set scores: proportion correct and information, with their intervals."""
     whole = result["set"]
-    (low, high), bits = whole["percent_correct_interval"], whole["information_bits"]
-    lines = [f"Set: {percent(whole['percent_correct'])} correct" + _range(result, percent(low), percent(high))]
-    if whole["percent_correct_parameter_interval"]:
-        low, high = whole["percent_correct_parameter_interval"]
+    (low, high), bits = whole["proportion_correct_interval"], whole["information_bits"]
+    lines = [f"Set: {percent(whole['proportion_correct'])} correct" + _range(result, percent(low), percent(high))]
+    if whole["proportion_correct_parameter_interval"]:
+        low, high = whole["proportion_correct_parameter_interval"]
         lines.append(f"     {percent(low)} to {percent(high)} over the range of the model's parameters")
     if bits is not None:
         least, most = whole["information_bits_interval"]

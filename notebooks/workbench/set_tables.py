@@ -33,7 +33,7 @@ def ranking_table(ranking: Ranking, result: dict[str, Any]) -> str:
             percent(icon["detected_probability"]),
             seconds(icon["onset_s"]),
             icon["channel"] or "–",
-            percent(icon["percent_correct"]),
+            percent(icon["proportion_correct"]),
             rival(result["confusion"], labels.index(icon["name"])),
         )
         return _row(cells, numeric, "chosen" if icon["name"] in chosen else "")
@@ -59,17 +59,17 @@ def scores_html(ranking: Ranking) -> str:
     if len(ranking.icons) == 1:
         return f'<div class="th-note">{ALONE}</div>'
     draws = ranking.parameter_intervals
-    low, high = ranking.percent_correct_interval
+    low, high = ranking.proportion_correct_interval
     correct = [f"people {percent(low)} to {percent(high)}"]
     least, most = ranking.information_bits_interval
     bits = [f"people {least:.2f} to {most:.2f}"]
     if draws is not None:
-        correct.append(f"parameters {percent(draws.percent_correct[0])} to {percent(draws.percent_correct[1])}")
+        correct.append(f"parameters {percent(draws.proportion_correct[0])} to {percent(draws.proportion_correct[1])}")
         bits.append(f"parameters {draws.information_bits[0]:.2f} to {draws.information_bits[1]:.2f}")
     if ranking.chosen is not None:
         correct.append("parameters: see the chosen")
     shown: tuple[tuple[str, list[str]], ...] = (
-        (f"{percent(ranking.percent_correct)} correct", correct),
+        (f"{percent(ranking.proportion_correct)} correct", correct),
         (f"{ranking.information_bits:.2f} bits", bits),
         (f"{ranking.bits_per_s:.2f} bits/s", []),
     )

@@ -45,12 +45,12 @@ class ParameterIntervals:
 
     draws: int
     parameters: tuple[str, ...]
-    percent_correct: Interval
+    proportion_correct: Interval
     information_bits: Interval
     detected: tuple[Interval, ...]
 
     def __repr__(self) -> str:
-        (low, high), (least, most) = self.percent_correct, self.information_bits
+        (low, high), (least, most) = self.proportion_correct, self.information_bits
         return (
             f"ParameterIntervals({self.draws} draws of {len(self.parameters)} parameters: "
             f"{100 * low:.1f}–{100 * high:.1f} % correct, {least:.2f}–{most:.2f} bits)"
@@ -99,10 +99,10 @@ def parameter_intervals(
     return ParameterIntervals(
         draws=draws,
         parameters=tuple(parameter.name for parameter in free),
-        percent_correct=about(
-            float(predicted.percent_correct.mean()),
-            np.array([m.percent_correct.mean() for m in moved]),
-            float(centre.percent_correct.mean()),
+        proportion_correct=about(
+            float(predicted.proportion_correct.mean()),
+            np.array([m.proportion_correct.mean() for m in moved]),
+            float(centre.proportion_correct.mean()),
             1.0,
         ),
         information_bits=about(

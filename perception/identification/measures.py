@@ -27,7 +27,7 @@ class Plugin:
         return f"Plugin({self.mean:.3f} bits [{self.low:.3f}, {self.high:.3f}] from {self.trials} trials)"
 
 
-def percent_correct(confusion: ArrayLike) -> Array:
+def proportion_correct(confusion: ArrayLike) -> Array:
     """Proportion correct (0–1) with every icon presented equally often; shape (..., m, m) → (...)."""
     found: Array = np.trace(np.asarray(confusion, dtype=np.float64), axis1=-2, axis2=-1) / np.shape(confusion)[-1]
     return found

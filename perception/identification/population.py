@@ -12,7 +12,7 @@ from ..sensation.detection import detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
 from .distance import differences, identification_noise
-from .measures import information_bits, percent_correct
+from .measures import information_bits, proportion_correct
 from .task import USUAL, Task
 
 
@@ -53,7 +53,7 @@ class Felt:
 class Scores:
     """What one observer's constants make of it: per person proportion correct and bits, per icon the detected share."""
 
-    percent_correct: Array
+    proportion_correct: Array
     information_bits: Array
     detected: Array
 
@@ -116,4 +116,4 @@ def score(
     """The whole chain for one observer, without what only a report needs."""
     felt = feel(played, crowd, observer)
     confusion = judge(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
-    return Scores(percent_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))
+    return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

@@ -38,7 +38,7 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool 
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
     axes.set_xlabel("answered")
     axes.set_ylabel("presented")
-    axes.set_title(f"predicted confusions, % ({100 * ranking.percent_correct:.0f} % correct)")
+    axes.set_title(f"predicted confusions, % ({100 * ranking.proportion_correct:.0f} % correct)")
     return axes
 
 

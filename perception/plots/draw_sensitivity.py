@@ -21,7 +21,7 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     axes = _axes(len(found.effects)) if ax is None else ax
     names = [effect.parameter.name for effect in found.effects]
     places = np.arange(len(names))
-    correct = np.array([effect.percent_correct for effect in found.effects])
+    correct = np.array([effect.proportion_correct for effect in found.effects])
     bits = np.array([effect.information_bits for effect in found.effects])
     if found.method == "morris":
         correct, bits = (size / size.max() if size.max() > 0 else size for size in (correct, bits))

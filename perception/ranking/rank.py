@@ -155,8 +155,8 @@ def rank(
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,
-        percent_correct=float(all_.correct.mean()),
-        percent_correct_interval=_interval(all_.correct),
+        proportion_correct=float(all_.correct.mean()),
+        proportion_correct_interval=_interval(all_.correct),
         information_bits=float(all_.bits.mean()),
         information_bits_interval=_interval(all_.bits),
         bits_per_s=float(all_.bits.mean()) / (sum(durations) / len(durations)),
@@ -226,7 +226,7 @@ def _assemble(
                 peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
-                percent_correct=float(pooled[k, k]),
+                proportion_correct=float(pooled[k, k]),
                 reachable=bool(trace.reachable),
                 safe=safe,
                 reason=reason,
@@ -270,7 +270,7 @@ def _with_interval(
     """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
     places = [names.index(name) for name in picked.icons]
     own = picked.at_own_range
-    at_once = Scores(np.array([own.percent_correct]), np.array([own.information_bits]), all_.detected[places])
+    at_once = Scores(np.array([own.proportion_correct]), np.array([own.information_bits]), all_.detected[places])
     found = parameter_intervals(
         all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=among(*asked, places), step=step
     )

@@ -48,7 +48,7 @@ class IconScore:
     peak_change_K: tuple[float, float]
     attack_K_per_s: tuple[float, float]
     delay_s: tuple[float | None, float | None]
-    percent_correct: float
+    proportion_correct: float
     reachable: bool
     safe: bool
     reason: str | None
@@ -115,8 +115,8 @@ class Ranking:
     icons: tuple[IconScore, ...]
     pairs: tuple[PairScore, ...]
     confusion: Array
-    percent_correct: float
-    percent_correct_interval: tuple[float, float]
+    proportion_correct: float
+    proportion_correct_interval: tuple[float, float]
     information_bits: float
     information_bits_interval: tuple[float, float]
     bits_per_s: float
@@ -174,7 +174,7 @@ class Ranking:
 
         Only by more than one point of per cent correct in both, since less is within what sampling blurs.
         """
-        own = [icon.percent_correct for icon in self.icons]
+        own = [icon.proportion_correct for icon in self.icons]
         return {
             norm: tuple(
                 (self.labels[i], self.labels[j])
@@ -198,7 +198,7 @@ class Ranking:
         return [
             {
                 "icon": icon.name,
-                "percent_correct": icon.percent_correct if model else None,
+                "proportion_correct": icon.proportion_correct if model else None,
                 "detected_probability": icon.detected_probability if model else None,
                 "onset_s": icon.onset_s if model else None,
                 "channel": icon.channel if model else None,
@@ -241,7 +241,7 @@ class Ranking:
         return plot_confusion(self, ax)
 
     def __repr__(self) -> str:
-        low, high = self.percent_correct_interval
+        low, high = self.proportion_correct_interval
         icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
         where = with_changes(self.rig, self.rig_changes)
         if self.by == "rules":
@@ -255,7 +255,7 @@ class Ranking:
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         return (
             f"Ranking(predicted: {icons} on {where}, {crowd}, "
-            f"{100 * self.percent_correct:.1f} % correct{spread}{bits}{worst})"
+            f"{100 * self.proportion_correct:.1f} % correct{spread}{bits}{worst})"
         )
 
     def _repr_html_(self) -> str:
@@ -270,7 +270,7 @@ class Ranking:
         if self.by == "rules":
             margin = float("inf") if icon.rules_margin is None else icon.rules_margin
             return (not icon.playable, -icon.rules_score, -margin, icon.name)
-        return (not icon.playable, -icon.percent_correct, 0.0, icon.name)
+        return (not icon.playable, -icon.proportion_correct, 0.0, icon.name)
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:

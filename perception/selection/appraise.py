@@ -11,7 +11,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
-from ..identification.measures import information_bits, percent_correct
+from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import Played, between, feel
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm, Observer
@@ -32,7 +32,7 @@ class Appraisal:
 
     worst_pair: tuple[str, str]
     d_prime: float
-    percent_correct: float
+    proportion_correct: float
     information_bits: float
     bits_per_s: float
 
@@ -40,7 +40,7 @@ class Appraisal:
         """The number that an objective goes by."""
         return {
             "worst": self.d_prime,
-            "correct": self.percent_correct,
+            "correct": self.proportion_correct,
             "bits": self.information_bits,
             "bits-per-s": self.bits_per_s,
         }[objective]
@@ -50,7 +50,7 @@ class Appraisal:
         return {
             "worst_pair": list(self.worst_pair),
             "d_prime": self.d_prime,
-            "percent_correct": self.percent_correct,
+            "proportion_correct": self.proportion_correct,
             "information_bits": self.information_bits,
             "bits_per_s": self.bits_per_s,
         }
@@ -104,7 +104,7 @@ def appraised(
     return Appraisal(
         worst_pair=(names[a], names[b]),
         d_prime=float(middle[a, b]),
-        percent_correct=float(percent_correct(probability).mean()),
+        proportion_correct=float(proportion_correct(probability).mean()),
         information_bits=bits,
         bits_per_s=bits / float(np.mean(durations_s)),
     )

@@ -96,7 +96,7 @@ class Choice:
             "median_loss": self.loss,
             "at_own_range": {
                 **self.at_own_range.to_dict(),
-                "percent_correct_parameter_interval": None if open_ is None else list(open_.percent_correct),
+                "proportion_correct_parameter_interval": None if open_ is None else list(open_.proportion_correct),
                 "information_bits_parameter_interval": None if open_ is None else list(open_.information_bits),
             },
         }

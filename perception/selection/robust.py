@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import confuse
-from ..identification.measures import information_bits, percent_correct
+from ..identification.measures import information_bits, proportion_correct
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
 from .appraise import distances
@@ -182,6 +182,6 @@ def _values(d: Array, lapse: Array, durations: Array, rows: Sequence[int], objec
         return least
     probability = confuse(own, lapse=lapse, seed=seed).probability
     if objective == "correct":
-        return percent_correct(probability)
+        return proportion_correct(probability)
     bits = information_bits(probability)
     return bits if objective == "bits" else bits / float(durations[list(rows)].mean())

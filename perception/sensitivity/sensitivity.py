@@ -42,14 +42,14 @@ Progress = Callable[[int, int], None]
 class Effect:
     """How much one parameter moves proportion correct and bits.
 
-    `percent_correct` and `information_bits` are total Sobol indices or, by Morris, mean sizes of effects over the
+    `proportion_correct` and `information_bits` are total Sobol indices or, by Morris, mean sizes of effects over the
     interval (0–1; bits). `..._ends` are the predictions at its low and its high end, all others at their values.
     """
 
     parameter: Parameter
-    percent_correct: float
+    proportion_correct: float
     information_bits: float
-    percent_correct_ends: tuple[float, float]
+    proportion_correct_ends: tuple[float, float]
     information_bits_ends: tuple[float, float]
 
 
@@ -57,7 +57,7 @@ class Effect:
 class Sensitivity:
     """Effects, the largest on per cent correct first, of `runs` predictions with the same people and noise.
 
-    `percent_correct` and `information_bits` are predicted with every parameter at its value.
+    `proportion_correct` and `information_bits` are predicted with every parameter at its value.
     """
 
     method: str
@@ -68,7 +68,7 @@ class Sensitivity:
     norm: str
     samples: int
     runs: int
-    percent_correct: float
+    proportion_correct: float
     information_bits: float
     effects: tuple[Effect, ...]
 
@@ -92,10 +92,10 @@ class Sensitivity:
                 "low": e.parameter.low,
                 "value": e.parameter.value,
                 "high": e.parameter.high,
-                f"percent_correct_{index}": e.percent_correct,
+                f"proportion_correct_{index}": e.proportion_correct,
                 f"information_bits_{index}": e.information_bits,
-                "percent_correct_at_low": e.percent_correct_ends[0],
-                "percent_correct_at_high": e.percent_correct_ends[1],
+                "proportion_correct_at_low": e.proportion_correct_ends[0],
+                "proportion_correct_at_high": e.proportion_correct_ends[1],
                 "information_bits_at_low": e.information_bits_ends[0],
                 "information_bits_at_high": e.information_bits_ends[1],
                 "use": e.parameter.use,
@@ -121,7 +121,7 @@ class Sensitivity:
         return (
             f"Sensitivity({self.method}: {len(self.effects)} parameters on "
             f"{with_changes(self.rig, self.rig_changes)}, {self.runs} runs of {self.people} people, "
-            f"{100 * self.percent_correct:.1f} % correct; measure first {said})"
+            f"{100 * self.proportion_correct:.1f} % correct; measure first {said})"
         )
 
     def _repr_html_(self) -> str:
@@ -130,7 +130,7 @@ class Sensitivity:
         return as_svg(self.plot())
 
 
-PREDICTIONS = ("percent_correct", "information_bits")
+PREDICTIONS = ("proportion_correct", "information_bits")
 
 
 def sensitivity(
@@ -185,9 +185,9 @@ def sensitivity(
         norm=chosen,
         samples=base,
         runs=len(asked),
-        percent_correct=float(found[0, 0]),
+        proportion_correct=float(found[0, 0]),
         information_bits=float(found[0, 1]),
-        effects=tuple(sorted(effects, key=lambda e: (-e.percent_correct, -e.information_bits, e.parameter.name))),
+        effects=tuple(sorted(effects, key=lambda e: (-e.proportion_correct, -e.information_bits, e.parameter.name))),
     )
 
 
@@ -202,7 +202,7 @@ def _asked(stage: Stage, asked: Array, norm: Norm, seed: int, progress: Progress
         for k in rows:
             observer = observer_at(stage.observer_values(asked[k]))
             scores = score(played, stage.crowd_at(asked[k]), observer, norm, seed, NOISE)
-            results.append((k, float(scores.percent_correct.mean()), float(scores.information_bits.mean())))
+            results.append((k, float(scores.proportion_correct.mean()), float(scores.information_bits.mean())))
         return results
 
     found, done = np.empty((len(asked), len(PREDICTIONS))), 0

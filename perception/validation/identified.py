@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
 from ..identification.intervals import EVERY, PEOPLE
 from ..identification.intervals import SAMPLES as FEW_SAMPLES
-from ..identification.measures import information_bits, percent_correct, plugin_bits
+from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import Played, feel, judge
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
@@ -115,13 +115,13 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     most = math.log2(len(found.labels))
 
     def share_of_people(share: float) -> Score:
-        return lambda p: float(np.percentile(percent_correct(p), share))
+        return lambda p: float(np.percentile(proportion_correct(p), share))
 
     def bits(p: Array) -> float:
         return plugin_bits(p, trials, seed, EXPERIMENTS).mean
 
     asked: list[tuple[str, str, Score, float]] = [
-        ("proportion correct", "proportion", lambda p: float(percent_correct(p).mean()), 1.0),
+        ("proportion correct", "proportion", lambda p: float(proportion_correct(p).mean()), 1.0),
         ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
         ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
         ("plug-in information", "bit", bits, most),
@@ -131,7 +131,7 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     made = [
         found.predicted("six icons", name, unit, score, conditions=said, top=top) for name, unit, score, top in asked
     ]
-    low, high = np.percentile(percent_correct(found.probability), [16.0, 84.0]).tolist()
+    low, high = np.percentile(proportion_correct(found.probability), [16.0, 84.0]).tolist()
     made[0] = replace(made[0], people=(low, high))
     made[3] = replace(made[3], conditions=f"{said}; plug-in estimate of {trials} trials a person")
     return tuple(made)

@@ -120,7 +120,7 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
             assert (rule["text"] in words) == (not rule["pass"])
     for icon in icons:
         assert " ".join(str(icon)[str(icon).index("icon ") :].split()) in words
-    low, high = result["set"]["percent_correct_interval"]
+    low, high = result["set"]["proportion_correct_interval"]
     assert f"for 95 % of people {100 * low:.0f} % to {100 * high:.0f} %" in words
     for part in ("direction", "intensity", "rate", "duration", "pattern", "onset"):
         assert words.count(part) >= 2

@@ -75,8 +75,8 @@ def test_a_narrower_set_is_remembered_better_in_context() -> None:
 
 def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOver) -> None:
     near, far = ranked(task=Task(gap_s=2.0)), ranked(task=Task(gap_s=600.0))
-    assert near.percent_correct < usual.percent_correct - 0.05
-    assert far.percent_correct == pytest.approx(usual.percent_correct, abs=1e-6)
+    assert near.proportion_correct < usual.proportion_correct - 0.05
+    assert far.proportion_correct == pytest.approx(usual.proportion_correct, abs=1e-6)
     told = near.to_dict()["icons"][0]["carry_over"]
     assert told["after"] in usual.labels and told["d_prime"] > 0.5
     noise = float(left_behind.noise[0])
@@ -108,7 +108,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
 
 def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
     biased = ranked(task=Task(bias=1.0))
-    assert biased.percent_correct < usual.percent_correct
+    assert biased.proportion_correct < usual.proportion_correct
     assert [p.d_prime for p in biased.pairs] == [p.d_prime for p in usual.pairs]
     drawn = Task(bias=2.0).favour(0, 500, 6, seed=3)
     assert isinstance(drawn, np.ndarray)
@@ -154,7 +154,7 @@ def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
         assert chosen is not None and "hot" not in chosen.icons
         alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
         if not task.bias:  # favoured names hang on places in the pool
-            assert chosen.at_own_range.percent_correct == pytest.approx(alone.percent_correct, abs=2e-3)
+            assert chosen.at_own_range.proportion_correct == pytest.approx(alone.proportion_correct, abs=2e-3)
         assert chosen.at_own_range.d_prime == pytest.approx(min(p.d_prime for p in alone.pairs), rel=1e-2)
 
 
@@ -175,7 +175,7 @@ def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
     )
     assert plain is not None and biased is not None
     assert biased.value < plain.value - 0.005
-    assert biased.value == pytest.approx(biased.at_own_range.percent_correct, abs=0.02)
+    assert biased.value == pytest.approx(biased.at_own_range.proportion_correct, abs=0.02)
 
 
 def test_messages() -> None:

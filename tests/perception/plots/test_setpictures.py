@@ -117,7 +117,7 @@ def test_places_are_probabilities(ranking: Ranking) -> None:
     assert held.sum(axis=0) == pytest.approx(1.0)
     assert held.sum(axis=1) == pytest.approx(1.0)
     axes = plot_places(ranking)
-    best = sorted(ranking.icons, key=lambda icon: (-icon.percent_correct, icon.name))
+    best = sorted(ranking.icons, key=lambda icon: (-icon.proportion_correct, icon.name))
     assert [label.get_text() for label in axes.get_yticklabels()] == [icon.name for icon in best]
     assert [label.get_text() for label in axes.get_xticklabels()] == [str(k) for k in range(1, 9)]
     assert axes.get_title() == "place of each icon, % of 8 people"
@@ -146,7 +146,7 @@ def test_the_ranking_as_a_picture(ranking: Ranking) -> None:
     assert [label.get_text() for label in axes.get_yticklabels()] == [row["icon"] for row in rows]
     told = [t.get_text() for t in axes.texts]
     for row in rows:
-        assert f"{100 * row['percent_correct']:.0f} %" in told
+        assert f"{100 * row['proportion_correct']:.0f} %" in told
     assert {"correct", "detected", "onset", "felt as", "most confused with"} <= set(told)
     assert "plays" not in told
     broken = replace(ranking, icons=(replace(ranking.icons[0], safe=False, reason="hot"), *ranking.icons[1:]))

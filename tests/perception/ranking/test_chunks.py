@@ -128,11 +128,11 @@ def test_bad_numbers() -> None:
 
 def test_one_icon_and_icons_that_are_the_same() -> None:
     alone = rank(parse("cue 1\nicon a { cool by 3 °C at 3 °C/s; hold for 1 s }"), RIG, people=4, parameters=0)
-    assert alone.percent_correct == 1.0
+    assert alone.proportion_correct == 1.0
     assert alone.pairs == ()
     text = "cue 1\n" + "\n".join(f"icon {name} {{ cool by 3 °C at 3 °C/s; hold for 1 s }}" for name in "abc")
     alike = rank(parse(text), RIG, people=4, parameters=0)
-    assert alike.percent_correct == pytest.approx(1 / 3, abs=1e-9)
+    assert alike.proportion_correct == pytest.approx(1 / 3, abs=1e-9)
     assert alike.information_bits == pytest.approx(0.0, abs=1e-9)
     assert {pair.d_prime for pair in alike.pairs} == {0.0}
 

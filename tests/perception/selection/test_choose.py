@@ -123,8 +123,8 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     assert one == pool.choose(3, objective, ("a",))
     assert "a" in one.icons
     assert list(one.to_dict()["at_own_range"]) == [
-        *("worst_pair", "d_prime", "percent_correct", "information_bits", "bits_per_s"),
-        *("percent_correct_parameter_interval", "information_bits_parameter_interval"),
+        *("worst_pair", "d_prime", "proportion_correct", "information_bits", "bits_per_s"),
+        *("proportion_correct_parameter_interval", "information_bits_parameter_interval"),
     ]
 
 
@@ -133,11 +133,11 @@ def test_intervals_are_those_of_the_chosen() -> None:
     found = rank(six, rig, people=8, parameters=8, choosing=Choosing(3))
     assert found.parameter_intervals is None and found.chosen is not None
     own = found.chosen.to_dict()["at_own_range"]
-    low, high = own["percent_correct_parameter_interval"]
-    assert low < own["percent_correct"] < high
+    low, high = own["proportion_correct_parameter_interval"]
+    assert low < own["proportion_correct"] < high
     alone = rank(replace(six, entries=tuple(six[name] for name in found.chosen.icons)), rig, people=8, parameters=8)
     assert alone.parameter_intervals is not None
-    assert (low, high) == pytest.approx(alone.parameter_intervals.percent_correct, abs=0.02)
+    assert (low, high) == pytest.approx(alone.parameter_intervals.proportion_correct, abs=0.02)
 
 
 def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:

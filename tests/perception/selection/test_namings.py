@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception.identification.confusion import confuse
-from thermicon.perception.identification.measures import information_bits, percent_correct
+from thermicon.perception.identification.measures import information_bits, proportion_correct
 from thermicon.perception.selection.choose import pick
 from thermicon.perception.selection.subset_identification import Namings, Objective
 from thermicon.perception.selection.upper_bounds import pair_losses, upper_bound
@@ -53,7 +53,7 @@ def test_a_score_is_what_the_confusions_of_the_set_give() -> None:
     d = np.linalg.norm(x[:, None] - x[None], axis=-1)[None].repeat(24, axis=0)
     held = Namings.of(d, np.full(24, 0.02), np.full(5, 4.0), 0)
     named = confuse(d, lapse=0.02).probability
-    assert held.score(range(5), "correct") == pytest.approx(float(percent_correct(named).mean()), abs=0.01)
+    assert held.score(range(5), "correct") == pytest.approx(float(proportion_correct(named).mean()), abs=0.01)
     assert held.score(range(5), "bits") == pytest.approx(float(information_bits(named).mean()), abs=0.06)
     assert held.score(range(5), "bits-per-s") == held.score(range(5), "bits") / 4.0
 

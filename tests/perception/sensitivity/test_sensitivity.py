@@ -36,7 +36,7 @@ def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -
     names = [e.parameter.name for e in found.effects]
     assert len(names) == len(set(names))
     assert {"contact resistance", "lapse rate", "memory noise (max)"} <= set(names)
-    sizes = [e.percent_correct for e in found.effects]
+    sizes = [e.proportion_correct for e in found.effects]
     assert sizes == sorted(sizes, reverse=True)
     assert min(sizes) >= 0.0
     assert found.first
@@ -50,15 +50,15 @@ def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -
 
 def test_more_memory_noise_is_fewer_correct(found: Sensitivity) -> None:
     (memory,) = (e for e in found.effects if e.parameter.name == "memory noise (max)")
-    low, high = memory.percent_correct_ends
-    assert low > found.percent_correct > high
+    low, high = memory.proportion_correct_ends
+    assert low > found.proportion_correct > high
     assert memory.information_bits_ends[0] > found.information_bits > memory.information_bits_ends[1]
 
 
 def test_as_a_table_and_a_picture(found: Sensitivity) -> None:
     frame = found.to_frame()
     assert len(frame) == len(found.effects)
-    assert {"parameter", "unit", "low", "high", "percent_correct_total_index", "source"} <= set(frame.columns)
+    assert {"parameter", "unit", "low", "high", "proportion_correct_total_index", "source"} <= set(frame.columns)
     axes = found.plot()
     assert [t.get_text() for t in axes.get_yticklabels()] == list(frame["parameter"])
     assert axes.yaxis_inverted()

@@ -43,7 +43,7 @@ def test_every_target_and_row_is_there_for_every_variant(report: ValidationRepor
 def test_six_icons_are_those_of_rank(report: ValidationReport) -> None:
     ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=12, parameters=0)
     found = {line.row.quantity: line.judged[0].predicted.value for line in report.sections[5].lines}
-    assert found["proportion correct"] == pytest.approx(ranking.percent_correct)
+    assert found["proportion correct"] == pytest.approx(ranking.proportion_correct)
     assert found["plug-in information"] == pytest.approx(ranking.information_bits_plugin)
     assert found["information"] == pytest.approx(ranking.information_bits)
 
