@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
@@ -42,7 +42,7 @@ class Request:
     trials: int = 48
     by: str = "model"
     parameters: int = 128
-    choosing: Choosing | None = None
+    choosing: Selection | None = None
     edits: str = "worst"
     context: float = 0.0
     gap: float | None = None

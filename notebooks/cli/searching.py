@@ -13,7 +13,7 @@ from ..text.messages import check_changes, load_rig, note, usage
 from .options import Changes, OneFile, RigName
 
 if TYPE_CHECKING:
-    from thermicon.perception import Searched
+    from thermicon.perception import SearchResult
 
 TRACKING = ("replay", "display", "ideal")
 
@@ -98,7 +98,7 @@ def search_command(
     show_search(found, icons.title, people, where.name)
 
 
-def show_search(found: Searched, title: str, people: int, rig: str) -> None:
+def show_search(found: SearchResult, title: str, people: int, rig: str) -> None:
     """Print the icons that were found, what they are worth beside the set that the search began with, and the note."""
     from ..text.number_text import number, percent
     from ..text.tables import show, table

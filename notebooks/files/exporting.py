@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Device, Prepared, Refusal, Rig
     from thermicon.circuit.delivery.formats import Format
     from thermicon.icons import Icon
-    from thermicon.perception import FeltChange
+    from thermicon.perception import PerceivedChange
 
 FORMAT = "csv"
 
@@ -32,7 +32,7 @@ class Ready:
     form: Format
     device: Device
     prepared: tuple[Prepared, ...]
-    felt: tuple[FeltChange, ...] = ()
+    felt: tuple[PerceivedChange, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
@@ -133,7 +133,7 @@ def compare_felt(
     device: Device,
     tail_s: float,
     warn: Callable[[str], None],
-) -> tuple[FeltChange, ...]:
+) -> tuple[PerceivedChange, ...]:
     """What the device changes of the exported icons for a nominal person, beside the others of the set."""
     from thermicon.circuit.delivery.realise import realise, traces_until
     from thermicon.circuit.inputs import InputError
@@ -149,7 +149,7 @@ def compare_felt(
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
     if len(groups) > 1:
         warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
-    felt: list[FeltChange] = []
+    felt: list[PerceivedChange] = []
     for group in groups:
         traces = [traces_until(realised, end) for realised in group]
         names = [realised.icon.name for realised in group]

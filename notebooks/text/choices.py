@@ -12,7 +12,7 @@ from .messages import usage
 from .number_text import number, percent
 
 if TYPE_CHECKING:
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
 OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
 MOST_EXCLUDED = 5
@@ -40,7 +40,7 @@ MostEnergy = Annotated[
 
 def chosen_as(
     count: int | None, objective: str | None, must: Sequence[str] | None, most_s: float | None, most_J: float | None
-) -> Choosing | None:
+) -> Selection | None:
     """Check the options of a choice; None where none is asked for."""
     others = (("--objective", objective), ("--must", must), ("--most-time", most_s), ("--most-energy", most_J))
     if count is None:
@@ -55,9 +55,9 @@ def chosen_as(
     for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
         if most is not None and not (math.isfinite(most) and most > 0):
             raise usage(f"{most:g} {unit} is not above 0", option)
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
-    return Choosing(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
+    return Selection(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
 
 
 def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:

@@ -15,7 +15,7 @@ from ..text.number_text import number, percent
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared
     from thermicon.circuit.safety.checks import Check
-    from thermicon.perception import FeltChange
+    from thermicon.perception import PerceivedChange
 
     from ..files.exporting import Ready, Written
 
@@ -49,7 +49,7 @@ def asked_html(prepared: Sequence[Prepared]) -> str:
     return f'<table class="th asked"><tbody>{rows}</tbody></table>' if rows else ""
 
 
-def _delivered(one: Prepared, felt: FeltChange | None) -> str:
+def _delivered(one: Prepared, felt: PerceivedChange | None) -> str:
     realised, receptors = one.realised, [each for each in one.apart.places if "receptor" in each.place]
     largest = max((abs(each.largest_K), each.at_s) for each in receptors)
     moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
     from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
 QUICK, WELL = (6, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
@@ -62,7 +62,7 @@ def rank_set(
     rig: Rig,
     people: int,
     parameters: int,
-    choosing: Choosing | None = None,
+    choosing: Selection | None = None,
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Ranked:

@@ -38,12 +38,12 @@ from .set_tables import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Edit, NoEdit, PerceptualMap
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
     from .design_model import Designing
 
 ShowText = Callable[[str], None]
-Wanted = tuple[str, "Rig", "Choosing | None"]
+Wanted = tuple[str, "Rig", "Selection | None"]
 SETTLES_S = 0.25
 """How long a text is left to change further before the set is ranked anew."""
 SHARES = 10
@@ -267,10 +267,10 @@ class SetView:
     def _wanted(self) -> Wanted:
         return self.design.text, self.design.rig, self._choosing()
 
-    def _choosing(self) -> Choosing | None:
-        from thermicon.perception.selection.request import Choosing
+    def _choosing(self) -> Selection | None:
+        from thermicon.perception.selection.request import Selection
 
-        return Choosing(self.count.value, self.objective.value) if self.count.value else None
+        return Selection(self.count.value, self.objective.value) if self.count.value else None
 
     def _offer(self, icons: int) -> None:
         """How many can be chosen of so many icons."""

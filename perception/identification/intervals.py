@@ -18,7 +18,7 @@ from ..kernels.parallel import in_order
 from ..observer.observer import Norm
 from ..observer.people import People
 from ..sensation.parameters import latin, observer_at, observer_parameters
-from .population import Played, Scores, score
+from .population import ReceptorTemperatures, Scores, score
 from .task import USUAL, Task
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768
@@ -58,7 +58,7 @@ class ParameterIntervals:
 
 
 def parameter_intervals(
-    thin: Played,
+    thin: ReceptorTemperatures,
     crowd: People,
     predicted: Scores,
     norm: Norm,
@@ -77,7 +77,7 @@ def parameter_intervals(
         raise ValueError(f"an interval needs at least two draws of the parameters, not {draws}")
     free = observer_parameters(norm, thin.site)
     icons = predicted.detected.size
-    thin = thin.thinned(asked_again(icons), 1 if icons <= MANY else 2)
+    thin = thin.thinned(people_for_intervals(icons), 1 if icons <= MANY else 2)
     few = crowd.part(0, len(thin.cold_C))
     samples = min(SAMPLES, max(LEAST, NAMED // icons))
     centre = score(thin, few, observer_at({}), norm, seed, samples, task)
@@ -123,10 +123,10 @@ def parameter_intervals(
     )
 
 
-def asked_again(icons: int) -> int:
+def people_for_intervals(icons: int) -> int:
     """How many people, at most, judge a set of so many icons with every observer.
 
-    >>> asked_again(6), asked_again(64)
+    >>> people_for_intervals(6), people_for_intervals(64)
     (24, 12)
     """
     return min(PEOPLE, max(FEWEST, PRESENTED // icons))

@@ -14,44 +14,44 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from .chunks import Found, Work
+from .chunks import BatchResult, Job
 
 KEY, CHUNK = b"thermicon.work", b"thermicon.chunk"
 
 
-class ChunkError(ValueError):
+class BatchStoreError(ValueError):
     """Chunks cannot be kept where they should be; the text says why and what to change."""
 
 
 @dataclass(frozen=True, slots=True)
-class Shelf:
+class BatchStore:
     """Where the chunks of one piece of work are kept: a folder named by all that its numbers hang on."""
 
     folder: Path
     key: str
 
     @classmethod
-    def of(cls, work: Work, keep: Path) -> Shelf:
-        """The shelf of some work in a folder, which is made; raises `ChunkError` where it cannot be."""
+    def of(cls, work: Job, keep: Path) -> BatchStore:
+        """The shelf of some work in a folder, which is made; raises `BatchStoreError` where it cannot be."""
         folder = keep / work.key[:32]
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise ChunkError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
+            raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
         return cls(folder, work.key)
 
     def path(self, number: int) -> Path:
         """File of a chunk."""
         return self.folder / f"{number:06d}.parquet"
 
-    def put(self, work: Work, number: int, found: Found) -> None:
+    def put(self, work: Job, number: int, found: BatchResult) -> None:
         """Write a chunk: under another name first, so that no half of it is ever taken for the whole."""
         import pyarrow as pa
         import pyarrow.parquet as pq
 
         start, stop = work.span(number)
         columns = {"person": pa.array(range(start, stop), pa.int64())}
-        for field in fields(Found):
+        for field in fields(BatchResult):
             columns[field.name] = _column(getattr(found, field.name), stop - start)
         held = pa.table(columns).replace_schema_metadata({KEY: self.key.encode(), CHUNK: str(number).encode()})
         goal = self.path(number)
@@ -61,11 +61,11 @@ class Shelf:
             pq.write_table(held, draft, compression="zstd", write_page_checksum=True, use_dictionary=False)
             draft.replace(goal)
         except OSError as error:
-            raise ChunkError(f"cannot keep finished parts in {self.folder}: {error.strerror or error}") from error
+            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error.strerror or error}") from error
         finally:
             draft.unlink(missing_ok=True)
 
-    def get(self, work: Work, number: int) -> Found | None:
+    def get(self, work: Job, number: int) -> BatchResult | None:
         """A chunk that was finished; None where there is none, or none that can be trusted."""
         if not self.path(number).exists():
             return None
@@ -80,12 +80,14 @@ class Shelf:
                 return None
             if held["person"].to_pylist() != list(range(start, stop)):
                 return None
-            return _checked(Found(**{field.name: _array(held[field.name]) for field in fields(Found)}), work)
+            return _checked(
+                BatchResult(**{field.name: _array(held[field.name]) for field in fields(BatchResult)}), work
+            )
         except Exception:
             # Whatever is wrong with it, to do the chunk again is the cure.
             return None
 
-    def finished(self, work: Work) -> list[int]:
+    def finished(self, work: Job) -> list[int]:
         """Numbers of the chunks that have a file, trusted or not."""
         return [number for number in range(work.chunks) if self.path(number).exists()]
 
@@ -122,7 +124,7 @@ def _array(column: Any) -> Array:
     return values.reshape(-1, *shape)
 
 
-def _checked(found: Found, work: Work) -> Found:
+def _checked(found: BatchResult, work: Job) -> BatchResult:
     icons, people = len(work.icons), len(found.stress)
     shapes = {
         "detected": (people, icons),

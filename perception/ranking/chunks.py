@@ -21,7 +21,7 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES
 from ..identification.intervals import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
-from ..identification.population import Played, feel, judge
+from ..identification.population import ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm, Observer
@@ -40,7 +40,7 @@ PROBES = ("cold_receptor_C", "warm_receptor_C")
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class BatchResult:
     """What the people of a chunk make of the icons, a row a person; p people, m icons, q = m(m − 1)/2 pairs.
 
     `detected` (p, m) and `confusion` (p, m, m) are probabilities, `d_prime` (p, q) from memory, `correct` (p, m) 0–1,
@@ -67,7 +67,7 @@ class Found:
 
 
 @dataclass(frozen=True, slots=True)
-class Work:
+class Job:
     """What is to be found out: icons on a rig to one common end (s), for people drawn from a seed, by a norm."""
 
     icons: tuple[Icon, ...]
@@ -111,7 +111,7 @@ class Work:
         return hashlib.sha256("\0".join(told).encode("utf-8")).hexdigest()
 
 
-def run(work: Work, number: int) -> Found:
+def run(work: Job, number: int) -> BatchResult:
     """Do one chunk."""
     from thermicon.circuit import simulate_many
 
@@ -126,20 +126,22 @@ def run(work: Work, number: int) -> Found:
         tracking=work.tracking,
         probes=PROBES,
     )
-    played = Played(batch.cold_C, batch.warm_C, batch.time_s, work.rig.site, work.rig.contact.area_m2)
+    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, work.rig.site, work.rig.contact.area_m2)
     observer = Observer.load()
-    felt = feel(played, crowd, observer)
-    d_prime, confusion = judge(felt, work.norm, crowd, observer, work.seed, SAMPLES, start, work.task)
+    felt = respond(played, crowd, observer)
+    d_prime, confusion = identify(felt, work.norm, crowd, observer, work.seed, SAMPLES, start, work.task)
     others = [
         np.diagonal(
-            judge(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start, work.task)[1].probability, axis1=1, axis2=2
+            identify(felt, n, crowd, observer, work.seed, OTHER_SAMPLES, start, work.task)[1].probability,
+            axis1=1,
+            axis2=2,
         )
         for n in work.other_norms
     ]
     named = confusion.probability
     first, second = np.triu_indices(len(work.icons), 1)
-    asked_again = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
-    return Found(
+    first_people = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
+    return BatchResult(
         detected=np.asarray(felt.probability),
         d_prime=d_prime[:, first, second],
         confusion=named,
@@ -148,12 +150,12 @@ def run(work: Work, number: int) -> Found:
         plugin=experiments_bits(named, work.trials, work.seed, EXPERIMENTS, start).mean(axis=1),
         stress=confusion.stress,
         other_correct=np.stack(others, axis=1),
-        cold_C=asked_again.cold_C,
-        warm_C=asked_again.warm_C,
+        cold_C=first_people.cold_C,
+        warm_C=first_people.warm_C,
     )
 
 
-def locally(work: Work, numbers: list[int], workers: int | None = None) -> Iterator[tuple[int, Found]]:
+def locally(work: Job, numbers: list[int], workers: int | None = None) -> Iterator[tuple[int, BatchResult]]:
     """Do some chunks in threads of this process, by default one a core; each is given as soon as its turn comes.
 
     No more than two chunks a worker are in memory.
@@ -164,7 +166,7 @@ def locally(work: Work, numbers: list[int], workers: int | None = None) -> Itera
     yield from zip(numbers, each, strict=True)
 
 
-def time_s(work: Work, every: int) -> Array:
+def time_s(work: Job, every: int) -> Array:
     """Clock of every k-th instant of the work."""
     from thermicon.circuit.solver.simulate import rows_until
 

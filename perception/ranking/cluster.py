@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from .chunks import Found, Work, code_digest, run
+from .chunks import BatchResult, Job, code_digest, run
 
 PATIENCE_S = 5.0
 """How long to wait for a scheduler to answer, and for a first worker."""
@@ -24,7 +24,7 @@ class ClusterError(RuntimeError):
     """A cluster cannot be used; the text says why and what to change."""
 
 
-def on_cluster(work: Work, numbers: list[int], address: str) -> Iterator[tuple[int, Found]]:
+def on_cluster(work: Job, numbers: list[int], address: str) -> Iterator[tuple[int, BatchResult]]:
     """Do some chunks on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
 
     Each is given as soon as it is done. Raises `ClusterError` where nothing answers, there is no worker, or a worker
@@ -85,7 +85,7 @@ def _quiet() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def _run(work: Work, number: int) -> tuple[str, Found]:
+def _run(work: Job, number: int) -> tuple[str, BatchResult]:
     """Done on a worker: the chunk, with what code it was done by."""
     from thermicon.circuit.solver.cores import at_most
 
@@ -93,7 +93,7 @@ def _run(work: Work, number: int) -> tuple[str, Found]:
         return code_digest(), run(work, number)
 
 
-def _result(task: Any, address: str) -> Found:
+def _result(task: Any, address: str) -> BatchResult:
     try:
         code, found = task.result()
     except Exception as error:
@@ -103,5 +103,5 @@ def _result(task: Any, address: str) -> Found:
         ) from error
     if code != code_digest():
         raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
-    made: Found = found
+    made: BatchResult = found
     return made

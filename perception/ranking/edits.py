@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ..arrays import Array
-from ..criteria import APART_DPRIME
+from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People
@@ -39,7 +39,7 @@ def with_edits(
 
     def asked(pair: PairScore) -> bool:
         if which == "all":
-            return pair.d_prime < APART_DPRIME or (pair.a, pair.b) == worst
+            return pair.d_prime < DISTINGUISHABLE_DPRIME or (pair.a, pair.b) == worst
         return which == "worst" and (pair.a, pair.b) == worst
 
     return tuple(

@@ -11,14 +11,14 @@ import numpy as np
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised, sampling_error
 from ..identification.intervals import EVERY
-from ..identification.population import Played
+from ..identification.population import ReceptorTemperatures
 from ..observer.observer import Norm
-from .chunk_store import Shelf
-from .chunks import Found, Work, locally, time_s
+from .chunk_store import BatchStore
+from .chunks import BatchResult, Job, locally, time_s
 
 
 @dataclass(frozen=True, slots=True)
-class Where:
+class Execution:
     """Where the work is done and kept: threads here (None: one a core), or a cluster; a folder for finished chunks.
 
     Raises `ValueError` for fewer than one worker.
@@ -34,7 +34,7 @@ class Where:
 
 
 @dataclass(frozen=True, slots=True)
-class Gathered:
+class PooledResult:
     """What all people made of m icons.
 
     `detected` (m,) means; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m); `each_correct` (people, m);
@@ -52,7 +52,7 @@ class Gathered:
     by_norm: dict[Norm, Array]
     standard_error: float
     person_standard_error: float
-    thin: Played
+    thin: ReceptorTemperatures
 
     @property
     def correct(self) -> Array:
@@ -80,10 +80,10 @@ class Gathered:
         return matrix
 
 
-def gather(work: Work, where: Where, step: Callable[[], None]) -> Gathered:
+def collect_batches(work: Job, where: Execution, step: Callable[[], None]) -> PooledResult:
     """Do or read every chunk; `step` is called after each. Where and in what order they are done changes no bit."""
     icons, people = len(work.icons), work.people
-    parts: dict[int, Found] = {}
+    parts: dict[int, BatchResult] = {}
     pooled: dict[int, Array] = {}
     blur = 0.0
     for number, found in _each(work, where):
@@ -101,7 +101,7 @@ def gather(work: Work, where: Where, step: Callable[[], None]) -> Gathered:
     for number in range(work.chunks):
         total += pooled[number]
     mean, other = normalised(total / people), joined("other_correct").mean(axis=0)
-    return Gathered(
+    return PooledResult(
         detected=joined("detected").mean(axis=0),
         pairs=joined("d_prime"),
         pooled=mean,
@@ -112,12 +112,14 @@ def gather(work: Work, where: Where, step: Callable[[], None]) -> Gathered:
         by_norm=dict(zip(work.other_norms, other, strict=True)),
         standard_error=sampling_error(mean, SAMPLES * people) if icons > 2 else 0.0,
         person_standard_error=blur if icons > 2 else 0.0,
-        thin=Played(joined("cold_C"), joined("warm_C"), time_s(work, EVERY), work.rig.site, work.rig.contact.area_m2),
+        thin=ReceptorTemperatures(
+            joined("cold_C"), joined("warm_C"), time_s(work, EVERY), work.rig.site, work.rig.contact.area_m2
+        ),
     )
 
 
-def _each(work: Work, where: Where) -> Iterator[tuple[int, Found]]:
-    shelf = None if where.keep is None else Shelf.of(work, where.keep)
+def _each(work: Job, where: Execution) -> Iterator[tuple[int, BatchResult]]:
+    shelf = None if where.keep is None else BatchStore.of(work, where.keep)
     missing = []
     for number in range(work.chunks):
         found = None if shelf is None else shelf.get(work, number)
@@ -139,6 +141,6 @@ def _each(work: Work, where: Where) -> Iterator[tuple[int, Found]]:
         yield number, found
 
 
-def _light(found: Found) -> Found:
+def _light(found: BatchResult) -> BatchResult:
     """A chunk without the confusions of every person, which are the bulk of it and needed only summed up."""
     return replace(found, confusion=np.empty((0, 0, 0)))

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..comparison.distance_components import Part
+from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
-from ..comparison.rules import TOLD_APART, RuleResult
+from ..comparison.rules import DISTINGUISHABLE, RuleResult
 from ..identification.intervals import ParameterIntervals
-from ..identification.spread import Spread
+from ..identification.spread import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
 
@@ -81,12 +81,12 @@ class PairScore:
     rules: tuple[RuleResult, ...]
     rules_margin: float | None = None
     edit: Edit | NoEdit | None = None
-    parts: tuple[Part, ...] = ()
+    parts: tuple[DistanceComponent, ...] = ()
 
     @property
     def rules_pass(self) -> bool:
         """Whether the rules alone tell the two apart."""
-        return any(r.passed for r in self.rules if r.rule == TOLD_APART)
+        return any(r.passed for r in self.rules if r.rule == DISTINGUISHABLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class Ranking:
     parameter_intervals: ParameterIntervals | None = None
     rig_changes: tuple[str, ...] = ()
     chosen: Choice | None = None
-    spread: Spread | None = None
+    spread: PersonSpread | None = None
     task: Task = USUAL
     carry_over: CarryOver | None = None
 
@@ -247,7 +247,7 @@ class Ranking:
         if self.by == "rules":
             worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
             apart = sum(pair.rules_pass for pair in self.pairs)
-            pairs = f", {apart} of {len(self.pairs)} pairs told apart" if self.pairs else ""
+            pairs = f", {apart} of {len(self.pairs)} pairs distinguishable" if self.pairs else ""
             return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
         crowd = "1 person" if self.people == 1 else f"{self.people} people"
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"

@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import Played, between, feel
+from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm, Observer
 from ..observer.people import People, draw_people
@@ -80,11 +80,11 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("two icons at least are needed to be told apart")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, durations = distances(icons, rig, crowd, tracking, norm, task=task)
-    return appraised([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
+    d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task)
+    return appraise_dprime([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
 
 
-def appraised(
+def appraise_dprime(
     names: Sequence[str],
     d_prime: Array,
     lapse: Array,
@@ -110,7 +110,7 @@ def appraised(
     )
 
 
-def distances(
+def population_dprime(
     icons: Sequence[Icon],
     rig: Rig,
     crowd: People,
@@ -133,5 +133,7 @@ def distances(
     end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
-    felt = feel(Played(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer)
-    return between(felt, norm, crowd.memory, observer, task), durations
+    felt = respond(
+        ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer
+    )
+    return memory_dprime(felt, norm, crowd.memory, observer, task), durations

@@ -17,10 +17,10 @@ from ..arrays import Array
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
 from .appraise import Appraisal, appraise
-from .candidates import Gene, drawn
-from .evaluators import Few, Nominal
+from .candidates import Candidate, sample_candidates
+from .evaluators import NominalEvaluator, PopulationEvaluator
 from .request import ChoiceError
-from .subset_identification import OBJECTIVES, Namings, Objective
+from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
 from .widest import widest, worst
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ NODES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Searched:
+class SearchResult:
     """The set that was found and the one it began with, each appraised on all people, and what was spent on it."""
 
     found: IconSet
@@ -55,7 +55,7 @@ class Searched:
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
-        return f"Searched({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
+        return f"SearchResult({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
 
 
 def search(
@@ -70,7 +70,7 @@ def search(
     tracking: str | None = None,
     norm: str = "max",
     progress: Progress | None = None,
-) -> Searched:
+) -> SearchResult:
     """Look for values of the families' parameters that make the set better: one icon a family, or `count` in all.
 
     Icons of the file that are no families stay as they are. Spans are continuous between their ends, counts and lists
@@ -80,7 +80,10 @@ def search(
     """
     fixed, free = _asked(icons, count, objective)
     run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)
-    nominal, few = Nominal(rig, objective, named, seed), Few(rig, objective, named, seed, tracking)
+    nominal, few = (
+        NominalEvaluator(rig, objective, named, seed),
+        PopulationEvaluator(rig, objective, named, seed, tracking),
+    )
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -97,7 +100,7 @@ def search(
     before, after = (appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named) for one in finalists)
     if after.value(objective) < before.value(objective):
         finalists[1], after = finalists[0], before
-    return Searched(
+    return SearchResult(
         found=_as_set(icons, finalists[1], len(fixed), seed),
         start=tuple(finalists[0]),
         before=before,
@@ -134,16 +137,16 @@ class _Run:
     """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
 
     def __init__(self, fixed: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool) -> None:
-        self.fixed = [Gene(icon) for icon in fixed]
+        self.fixed = [Candidate(icon) for icon in fixed]
         self.families, self.free, self.each = families, free, each
         self.tried = 0
 
-    def start(self, judge: Nominal | Few, rng: np.random.Generator) -> list[Gene]:
+    def start(self, judge: NominalEvaluator | PopulationEvaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *drawn(self.families, SAMPLED, rng)]
+        pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
         found = self.best(pool, judge, None)
         if found is None:
-            bad = [reason for reason in judge.against if reason is not None]
+            bad = [reason for reason in judge.objections if reason is not None]
             raise ChoiceError(
                 f"no {self.free + len(self.fixed)} icons can be played together: {len(bad)} of {len(pool)} that were "
                 f"tried cannot be played at all{', the first of which ' + bad[0] if bad else ''}"
@@ -152,14 +155,14 @@ class _Run:
 
     def improve(
         self,
-        held: list[Gene],
-        judge: Nominal | Few,
+        held: list[Candidate],
+        judge: NominalEvaluator | PopulationEvaluator,
         rounds: int,
         batch: int,
         rng: np.random.Generator,
         step: float,
         tell: Any,
-    ) -> list[Gene]:
+    ) -> list[Candidate]:
         """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
         for _ in range(rounds):
             about = held[len(self.fixed) :]
@@ -172,12 +175,14 @@ class _Run:
             tell(self.tried)
         return held
 
-    def best(self, pool: list[Gene], judge: Nominal | Few, held: list[Gene] | None) -> list[Gene] | None:
+    def best(
+        self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator, held: list[Candidate] | None
+    ) -> list[Candidate] | None:
         """The best set out of a pool, plain icons first; None where no set can be played."""
         self.tried += len(pool)
-        d = judge.distances([gene.icon for gene in pool])
+        d = judge.pairwise_dprime([gene.icon for gene in pool])
         must = len(self.fixed)
-        good = [k for k in range(len(pool)) if k < must or judge.against[k] is None]
+        good = [k for k in range(len(pool)) if k < must or judge.objections[k] is None]
         pool, d = [pool[k] for k in good], d[:, good][:, :, good]
         if len(pool) < must + self.free:
             return None
@@ -194,11 +199,13 @@ class _Run:
             chosen = climbed(judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must)
         return [pool[k] for k in sorted(chosen, key=lambda k: (k >= must, self._place(pool[k]), k))]
 
-    def _place(self, gene: Gene) -> int:
+    def _place(self, gene: Candidate) -> int:
         return -1 if gene.family is None else self.families.index(gene.family)
 
 
-def climbed(namings: Namings, chosen: list[int], objective: Objective, middle: Array, must: int) -> list[int]:
+def climbed(
+    namings: SubsetIdentification, chosen: list[int], objective: Objective, middle: Array, must: int
+) -> list[int]:
     """Single swaps that better an objective until none does; the first `must` stay, and no two alike come in."""
     score = namings.score(chosen, objective)
     while True:

@@ -13,14 +13,14 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
-from .subset_identification import Namings, Objective
+from .subset_identification import Objective, SubsetIdentification
 from .widest import widest
 
 NODES = 20_000
 FARTHEST = 12.0
 
 
-def upper_bound(pool: Namings, count: int, objective: Objective) -> float:
+def upper_bound(pool: SubsetIdentification, count: int, objective: Objective) -> float:
     """What no `count` icons of the pool exceed: proportion correct, bits, or bits a second.
 
     For bits, one of noise-free presentations; the share that finitely many of them add is allowed for.
@@ -37,7 +37,7 @@ def upper_bound(pool: Namings, count: int, objective: Objective) -> float:
     return bits / float(np.sort(pool.durations_s)[:count].mean())
 
 
-def pair_losses(pool: Namings) -> Array:
+def pair_losses(pool: SubsetIdentification) -> Array:
     """Bits lost between the two of each pair by the best that anybody could do, mean over people: (n, n)."""
     distances = np.sqrt(2.0 * np.maximum(pool.half, 0.0))
     grid, lost = _loss_table()

@@ -18,9 +18,9 @@ from ..identification.population import score
 from ..kernels.parallel import in_order
 from ..observer.observer import Norm, check_norm
 from ..ranking.ranking import with_changes
-from ..sensation.parameters import Parameter, observer_at
+from ..sensation.parameters import ObserverParameter, observer_at
 from .designs import crossed, mean_effects, screened, total_indices
-from .simulation_grid import Stage, set_stage
+from .simulation_grid import SimulationGrid, simulate_grid
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,7 +46,7 @@ class Effect:
     interval (0–1; bits). `..._ends` are the predictions at its low and its high end, all others at their values.
     """
 
-    parameter: Parameter
+    parameter: ObserverParameter
     proportion_correct: float
     information_bits: float
     proportion_correct_ends: tuple[float, float]
@@ -160,7 +160,7 @@ def sensitivity(
         raise ValueError(f"a sensitivity needs at least 2 samples, not {base}")
     if method == "sobol" and base & (base - 1):
         raise ValueError(f"sobol needs a power of 2 of samples, such as {1 << (base - 1).bit_length()}, not {base}")
-    stage = set_stage(members, rig, people, seed, chosen)
+    stage = simulate_grid(members, rig, people, seed, chosen)
     shares = (
         screened(len(stage.parameters), base, seed)
         if method == "morris"
@@ -191,7 +191,7 @@ def sensitivity(
     )
 
 
-def _asked(stage: Stage, asked: Array, norm: Norm, seed: int, progress: Progress | None) -> Array:
+def _asked(stage: SimulationGrid, asked: Array, norm: Norm, seed: int, progress: Progress | None) -> Array:
     """Proportion correct and bits, means over people, for every row of shares; those that play alike together."""
     alike: dict[tuple[float, float], list[int]] = {}
     for k, shares in enumerate(asked):
@@ -214,7 +214,7 @@ def _asked(stage: Stage, asked: Array, norm: Norm, seed: int, progress: Progress
     return found
 
 
-def _ends(stage: Stage) -> Array:
+def _ends(stage: SimulationGrid) -> Array:
     """Rows with one parameter at its low and at its high end, the others at their values."""
     count = len(stage.parameters)
     rows = np.repeat(stage.centre[None], 2 * count, axis=0)

@@ -19,7 +19,7 @@ from ..identification.confusion import SAMPLES, normalised
 from ..identification.intervals import EVERY, PEOPLE
 from ..identification.intervals import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
-from ..identification.population import Played, feel, judge
+from ..identification.population import ReceptorTemperatures, identify, respond
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
@@ -72,7 +72,7 @@ class Shown:
 
     labels: tuple[str, ...]
     crowd: People
-    played: tuple[Played, ...]
+    played: tuple[ReceptorTemperatures, ...]
     seed: int
 
     def identify(self, variable: Variable, model: Model, draws: int) -> Identified:
@@ -83,10 +83,10 @@ class Shown:
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer) -> Array:
-            felt = feel(thin, few, observer)
-            return judge(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
+            felt = respond(thin, few, observer)
+            return identify(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        whole = judge(feel(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
+        whole = identify(respond(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
         others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
         drawn = tuple(in_order(thinly, others))
         kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
@@ -104,7 +104,8 @@ def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
-        Played(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2) for cold, warm in columns
+        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2)
+        for cold, warm in columns
     )
     return Shown(tuple(icon.name for icon in members), crowd, played, seed)
 

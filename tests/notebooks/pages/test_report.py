@@ -19,7 +19,7 @@ from thermicon.notebooks.cli.ranking import Request
 from thermicon.notebooks.pages.report import LIMITS, SAFETY, report
 from thermicon.notebooks.pages.report_page import page
 from thermicon.perception import Ranking, rank
-from thermicon.perception.selection.request import Choosing
+from thermicon.perception.selection.request import Selection
 
 Cli = Callable[..., Any]
 NASTY = """cue 1
@@ -172,7 +172,7 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
 
 def test_the_choice_is_told(rig: Rig) -> None:
     icons = load_library("six-icons")
-    ranking = rank(icons, rig, people=4, parameters=0, choosing=Choosing(3))
+    ranking = rank(icons, rig, people=4, parameters=0, choosing=Selection(3))
     assert "<h3>Best 3 of 6, by the worst pair: " in report(ranking, icons, rig)
 
 
@@ -210,7 +210,7 @@ def test_a_page_that_cannot_be_written_is_said_at_once(
 def test_the_command_can_be_given_again(rig: Rig) -> None:
     assert command_text(["six-icons"], rig, Request()) == "thermicon rank six-icons"
     asked = Request(
-        seed=3, norm="rms", by="rules", tracking="ideal", choosing=Choosing(3, "bits", ("a", "b"), 20.0), edits="all"
+        seed=3, norm="rms", by="rules", tracking="ideal", choosing=Selection(3, "bits", ("a", "b"), 20.0), edits="all"
     )
     changed = Rig.load("forearm").with_set(["driver.current_limit_A=1.2"])
     assert command_text(["/home/x/my icons.cue", "b.cue"], changed, asked) == (

@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import CarryOver, Choosing, Observer, Ranking, Task, carry_over, rank
+from thermicon.perception import CarryOver, Observer, Ranking, Selection, Task, carry_over, rank
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
@@ -88,7 +88,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
-    from thermicon.perception import differences
+    from thermicon.perception import percept_distances
     from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]
@@ -99,7 +99,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     rows = alone.psi_cold.size
     stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip
-    found = differences(*stacks, 0.04, Observer.load())
+    found = percept_distances(*stacks, 0.04, Observer.load())
     place = {name: k for k, name in enumerate(left_behind.names)}
     for k, norm in enumerate(NORMS):
         told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
@@ -150,7 +150,7 @@ def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
     hot = "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
     pool = parse(str(SIX) + "\n" + hot)
     for task in (Task(gap_s=3.0), Task(context=1.0), Task(bias=1.5)):
-        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Choosing(3)).chosen
+        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Selection(3)).chosen
         assert chosen is not None and "hot" not in chosen.icons
         alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
         if not task.bias:  # favoured names hang on places in the pool
@@ -170,7 +170,7 @@ def test_what_is_not_safe_leaves_nothing_behind() -> None:
 
 def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
     plain, biased = (
-        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Choosing(3, "correct")).chosen
+        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Selection(3, "correct")).chosen
         for bias in (0.0, 3.0)
     )
     assert plain is not None and biased is not None

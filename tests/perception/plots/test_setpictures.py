@@ -9,7 +9,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.map import between, map_of, perceptual_map
-from thermicon.perception.identification.spread import MOST_PEOPLE, Spread, place_probability, spread_over_people
+from thermicon.perception.identification.spread import MOST_PEOPLE, PersonSpread, place_probability, spread_over_people
 from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
 from thermicon.perception.plots.draw_heat import clustered_order, heat, light_map
 from thermicon.perception.plots.draw_map import label_offsets, text_width
@@ -133,7 +133,7 @@ def test_equal_icons_share_their_places() -> None:
 def test_few_people_are_kept_of_many() -> None:
     crowd, icons = MOST_PEOPLE + 5, 3
     kept = spread_over_people(np.zeros((crowd, icons, icons)), np.ones((crowd, icons)))
-    assert isinstance(kept, Spread)
+    assert isinstance(kept, PersonSpread)
     assert kept.d_prime.shape == (MOST_PEOPLE, 3, 3)
     assert spread_over_people(np.zeros((9, 400, 400)), np.ones((9, 400))).d_prime.shape == (2, 400, 400)
     with pytest.raises(ValueError, match="read-only"):

@@ -14,9 +14,9 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import rank
 from thermicon.perception.ranking import chunks as under_test
-from thermicon.perception.ranking.chunk_store import ChunkError, Shelf
-from thermicon.perception.ranking.chunks import Found, Work, run
-from thermicon.perception.ranking.gather import Where
+from thermicon.perception.ranking.chunk_store import BatchStore, BatchStoreError
+from thermicon.perception.ranking.chunks import BatchResult, Job, run
+from thermicon.perception.ranking.gather import Execution
 
 RIG = Rig.load("thenar")
 ICONS = load_library("six-icons")
@@ -28,13 +28,13 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(under_test, "SAMPLES_AT_ONCE", 36_000)
 
 
-def work(people: int = 8, **changes: object) -> Work:
-    made = Work(tuple(ICONS)[:3], RIG, 18.0, people, 0, 48, None, "max")
+def work(people: int = 8, **changes: object) -> Job:
+    made = Job(tuple(ICONS)[:3], RIG, 18.0, people, 0, 48, None, "max")
     return replace(made, **changes)  # type: ignore[arg-type]
 
 
-def same(a: Found, b: Found) -> bool:
-    return all(np.array_equal(getattr(a, field.name), getattr(b, field.name)) for field in fields(Found))
+def same(a: BatchResult, b: BatchResult) -> bool:
+    return all(np.array_equal(getattr(a, field.name), getattr(b, field.name)) for field in fields(BatchResult))
 
 
 def test_chunks_cover_everyone_once_and_do_not_depend_on_how_many_there_are() -> None:
@@ -60,7 +60,7 @@ def test_the_same_bytes_whatever_the_number_of_workers(few: None, tmp_path: Path
 
 def test_a_kept_chunk_is_read_back_to_the_bit(tmp_path: Path) -> None:
     asked = work(3)
-    shelf, found = Shelf.of(asked, tmp_path), run(asked, 0)
+    shelf, found = BatchStore.of(asked, tmp_path), run(asked, 0)
     assert shelf.get(asked, 0) is None
     shelf.put(asked, 0, found)
     again = shelf.get(asked, 0)
@@ -75,7 +75,7 @@ def test_a_kept_chunk_is_read_back_to_the_bit(tmp_path: Path) -> None:
 @pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "other work", "other chunk"])
 def test_a_damaged_chunk_counts_as_missing(damage: str, tmp_path: Path) -> None:
     asked = work(3)
-    shelf = Shelf.of(asked, tmp_path)
+    shelf = BatchStore.of(asked, tmp_path)
     shelf.put(asked, 0, run(asked, 0))
     file = shelf.path(0)
     whole = file.read_bytes()
@@ -87,7 +87,7 @@ def test_a_damaged_chunk_counts_as_missing(damage: str, tmp_path: Path) -> None:
     elif damage == "empty":
         file.write_bytes(b"")
     elif damage == "other work":
-        other = Shelf(shelf.folder, "another key")
+        other = BatchStore(shelf.folder, "another key")
         other.put(asked, 0, run(asked, 0))
     else:
         file.rename(shelf.path(1))
@@ -113,13 +113,13 @@ def test_chunks_of_other_work_have_another_place() -> None:
 
 def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(ChunkError, match=r"cannot keep finished parts in .*file: Not a directory"):
-        Shelf.of(work(), tmp_path / "file")
+    with pytest.raises(BatchStoreError, match=r"cannot keep finished parts in .*file: Not a directory"):
+        BatchStore.of(work(), tmp_path / "file")
 
 
 def test_bad_numbers() -> None:
     with pytest.raises(ValueError, match=r"at least one worker is needed, not 0"):
-        Where(workers=0)
+        Execution(workers=0)
     with pytest.raises(ValueError, match=r"at least one person is needed, not 0"):
         rank(ICONS, RIG, people=0, parameters=0)
     with pytest.raises(ValueError, match=r"at least one worker is needed, not -1"):

@@ -169,8 +169,8 @@ def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
     )
     (found,) = rank(parse(head + a + b), rig, people=2, parameters=0).rules_disagree
     assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
-    assert found["text"].startswith("a and b: rules say told apart, the model d′ ")
-    assert float(found["text"].split("d′ ")[1].split()[0]) < 2.563
+    assert found["text"].startswith("a and b: rules: distinguishable; model: d′ ")
+    assert float(found["text"].split("d′ ")[1].split(",")[0]) < 2.563
     assert found["text"].endswith(" (apart from 2.563)")
 
 
@@ -246,7 +246,7 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     model = json.loads(ranking.to_json())
     assert whole["rules_disagree"] == model["set"]["rules_disagree"]
     assert [icon["rules_score"] for icon in held["icons"]] == [icon["rules_score"] for icon in model["icons"]]
-    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs told apart, worst pair ")
+    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs distinguishable, worst pair ")
 
 
 def test_the_worst_pair_by_rules_is_the_one_nearest_to_failing(rig: Rig) -> None:

@@ -8,7 +8,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import MissingError, Sensitivity, sensitivity
-from thermicon.perception.sensitivity.simulation_grid import NODES, Stage, _parabola, set_stage
+from thermicon.perception.sensitivity.simulation_grid import NODES, SimulationGrid, _parabola, simulate_grid
 
 TWO = """cue 1
 set s { control skin; baseline 32 °C }
@@ -28,8 +28,8 @@ def found(rig: Rig) -> Sensitivity:
 
 
 @pytest.fixture(scope="module")
-def stage(rig: Rig) -> Stage:
-    return set_stage(tuple(parse(TWO)), rig, 3, 0, "max")
+def stage(rig: Rig) -> SimulationGrid:
+    return simulate_grid(tuple(parse(TWO)), rig, 3, 0, "max")
 
 
 def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -> None:
@@ -101,7 +101,7 @@ def test_morris_finds_the_slopes_of_a_line(rig: Rig) -> None:
     assert made.plot().get_xlabel() == "mean effect over its interval, share of the largest"
 
 
-def test_temperatures_between_the_nodes_are_those_of_a_run(stage: Stage, rig: Rig) -> None:
+def test_temperatures_between_the_nodes_are_those_of_a_run(stage: SimulationGrid, rig: Rig) -> None:
     from thermicon.circuit import simulate_many
 
     shares = stage.centre.copy()
@@ -118,7 +118,7 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(stage: Stage, rig: Ri
         assert _parabola(node) == pytest.approx(np.eye(3)[k])
 
 
-def test_people_are_spread_and_lapse_as_asked(stage: Stage) -> None:
+def test_people_are_spread_and_lapse_as_asked(stage: SimulationGrid) -> None:
     shares = stage.centre.copy()
     assert stage.crowd_at(shares).threshold_cold == pytest.approx(stage.crowd.threshold_cold)
     shares[[p.name for p in stage.parameters].index("lapse rate")] = 1.0
