@@ -55,7 +55,6 @@ from .identification.task import Task
 from .identification.carry_over import CarryOver, carry_over
 from .ranking.rank import rank
 from .identification.map import PerceptualMap, map_of, perceptual_map
-from .sensitivity.designs import MissingError
 from .sensitivity.sensitivity import Effect, Sensitivity, sensitivity
 from .validation.validate import ValidationReport, validate
 from .identification.delivered import DeliveredChange, PerceivedChange, judge_delivered
@@ -163,7 +162,6 @@ __all__ = [
     "sensitivity",
     "Sensitivity",
     "Effect",
-    "MissingError",
     "validate",
     "ValidationReport",
     "DeliveredChange",

@@ -30,17 +30,16 @@ HOW = {
     "spread of thresholds between people": "thresholds of a dozen people on your own display",
     "onset uncertainty": "how well people tell two onsets apart in time",
 }
-"""What to do about a parameter whose name does not say it."""
+"""How to measure a parameter whose name does not say it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What ``sensitivity`` was asked for; ``samples`` None leaves their number to the method."""
+    """The options of ``sensitivity``."""
 
     people: int = 24
     seed: int = 0
-    method: str = "sobol"
-    samples: int | None = None
+    samples: int = 64
     norm: str = "max"
 
 
@@ -64,7 +63,6 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
             rig,
             people=request.people,
             seed=request.seed,
-            method=request.method,
             samples=request.samples,
             norm=request.norm,
             progress=progress,
@@ -85,7 +83,7 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
 
 
 def show_sensitivity(found: Sensitivity, title: str) -> None:
-    """Print a row a parameter, the most important first, and what to measure first."""
+    """Print one row for each parameter, the most important first, and what to measure first."""
     made = table(
         "parameter", "interval", "correct", "bits", "correct low–high", numbers=("correct", "bits", "correct low–high")
     )
@@ -96,23 +94,12 @@ def show_sensitivity(found: Sensitivity, title: str) -> None:
         made.add_row(
             parameter.name,
             f"{parameter.low:.3g}–{parameter.high:.3g}{unit}",
-            size(effect.proportion_correct, found.method),
-            size(effect.information_bits, found.method, "bits"),
+            percent(effect.proportion_correct),
+            percent(effect.information_bits),
             f"{percent(low)} – {percent(high)}",
         )
     heading = [title, ""] if title else []
     show(*heading, made, "", *sentences(found))
-
-
-def size(value: float, method: str, unit: str = "%") -> str:
-    """Write a share of variance, or by Morris a mean effect in points or bits.
-
-    >>> size(0.431, "sobol"), size(0.034, "morris"), size(0.12, "morris", "bits")
-    ('43 %', '3.4', '0.12')
-    """
-    if method == "sobol":
-        return percent(value)
-    return f"{100 * value:.1f}" if unit == "%" else f"{value:.2f}"
 
 
 def how(name: str) -> str:
@@ -126,20 +113,18 @@ def how(name: str) -> str:
 
 
 def sentences(found: Sensitivity) -> list[str]:
-    """Return what the numbers are, what to measure first, and on what it rests."""
+    """Return what to measure first, what the numbers are, and what they were computed from."""
     kind = (
-        "Shares of the variance of per cent correct and of bits, interactions included (total Sobol indices)"
-        if found.method == "sobol"
-        else "Mean effect of a parameter over its interval, in points of per cent correct and in bits (Morris)"
+        "Shares of the variance of the proportion correct and of the bits, interactions included (total Sobol indices)"
     )
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
     crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
-    lead = "Measure these first; the rest moves the prediction less:"
+    lead = "Measure these first; all others influence the prediction less:"
     return [
-        lead if found.first else "None of these moves the prediction.",
+        lead if found.first else "None of these parameters influences the prediction.",
         *(f"  - {name}{how(name)}" for name in found.first),
         "",
-        f"{kind}; beside them per cent correct at the low and at the high end of each interval alone. "
+        f"{kind}; beside them the proportion correct at the low and at the high end of each interval. "
         f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
         f"{percent(found.proportion_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
     ]

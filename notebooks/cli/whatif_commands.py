@@ -10,7 +10,7 @@ import typer
 from ..text.messages import check_changes, load_rig, usage
 from .options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
-METHODS = ("sobol", "morris")
+METHODS = ("sobol",)
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
@@ -94,14 +94,9 @@ def sensitivity_command(
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
     method: Annotated[
         str,
-        typer.Option("--method", metavar="|".join(METHODS), help="Shares of variance, or effects by SALib."),
+        typer.Option("--method", metavar="|".join(METHODS), help="Total Sobol indices: shares of the variance."),
     ] = "sobol",
-    samples: Annotated[
-        int | None,
-        typer.Option(
-            "--samples", metavar="N", help="Base samples, a power of 2, or trajectories.  [default: 64; 16 for morris]"
-        ),
-    ] = None,
+    samples: Annotated[int, typer.Option("--samples", metavar="N", help="Base samples, a power of 2.")] = 64,
     norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
     output: Annotated[
         Path | None,
@@ -111,17 +106,17 @@ def sensitivity_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Tell which uncertain parameters of model, contact and skin move the prediction most: what to measure first."""
+    """Find the uncertain parameters of model, contact and skin that influence the prediction most."""
     check_changes(changes or [])
-    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples or 2, 2, 65_536))
+    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples, 2, 65_536))
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if method not in METHODS:
-        raise usage(f"{method!r} is none of {', '.join(METHODS)}", "--method")
-    if samples is not None and method == "sobol" and samples & (samples - 1):
+        raise usage(f"{method!r} is not one of {', '.join(METHODS)}", "--method")
+    if samples & (samples - 1):
         raise usage(f"{samples} is not a power of 2, which sobol needs, such as 64", "--samples")
     from .sensitivity import Request, sensitivity_file
 
-    request = Request(people=people, seed=seed, method=method, samples=samples, norm=norm)
+    request = Request(people=people, seed=seed, samples=samples, norm=norm)
     sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)

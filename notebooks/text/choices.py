@@ -120,5 +120,6 @@ def scored(objective: str, value: float) -> str:
 
 def _searched(chosen: dict[str, Any]) -> str:
     if chosen["objective"] == "worst":
-        return f"proven by branch and bound ({chosen['looked_at']} branches)"
+        count = chosen["looked_at"]
+        return f"proven by integer programming ({'1 program' if count == 1 else f'{count} programs'})"
     return f"all {chosen['looked_at']} were looked at, with {chosen['people']} people"

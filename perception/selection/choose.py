@@ -20,10 +20,10 @@ from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People
 from .appraise import Appraisal, appraise
+from .max_min_subset import Limits, UndecidedError, max_min_subset
 from .request import ChoiceError, Selection, UsableIcons, usable_icons
 from .subset_identification import Objective, SubsetIdentification
 from .upper_bounds import upper_bound
-from .widest import Limits, OutOfBudget, widest
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -181,16 +181,16 @@ def pick(
     within = limits or Limits.none(len(middle))
     if namings is None or objective == "worst":
         try:
-            found = widest(middle, count, must, within)
-        except OutOfBudget:
+            best = max_min_subset(middle, count, must, within)
+        except UndecidedError:
             raise ChoiceError("whether any choice keeps the totals could not be decided: loosen one of them") from None
-        return (
-            None if found is None else SubsetChoice(found.chosen, found.value, found.bound, found.proven, found.nodes)
-        )
+        if best is None:
+            return None
+        return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.programs)
     n, free = len(middle), count - len(must)
     if n <= ENUMERATED or math.comb(n - len(must), free) <= MOST_SUBSETS:
-        best = namings.enumerated(count, objective, must, within.costs, within.most)
-        return None if best is None else SubsetChoice(best[0], best[1], best[1], True, best[2])
+        optimum = namings.enumerated(count, objective, must, within.costs, within.most)
+        return None if optimum is None else SubsetChoice(optimum[0], optimum[1], optimum[1], True, optimum[2])
     return _climbed(middle, namings, count, objective, must, within, seed)
 
 
@@ -261,7 +261,7 @@ def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Lim
     losses = []
     for one in d[:ONE_BY_ONE]:
         mine = float(one[np.ix_(own, own)][np.triu_indices(len(own), 1)].min())
-        best = widest(one, len(own), must, limits, most_nodes=2_000, ties=False)
+        best = max_min_subset(one, len(own), must, limits, ties=False)
         losses.append(max(0.0, (mine if best is None else best.value) - mine))
     return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))
 

@@ -19,9 +19,9 @@ from ..observer.people import draw_people
 from .appraise import Appraisal, appraise
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
+from .max_min_subset import max_min_subset, nearest_pair
 from .request import ChoiceError
 from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
-from .widest import widest, worst
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -37,7 +37,6 @@ PER_ROUND = 3
 WIDEST, REFINED, FINEST, SHRINK = 0.25, 0.05, 0.005, 0.85
 ALIKE = -1.0
 """Instead of a d′: two members of one family, of which each gives one icon."""
-NODES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,8 +189,8 @@ class _Run:
         if self.each:
             own = np.array([self._place(gene) for gene in pool])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        first = widest(middle, must + self.free, tuple(range(must)), most_nodes=NODES)
-        if first is None or worst(middle, first.chosen) <= ALIKE:
+        first = max_min_subset(middle, must + self.free, tuple(range(must)))
+        if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
             return None
         chosen = list(first.chosen)
         if judge.objective != "worst":

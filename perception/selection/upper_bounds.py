@@ -13,10 +13,9 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
+from .max_min_subset import max_min_subset
 from .subset_identification import Objective, SubsetIdentification
-from .widest import widest
 
-NODES = 20_000
 FARTHEST = 12.0
 
 
@@ -50,7 +49,7 @@ def _disjoint(badness: Array, count: int) -> float:
     """The least that the worst pairs of any `count` things add up to, taken one after the other without overlap."""
     total = 0.0
     for left in range(count, 1, -2):
-        found = widest(-badness, left, most_nodes=NODES)
+        found = max_min_subset(-badness, left)
         if found is not None:
             total += max(-found.bound, 0.0)
     return total

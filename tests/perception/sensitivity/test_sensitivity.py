@@ -1,13 +1,9 @@
-import builtins
-import sys
-from typing import Any
-
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import MissingError, Sensitivity, sensitivity
+from thermicon.perception import Sensitivity, sensitivity
 from thermicon.perception.sensitivity.simulation_grid import NODES, SimulationGrid, _parabola, simulate_grid
 
 TWO = """cue 1
@@ -42,9 +38,7 @@ def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -
     assert found.first
     assert found.first[0] == names[0]
     assert found.runs == 1 + 2 * len(names) + 8 * (len(names) + 2)
-    assert repr(found).startswith(
-        f"Sensitivity(sobol: {len(names)} parameters on thenar, {found.runs} runs of 6 people, "
-    )
+    assert repr(found).startswith(f"Sensitivity({len(names)} parameters on thenar, {found.runs} runs of 6 people, ")
     assert f"measure first {names[0]}" in repr(found)
 
 
@@ -77,7 +71,7 @@ def test_the_same_arguments_give_the_same_numbers(found: Sensitivity, rig: Rig) 
 
 def test_total_indices_are_those_of_a_known_function() -> None:
     from thermicon.perception.sensation.parameters import latin
-    from thermicon.perception.sensitivity.designs import total_indices
+    from thermicon.perception.sensitivity.sensitivity import total_indices
 
     base = 2048
     both = latin(4, base, seed=1)
@@ -88,17 +82,6 @@ def test_total_indices_are_those_of_a_known_function() -> None:
     sizes = total_indices(values, base)
     assert sizes[:, 0] == pytest.approx([0.8, 0.2], abs=0.03)  # variances 4 : 1
     assert sizes[:, 1] == pytest.approx([0.0, 0.0])
-
-
-def test_morris_finds_the_slopes_of_a_line(rig: Rig) -> None:
-    from thermicon.perception.sensitivity.designs import mean_effects, screened
-
-    shares = screened(2, 10, seed=0)
-    sizes = mean_effects(shares, np.stack([3.0 * shares[:, 0] - shares[:, 1], shares[:, 1]], -1), 0)
-    assert sizes == pytest.approx(np.array([[3.0, 0.0], [1.0, 1.0]]))
-    made = sensitivity(parse(TWO), rig, people=4, method="morris", samples=2)
-    assert "mean_effect" in "".join(made.to_frame().columns)
-    assert made.plot().get_xlabel() == "mean effect over its interval, share of the largest"
 
 
 def test_temperatures_between_the_nodes_are_those_of_a_run(stage: SimulationGrid, rig: Rig) -> None:
@@ -128,25 +111,8 @@ def test_people_are_spread_and_lapse_as_asked(stage: SimulationGrid) -> None:
     assert np.log(moved.threshold_warm) == pytest.approx(0.27 / 0.23 * np.log(stage.crowd.threshold_warm))
 
 
-def test_without_salib_the_cure_is_told(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
-    real = builtins.__import__
-
-    def missing(name: str, *arguments: Any, **extra: Any) -> Any:
-        if name.startswith("SALib"):
-            raise ImportError(name)
-        return real(name, *arguments, **extra)
-
-    for name in [n for n in sys.modules if n.startswith("SALib")]:
-        monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.setattr(builtins, "__import__", missing)
-    with pytest.raises(MissingError, match=r"needs SALib, which is not installed: pip install \"thermicon\[psycho"):
-        sensitivity(parse(TWO), rig, people=1, method="morris", samples=2)
-
-
 def test_messages(rig: Rig) -> None:
     icons = load_library("six-icons")
-    with pytest.raises(ValueError, match=r"there is no method 'luck': choose one of sobol, morris"):
-        sensitivity(icons, rig, method="luck")
     with pytest.raises(ValueError, match=r"at least 2 samples, not 1"):
         sensitivity(icons, rig, samples=1)
     with pytest.raises(ValueError, match=r"sobol needs a power of 2 of samples, such as 16, not 10"):

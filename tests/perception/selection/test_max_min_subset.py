@@ -1,5 +1,6 @@
 import math
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,13 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 
-from thermicon.perception.selection.widest import Limits, OutOfBudget, widest, worst
+from thermicon.perception.selection.max_min_subset import (
+    LIMIT_REACHED,
+    Limits,
+    UndecidedError,
+    max_min_subset,
+    nearest_pair,
+)
 
 Array = NDArray[np.float64]
 
@@ -27,11 +34,11 @@ def spread(d: Array, chosen: tuple[int, ...]) -> tuple[float, ...]:
 def test_every_choice_is_worse_or_equal(seed: int, n: int, data: st.DataObject) -> None:
     d, count = points(seed, n), data.draw(st.integers(2, n))
     must = tuple(data.draw(st.lists(st.integers(0, n - 1), max_size=count, unique=True)))
-    found = widest(d, count, must)
+    found = max_min_subset(d, count, must)
     assert found is not None
     allowed = [c for c in combinations(range(n), count) if set(must) <= set(c)]
     assert found.chosen == max(allowed, key=lambda c: spread(d, c))
-    assert found.value == found.bound == worst(d, found.chosen)
+    assert found.value == found.bound == nearest_pair(d, found.chosen)
     assert found.proven
 
 
@@ -42,19 +49,19 @@ def test_limits_are_kept_and_ties_do_no_harm(seed: int, n: int, share: float, da
     costs = np.random.default_rng(seed + 1).random((2, n)) - 0.2
     limits = Limits(costs, tuple(float(share * row.mean() * count) for row in costs))
     allowed = [c for c in combinations(range(n), count) if limits.kept(c)]
-    found = widest(d, count, (), limits)
+    found = max_min_subset(d, count, (), limits)
     if not allowed:
         assert found is None
         return
     assert found is not None
     assert found.chosen in allowed
-    assert found.value == max(worst(d, c) for c in allowed)
+    assert found.value == max(nearest_pair(d, c) for c in allowed)
 
 
 def test_an_integer_program_finds_the_same_value() -> None:
     # An independent proof: of every pair nearer than t at most one; the largest t with six of them.
     d = points(3, 30, 3)
-    found = widest(d, 6)
+    found = max_min_subset(d, 6)
     assert found is not None
 
     def six(threshold: float) -> bool:
@@ -72,26 +79,32 @@ def test_an_integer_program_finds_the_same_value() -> None:
     assert not six(math.nextafter(found.value, math.inf))
 
 
-def test_without_nodes_the_bound_is_honest() -> None:
-    d = points(5, 60, 6)
-    sure, rash = widest(d, 12), widest(d, 12, most_nodes=3)
-    assert sure is not None
-    assert rash is not None
-    assert not rash.proven
-    assert rash.value <= sure.value <= rash.bound
-    assert widest(d, 12, most_nodes=3) == rash
+def undecided(*_: object, **__: object) -> SimpleNamespace:
+    return SimpleNamespace(x=None, status=LIMIT_REACHED)
 
 
-def test_an_open_question_is_said_to_be_open() -> None:
-    # No four of 0 and 0.3 add up to between 1.0 and 1.05, which neither limit alone can tell.
+def test_a_program_that_reaches_its_limit_leaves_a_bound_above(monkeypatch: pytest.MonkeyPatch) -> None:
+    d = points(5, 30, 3)
+    proven = max_min_subset(d, 6)
+    monkeypatch.setattr("scipy.optimize.milp", undecided)
+    limited = max_min_subset(d, 6)
+    assert proven is not None
+    assert limited is not None
+    assert not limited.proven
+    assert limited.value <= proven.value <= limited.bound
+
+
+def test_an_undecided_program_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    # No four of 0 and 0.3 add up to between 1.0 and 1.05.
     costs = np.array([0.0, 0.3, 0.0, 0.3, 0.3, 0.0, 0.3, 0.0])
     limits = Limits(np.stack([costs, -costs]), (1.05, -1.0))
-    assert widest(points(1, 8), 4, (), limits) is None
-    with pytest.raises(OutOfBudget):
-        widest(points(1, 8), 4, (), limits, most_nodes=1)
+    assert max_min_subset(points(1, 8), 4, (), limits) is None
+    monkeypatch.setattr("scipy.optimize.milp", undecided)
+    with pytest.raises(UndecidedError):
+        max_min_subset(points(1, 8), 4, (), limits)
 
 
 @pytest.mark.parametrize(("count", "must"), [(1, ()), (4, ()), (2, (0, 1, 2))])
 def test_what_cannot_be_chosen(count: int, must: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r"cannot be chosen|must be among"):
-        widest(points(0, 3), count, must)
+        max_min_subset(points(0, 3), count, must)
