@@ -27,13 +27,12 @@ from ..identification.task import USUAL, Task
 from ..observer.observer import DATA, Norm, Observer, check_norm
 from ..observer.people import People, draw_people
 from ..selection.choose import Choice, choose
+from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, objection
 from ..sensation.coverage import outside_data
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept, perceive
-from .chunks import RATE_HZ, Job
-from .edits import with_edits
-from .gather import Execution, PooledResult, collect_batches
+from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
 from .ranking import IconScore, PairScore, Ranking
 
 if TYPE_CHECKING:
@@ -100,7 +99,7 @@ def rank(
     if parameters < 0 or parameters == 1:
         raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
     draws = parameters if by == "model" else 0
-    where = Execution(workers, cluster, keep)
+    execution = Execution(workers, cluster, keep)
     observer = Observer.load()
     crowd = draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
@@ -108,12 +107,12 @@ def rank(
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking)
-    work = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
-    report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
+    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
+    report = _steps(progress, 2 + job.batches + draws + (choosing is not None))
     percepts = [perceive(trace, observer) for trace in traces]
     report()
 
-    all_ = collect_batches(work, where, report)
+    all_ = collect_batches(job, execution, report)
     made = _assemble(members, traces, percepts, all_, chosen, observer)
     counted = _playable(made)
     worst = _worst(counted) if by == "model" else worst_by_rules(counted)

@@ -21,8 +21,8 @@ from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People, draw_people
 from .appraise import population_dprime
+from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
 from .nominal import Sensed, dprimes, end_of, sense
-from .numbers import Number, line_of, numbers_of, repeated, with_number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

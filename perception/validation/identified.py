@@ -24,7 +24,7 @@ from ..kernels.parallel import in_order
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
-from ..ranking.chunks import EXPERIMENTS, RATE_HZ
+from ..ranking.batches import EXPERIMENTS, RATE_HZ
 from ..ranking.rank import TAIL_S
 from .plausible import plausible_observers
 from .predicted import Predicted

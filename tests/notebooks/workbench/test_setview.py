@@ -14,7 +14,7 @@ from thermicon.notebooks.workbench.background import Newest, Superseded, Turn
 from thermicon.notebooks.workbench.design_model import Designing
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
-from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
 
 TWO = """cue 1
 

@@ -8,7 +8,7 @@ from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import Edit, NoEdit, cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
 
 PEOPLE = 40
 

@@ -1,4 +1,4 @@
-"""Which pairs of a ranking get the cheapest edit that parts them, and the pairs with it."""
+"""The pairs of a ranking with the cheapest edit that separates each of those it is wanted for."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People
-from ..selection.edit import cheapest_edit
+from .edit import cheapest_edit
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
-    from .ranking import PairScore
+    from ..ranking.ranking import PairScore
 
 
 def with_edits(
@@ -32,12 +32,12 @@ def with_edits(
     middle: Array,
     task: Task = USUAL,
 ) -> tuple[PairScore, ...]:
-    """The pairs, with an edit for the `worst`, for `all` that are not told apart, or for `none`.
+    """The pairs, with an edit for the `worst`, for `all` that are not distinguishable, or for `none`.
 
     `middle` is the median d′ (icons, icons) of all pairs.
     """
 
-    def asked(pair: PairScore) -> bool:
+    def wants_edit(pair: PairScore) -> bool:
         if which == "all":
             return pair.d_prime < DISTINGUISHABLE_DPRIME or (pair.a, pair.b) == worst
         return which == "worst" and (pair.a, pair.b) == worst
@@ -49,7 +49,7 @@ def with_edits(
                 icons, rig, pair.a, pair.b, people=crowd, tracking=tracking, norm=norm, before=middle, task=task
             ),
         )
-        if asked(pair)
+        if wants_edit(pair)
         else pair
         for pair in pairs
     )

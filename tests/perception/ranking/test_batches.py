@@ -9,14 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import rank
-from thermicon.perception.ranking import chunks as under_test
-from thermicon.perception.ranking.chunk_store import BatchStore, BatchStoreError
-from thermicon.perception.ranking.chunks import BatchResult, Job, run
-from thermicon.perception.ranking.gather import Execution
+from thermicon.perception.ranking import batches as under_test
+from thermicon.perception.ranking.batch_store import BatchStore, BatchStoreError
+from thermicon.perception.ranking.batches import BatchResult, Execution, Job, run
 
 RIG = Rig.load("thenar")
 ICONS = load_library("six-icons")
@@ -33,14 +33,18 @@ def work(people: int = 8, **changes: object) -> Job:
     return replace(made, **changes)  # type: ignore[arg-type]
 
 
+def arrays(result: BatchResult) -> dict[str, NDArray[np.float64]]:
+    return {field.name: getattr(result, field.name) for field in fields(result)}
+
+
 def same(a: BatchResult, b: BatchResult) -> bool:
     return all(np.array_equal(getattr(a, field.name), getattr(b, field.name)) for field in fields(BatchResult))
 
 
-def test_chunks_cover_everyone_once_and_do_not_depend_on_how_many_there_are() -> None:
+def test_batchs_cover_everyone_once_and_do_not_depend_on_how_many_there_are() -> None:
     for people in (1, 3, 500):
         asked = work(people)
-        spans = [asked.span(number) for number in range(asked.chunks)]
+        spans = [asked.span(number) for number in range(asked.batches)]
         assert spans[0][0] == 0
         assert spans[-1][1] == people
         assert all(a[1] == b[0] for a, b in itertools.pairwise(spans))
@@ -54,30 +58,29 @@ def test_the_same_bytes_whatever_the_number_of_workers(few: None, tmp_path: Path
     one = ranked(1)
     assert ranked(2) == one
     assert ranked(3, tmp_path) == one
-    assert len(list(tmp_path.glob("*/*.parquet"))) > 2
+    assert len(list(tmp_path.glob("*/*.npz"))) > 2
     assert ranked(None, tmp_path) == one
 
 
-def test_a_kept_chunk_is_read_back_to_the_bit(tmp_path: Path) -> None:
+def test_a_kept_batch_is_read_back_to_the_bit(tmp_path: Path) -> None:
     asked = work(3)
-    shelf, found = BatchStore.of(asked, tmp_path), run(asked, 0)
-    assert shelf.get(asked, 0) is None
-    shelf.put(asked, 0, found)
-    again = shelf.get(asked, 0)
+    store, found = BatchStore.of(asked.key, tmp_path), run(asked, 0)
+    assert store.get(0) is None
+    store.put(0, arrays(found))
+    again = store.get(0)
     assert again is not None
-    assert same(found, again)
-    assert shelf.finished(asked) == [0]
-    assert not list(shelf.folder.glob(".*.part"))
-    shelf.clear()
-    assert not shelf.folder.exists()
+    assert same(found, BatchResult(**again))
+    assert not list(store.folder.glob(".*.part"))
+    store.clear()
+    assert not store.folder.exists()
 
 
-@pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "other work", "other chunk"])
-def test_a_damaged_chunk_counts_as_missing(damage: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "other work", "other batch"])
+def test_a_damaged_batch_counts_as_missing(damage: str, tmp_path: Path) -> None:
     asked = work(3)
-    shelf = BatchStore.of(asked, tmp_path)
-    shelf.put(asked, 0, run(asked, 0))
-    file = shelf.path(0)
+    store = BatchStore.of(asked.key, tmp_path)
+    store.put(0, arrays(run(asked, 0)))
+    file = store.path(0)
     whole = file.read_bytes()
     if damage == "cut":
         file.write_bytes(whole[: len(whole) // 2])
@@ -87,16 +90,16 @@ def test_a_damaged_chunk_counts_as_missing(damage: str, tmp_path: Path) -> None:
     elif damage == "empty":
         file.write_bytes(b"")
     elif damage == "other work":
-        other = BatchStore(shelf.folder, "another key")
-        other.put(asked, 0, run(asked, 0))
+        other = BatchStore(store.folder, "another key")
+        other.put(0, arrays(run(asked, 0)))
     else:
-        file.rename(shelf.path(1))
-        assert shelf.get(asked, 1) is None
+        file.rename(store.path(1))
+        assert store.get(1) is None
         return
-    assert shelf.get(asked, 0) is None
+    assert store.get(0) is None
 
 
-def test_chunks_of_other_work_have_another_place() -> None:
+def test_batchs_of_other_work_have_another_place() -> None:
     assert work().key == work().key
     others = [
         work(9),
@@ -114,7 +117,7 @@ def test_chunks_of_other_work_have_another_place() -> None:
 def test_a_folder_that_cannot_be_made_is_said(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(BatchStoreError, match=r"cannot keep finished parts in .*file: Not a directory"):
-        BatchStore.of(work(), tmp_path / "file")
+        BatchStore.of(work().key, tmp_path / "file")
 
 
 def test_bad_numbers() -> None:
@@ -142,9 +145,9 @@ import sys
 from pathlib import Path
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception.ranking import chunks
+from thermicon.perception.ranking import batches
 from thermicon.perception import rank
-chunks.SAMPLES_AT_ONCE = 36_000
+batches.SAMPLES_AT_ONCE = 36_000
 made = rank(load_library("six-icons"), Rig.load("thenar"), people=60, parameters=0, keep=Path(sys.argv[1]), workers=1)
 Path(sys.argv[2]).write_text(made.to_json())
 """
@@ -155,15 +158,15 @@ def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(few: None, tmp_path: 
     command = [sys.executable, "-c", KILLED, str(kept), str(out)]
     first = subprocess.Popen(command)
     until = time.monotonic() + 100.0
-    while len(list(kept.glob("*/*.parquet"))) < 3 and time.monotonic() < until:
+    while len(list(kept.glob("*/*.npz"))) < 3 and time.monotonic() < until:
         time.sleep(0.01)
     os.kill(first.pid, signal.SIGKILL)
     assert first.wait() == -signal.SIGKILL
     assert not out.exists()
-    before = {file: file.stat().st_mtime_ns for file in kept.glob("*/*.parquet")}
+    before = {file: file.stat().st_mtime_ns for file in kept.glob("*/*.npz")}
     assert 3 <= len(before) < 20
     subprocess.run(command, check=True, timeout=200)
-    after = {file: file.stat().st_mtime_ns for file in kept.glob("*/*.parquet")}
+    after = {file: file.stat().st_mtime_ns for file in kept.glob("*/*.npz")}
     assert len(after) == 20
     assert all(after[file] == stamp for file, stamp in before.items())
     assert rank(ICONS, RIG, people=60, parameters=0).to_json() == out.read_text()
