@@ -6,10 +6,10 @@ from fractions import Fraction
 from typing import Any, cast
 
 from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, problems
+from ..model.context import Context, Metadata
 from ..model.errors import MOST_ERRORS
 from ..model.expand import trusted
 from ..model.family import MOST_MEMBERS, Family
-from ..model.frame import Frame, Metadata
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.slots import path_of, statement_at
@@ -80,10 +80,10 @@ class _Assembler:
         if findings or more:
             return Analysis(None, tuple(findings), more)
         icons = tuple(icon for icon in made if icon is not None)
-        return Analysis(IconSet(self.name, self.title, self.frame(), self.metadata, icons), (), 0)
+        return Analysis(IconSet(self.name, self.title, self.context(), self.metadata, icons), (), 0)
 
-    def frame(self) -> Frame:
-        return Frame(self.control or "skin", self.baseline, self.site)
+    def context(self) -> Context:
+        return Context(self.control or "skin", self.baseline, self.site)
 
     def version(self, parts: list[Any], kinds: list[str]) -> None:
         help = "the first line of every file is: cue 1"
@@ -241,7 +241,7 @@ class _Assembler:
             self.add(problem, draft)
         if len(self.builder.findings) > before or self.unsound(draft):
             return None
-        values = {"name": draft.name, "statements": draft.body, "frame": self.frame(), "metadata": draft.metadata}
+        values = {"name": draft.name, "statements": draft.body, "context": self.context(), "metadata": draft.metadata}
         return trusted(Icon, values)
 
     def family(self, draft: IconDraft, before: int) -> Family | None:
@@ -254,7 +254,7 @@ class _Assembler:
             "parameters": tuple(over.named.values()),
             "template": draft.body,
             "slots": draft.slots,
-            "frame": self.frame(),
+            "context": self.context(),
             "metadata": draft.metadata,
         }
         family = Family.unproven(values)

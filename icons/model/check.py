@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from .motion import advance, piece_count, reach, whole_periods
 from .shapes import Pulse, Step, Wave
-from .statements import Broken, Change, Drive, Leaf, Play, Repeat, Rest, Return, Statement, Total
+from .statements import Broken, Current, Leaf, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from .units import decimal_text, exact
 from .value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S, Control
 
@@ -146,12 +146,12 @@ class _Walker:
     def fits(self, part: Leaf) -> bool:
         """Tell whether a statement moves what the set controls; blame it when not."""
         current = self.control == "current"
-        if current and isinstance(part, Change):
+        if current and isinstance(part, Ramp):
             help = 'prescribe the current, for example: "to 0.5 A at 1 A/s"'
             what = f'"{part.direction}" moves a temperature; this set controls the current'
             self.blame(part, "E208", "word", what, help)
             return False
-        if not current and isinstance(part, Drive):
+        if not current and isinstance(part, Current):
             help = 'say "warm" or "cool", or put "control current" into the set'
             self.blame(part, "E209", "word", f'"to" alone moves a current; this set controls the {self.control}', help)
             return False
@@ -186,7 +186,7 @@ class _Walker:
     def side(self, part: Leaf, level: Fraction, rest: Fraction) -> None:
         unit = "A" if self.control == "current" else "°C"
         now = self.say(level)
-        if isinstance(part, Change | Step) and part.to_C is not None:
+        if isinstance(part, Ramp | Step) and part.to_C is not None:
             target = exact(part.to_C, "absolute")
             if target == level:
                 self.blame(part, "E201", "target", f"the level is {now} already", 'to stay there, write "hold for 2 s"')
@@ -196,7 +196,7 @@ class _Walker:
                 what = f"{part.to_C:.6g} °C is {side} the {now} reached so far"
                 help = f'"{part.direction}" leads the other way; for a change of level, write "by"'
                 self.blame(part, "E201", "target", what, help, ("direction", other))
-        elif isinstance(part, Drive | Step) and absolute([part]) and advance_blind(part) == level:
+        elif isinstance(part, Current | Step) and absolute([part]) and advance_blind(part) == level:
             self.blame(part, "E201", "target", f"the current is {now} already", 'to stay there, write "hold for 2 s"')
         elif isinstance(part, Rest) and level != rest:
             what = f"the level is {now} here, baseline is {float(rest):.6g} {unit}"
@@ -229,8 +229,8 @@ def advance_blind(part: Leaf) -> Fraction:
 def absolute(body: Sequence[Statement | Broken]) -> bool:
     """Tell whether a body holds a statement that leads to a level of its own, wherever it begins."""
     return any(
-        isinstance(part, Return | Drive | Play)
-        or (isinstance(part, Change | Step) and part.to_C is not None)
+        isinstance(part, Return | Current | Play)
+        or (isinstance(part, Ramp | Step) and part.to_C is not None)
         or (isinstance(part, Step) and part.to_A is not None)
         or (isinstance(part, Repeat) and absolute(part.body))
         for part in body

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from .frame import Metadata
+from .context import Metadata
 from .parameter import Parameter
 from .statements import Repeat, Statement
 

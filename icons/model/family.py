@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from math import prod
 from typing import TYPE_CHECKING, Any
 
+from .context import Context, Metadata, name_fault
 from .errors import CueErrors
 from .expand import HOLE, Expander, trusted
-from .frame import Frame, Metadata, name_fault
 from .icon import Icon, problem_error
 from .parameter import Parameter
 from .slots import Slot, in_order, slot_fault
@@ -55,7 +55,7 @@ class Family:
     parameters: tuple[Parameter, ...]
     template: tuple[Statement, ...]
     slots: tuple[Slot, ...]
-    frame: Frame = field(default_factory=Frame)
+    context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
     _expander: Expander = field(init=False, compare=False, repr=False)
 
@@ -73,7 +73,7 @@ class Family:
 
         found = sweep(self)
         if found.problem is not None:
-            raise CueErrors((problem_error(found.problem, self.name, self.frame),))
+            raise CueErrors((problem_error(found.problem, self.name, self.context),))
 
     @classmethod
     def unproven(cls, values: dict[str, Any]) -> "Family":
@@ -93,7 +93,7 @@ class Family:
             if not slots:
                 return f"parameter {parameter.name} is never used"
             for slot in slots:
-                if wrong := slot_fault(self.template, slot, parameter, self.frame.control):
+                if wrong := slot_fault(self.template, slot, parameter, self.context.control):
                     return f"parameter {parameter.name}: {wrong}"
         if unknown := next((slot.parameter for slot in self.slots if slot.parameter not in names), None):
             return f"no parameter is called {unknown}, which a slot names"
@@ -113,7 +113,7 @@ class Family:
         return self._at(self._expander.places(index % count))
 
     def __iter__(self) -> Iterator[Icon]:
-        frame, made, name = self.frame, self._expander, self.name
+        context, made, name = self.context, self._expander, self.name
         for index in range(len(self)):
             places = made.places(index)
             yield trusted(
@@ -121,7 +121,7 @@ class Family:
                 {
                     "name": name + made.suffix(places),
                     "statements": made.statements(places),
-                    "frame": frame,
+                    "context": context,
                     "metadata": made.metadata(places),
                 },
             )
@@ -161,12 +161,12 @@ class Family:
         return tuple(self[index] for index in drawn)
 
     def summary(self, start: float | None = None) -> Summary:
-        """Return durations, extremes and steepest rate over all members; ``start`` and errors as in ``Icon.lower``."""
+        """Return durations, extremes and steepest rate over all members; ``start``, errors: see ``Icon.corners``."""
         from .sweep import sweep
 
         found = sweep(self, start)
         if found.problem is not None:
-            raise CueErrors((problem_error(found.problem, found.member or self.name, self.frame),))
+            raise CueErrors((problem_error(found.problem, found.member or self.name, self.context),))
         return found.summary
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
@@ -182,7 +182,7 @@ class Family:
 
     def __repr__(self) -> str:
         over = ", ".join(map(str, self.parameters))
-        return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.frame.control}>"
+        return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.context.control}>"
 
     def _repr_html_(self) -> str:
         from ..pictures.picture import picture
@@ -192,7 +192,7 @@ class Family:
     def _at(self, places: list[int]) -> Icon:
         made = self._expander
         values = {"name": self.name + made.suffix(places), "statements": made.statements(places)}
-        return trusted(Icon, {**values, "frame": self.frame, "metadata": made.metadata(places)})
+        return trusted(Icon, {**values, "context": self.context, "metadata": made.metadata(places)})
 
     def __reduce__(self) -> tuple[object, ...]:
-        return Family, (self.name, self.parameters, self.template, self.slots, self.frame, self.metadata)
+        return Family, (self.name, self.parameters, self.template, self.slots, self.context, self.metadata)

@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from itertools import accumulate, pairwise
 
 from .shapes import Pulse, Shape, Step, Wave
-from .statements import Change, Drive, Leaf, Return, Total
+from .statements import Current, Leaf, Ramp, Return, Total
 from .units import exact
 
 TOLERANCE = 1e-3
@@ -20,15 +20,15 @@ _FINE = 10**9
 def advance(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fraction]:
     """Return the level (°C or A) behind a statement and the time (s) it takes, both exact.
 
-    >>> advance(Change("cool", by_K=6, rate_K_per_s=3), Fraction(32), Fraction(32))
+    >>> advance(Ramp("cool", by_K=6, rate_K_per_s=3), Fraction(32), Fraction(32))
     (Fraction(26, 1), Fraction(2, 1))
     """
     rate: Fraction | None = None
     match leaf:
-        case Change():
+        case Ramp():
             target = _target(leaf, level)
             rate = None if leaf.rate_K_per_s is None else exact(leaf.rate_K_per_s, "rate")
-        case Drive():
+        case Current():
             target = exact(leaf.to_A, "current")
             rate = None if leaf.rate_A_per_s is None else exact(leaf.rate_A_per_s, "current_rate")
         case Return():
@@ -202,11 +202,11 @@ def _ratio(wave: Wave, tolerance: float) -> float:
     return tolerance / float(amplitude(wave))
 
 
-def _target(leaf: Change | Step | Pulse, level: Fraction) -> Fraction:
+def _target(leaf: Ramp | Step | Pulse, level: Fraction) -> Fraction:
     sign = -1 if leaf.direction == "cool" else 1
     if leaf.by_K is not None:
         return level + sign * exact(leaf.by_K, "change")
-    if not isinstance(leaf, Change) and leaf.by_A is not None:
+    if not isinstance(leaf, Ramp) and leaf.by_A is not None:
         return level + exact(leaf.by_A, "current")
     if not isinstance(leaf, Pulse) and leaf.to_C is not None:
         return exact(leaf.to_C, "absolute")

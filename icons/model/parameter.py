@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from .frame import name_fault
+from .context import name_fault
 from .units import UNITS, Kind, decimal_text, exact_number
 
 if TYPE_CHECKING:

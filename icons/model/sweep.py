@@ -13,7 +13,7 @@ from .icon import rest_level
 from .motion import TOLERANCE, one_period
 from .shapes import Pulse, Shape, Step, Wave
 from .slots import Path
-from .statements import Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from .statements import Current, Hold, Play, Repeat, Rest, Return, Statement, Total
 from .value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S
 
 Array = NDArray[np.float64]
@@ -44,9 +44,9 @@ class Sweep:
 def sweep(family: Family, start: float | None = None) -> Sweep:
     """Check every member of a family; a failing one is confirmed by the exact check that icons go through.
 
-    ``start`` (°C, or A under control current) is the baseline when the frame gives none.
+    ``start`` (°C, or A under control current) is the baseline when the context gives none.
     """
-    rest = rest_level(family.frame, start)
+    rest = rest_level(family.context, start)
     found: list[int] = []
     failing = 0
     summaries = []
@@ -66,7 +66,7 @@ def sweep(family: Family, start: float | None = None) -> Sweep:
     )
     for index in found:
         icon = family[index]
-        wrong = problems(icon.statements, family.frame.control, rest)
+        wrong = problems(icon.statements, family.context.control, rest)
         if wrong:
             return Sweep(summary, failing, icon.name, icon.statements, wrong[0])
     return Sweep(summary, 0, None, (), None)
@@ -97,7 +97,7 @@ class _Run:
     def __init__(self, family: Family, indices: NDArray[np.int64], rest: float) -> None:
         self.family = family
         self.size = len(indices)
-        self.current = family.frame.control == "current"
+        self.current = family.context.control == "current"
         self.rest = rest
         self.bad = np.zeros(self.size, dtype=bool)
         self.low = np.full(self.size, self.rest)
@@ -177,7 +177,7 @@ class _Run:
     def leaf(self, part: Any, path: Path, level: Array, where: NDArray[np.bool_]) -> tuple[Array, Array]:
         still = np.zeros(self.size)
         self.corners = self.corners + 1
-        if not isinstance(part, Play) and not fits(part, self.family.frame.control):
+        if not isinstance(part, Play) and not fits(part, self.family.context.control):
             self.flag(True, where)
         match part:
             case Hold() | Rest():
@@ -188,7 +188,7 @@ class _Run:
                 return level, still
             case Play():
                 self.flag(np.abs(level - self.rest) > _SAME, where)
-                played = part.icon.lower(self.rest)
+                played = part.icon.corners(self.rest)
                 self.corners = self.corners + corner_count(part.icon.statements)
                 self.see(np.full(self.size, played.lowest), where)
                 self.see(np.full(self.size, played.highest), where)
@@ -223,7 +223,7 @@ class _Run:
                 return np.asarray(level + sign * self.value(part, path, name))
         target = self.value(part, path, "to_C" if getattr(part, "to_C", None) is not None else "to_A")
         self.flag(np.abs(target - level) <= _SAME, where)
-        if not isinstance(part, Drive) and part.direction != "change":
+        if not isinstance(part, Current) and part.direction != "change":
             self.flag((target > level) != (part.direction == "warm"), where)
         return target
 

@@ -76,7 +76,7 @@ def member(family: Family, shares: Sequence[float]) -> Icon:
     )
     held = {field.name: getattr(family, field.name) for field in fields(family) if field.init}
     found = Family.unproven({**held, "parameters": own})[0]
-    return Icon(found.name, found.statements, found.frame, found.metadata)
+    return Icon(found.name, found.statements, found.context, found.metadata)
 
 
 def value_at(parameter: Parameter, share: float) -> float:
