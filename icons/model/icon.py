@@ -60,7 +60,7 @@ class Icon:
         ``tolerance`` is out of range.
 
         >>> from thermicon.icons import read_cue
-        >>> read_cue("six-icons")["cooling-step"].lower().value
+        >>> read_cue("six-icons")["cooling-step"].corners().value
         (32.0, 26.0, 26.0, 32.0)
         """
         if not 0 < tolerance < 10:

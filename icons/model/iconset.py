@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import TYPE_CHECKING, overload
 
 from .context import Context, Metadata, name_fault, text_fault
-from .family import Family, Summary
+from .family import Family
+from .family_check import Summary, joined
 from .format import set_text
 from .icon import Icon, content_hash, played_icons
 from .units import quantity
@@ -125,13 +127,7 @@ class IconSet:
             else:
                 one = entry.corners(start)
                 found.append(Summary(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
-        return Summary(
-            min(part.shortest_s for part in found),
-            max(part.longest_s for part in found),
-            min(part.lowest for part in found),
-            max(part.highest for part in found),
-            max(part.steepest_per_s for part in found),
-        )
+        return reduce(joined, found)
 
     def __len__(self) -> int:
         return len(self.icons)

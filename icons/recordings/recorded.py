@@ -39,7 +39,7 @@ def from_csv(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "dip.csv"
     ...     _ = path.write_text("time_s,skin_C\\n0,32\\n2,26\\n4,26.02\\n6,25.98\\n8,32\\n")
-    ...     from_csv(path).lower().value
+    ...     from_csv(path).corners().value
     (32.0, 26.0, 26.0, 32.0)
     """
     if control not in ("display", "skin"):
