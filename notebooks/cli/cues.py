@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 MOST_ICONS = 2000
-"""More icons at once than anyone reads about; families may have a million."""
+"""More icons at once than anyone reads about; families may have 100,000."""
 
 
 class JoinError(Exception):

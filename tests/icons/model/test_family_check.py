@@ -1,4 +1,4 @@
-"""The check of all members side by side says what the exact check of each member says, both ways."""
+"""A family is sound exactly when each member, written as an icon, is; its summary covers them all."""
 
 from itertools import product
 from typing import Any
