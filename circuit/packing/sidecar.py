@@ -62,7 +62,7 @@ def sidecar(
         "drive_sha256": digest(drive),
         "set_files": {name: digest(content) for name, content in set_files.items()},
         "columns": [asdict(column) for column in form.columns(realised)],
-        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
         "rig_sha256": digest(rig.document.encode("utf-8")),
         "rig": {
             "name": rig.name,
@@ -74,7 +74,7 @@ def sidecar(
         "device": device,
         "update_rate_Hz": {"requested": realised.requested_Hz, "realised": realised.rate_Hz},
         "played": _played(realised),
-        "events": [_event(event, icon.frame.control) for event in events_in(realised)],
+        "events": [_event(event, icon.context.control) for event in events_in(realised)],
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(realised),

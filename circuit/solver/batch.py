@@ -51,7 +51,7 @@ class Batch:
 
 def usual_tracking(icon: Icon) -> str:
     """Tracking that suits what a cue prescribes: `display` for display control, else `replay`."""
-    return "display" if icon.frame.control == "display" else "replay"
+    return "display" if icon.context.control == "display" else "replay"
 
 
 def simulate_many(
@@ -89,7 +89,7 @@ def simulate_many(
     stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
-        groups.setdefault((icon.frame.control, tracking or usual_tracking(icon)), []).append(place)
+        groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
     for (control, way), places in groups.items():
         cues = [icons[place] for place in places]
         if control == "current":

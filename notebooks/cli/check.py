@@ -60,7 +60,7 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
 
 def summary(icons: IconSet, start_C: float) -> str:
     """Say how many icons there are, how long, from what to what and how steep, for example ``2 icons, 8–10 s, …``."""
-    current = icons.frame.control == "current"
+    current = icons.context.control == "current"
     unit, digits = ("A", 2) if current else ("°C", 1)
     found = icons.summary(0.0 if current else start_C)
     parts = [

@@ -66,9 +66,9 @@ def read(file: str, recording: Recording) -> IconSet:
         icon = from_csv(file, **given)
     except ValueError as problem:
         fail(str(problem))
-    corners = icon.lower()
+    corners = icon.corners()
     note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
-    return IconSet("", "", icon.frame, Metadata(), (icon,))
+    return IconSet("", "", icon.context, Metadata(), (icon,))
 
 
 def only_icon(icons: IconSet, name: str) -> IconSet:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 MOST_ICONS = 2000
-"""More icons at once than anyone reads about; families may have a million."""
+"""More icons at once than anyone reads about; families may have 100,000."""
 
 
 class JoinError(Exception):
@@ -88,7 +88,7 @@ def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> None:
     levels: dict[float, list[str]] = {}
     for file, each in zip(files, sets, strict=True):
         warn_of_site(file, each, rig)
-        own = each.frame.baseline_C
+        own = each.context.baseline_C
         levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
     if len(levels) > 1:
         told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
@@ -97,7 +97,7 @@ def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> None:
 
 def warn_of_site(file: str, icons: IconSet, rig: Rig) -> None:
     """Tell on stderr when a set is for another site than the rig's."""
-    site = icons.frame.site
+    site = icons.context.site
     if site is not None and site != rig.site:
         note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
 

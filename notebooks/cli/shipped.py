@@ -37,7 +37,7 @@ def show_library() -> None:
         show(
             *([""] if position else []),
             f"{name}: {icons.title}" if icons.title else name,
-            f"  prescribes {PRESCRIBES[icons.frame.control]}; source: {source or 'not stated'}",
+            f"  prescribes {PRESCRIBES[icons.context.control]}; source: {source or 'not stated'}",
             made,
         )
 

@@ -58,7 +58,7 @@ def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
         made = _repeated(text, icon, first.count)
         if made is not None:
             yield made
-    edits = list(_numbers(text, icon.statements, edited.statements, icon.frame.control))
+    edits = list(_numbers(text, icon.statements, edited.statements, icon.context.control))
     if len(edits) == 1:  # more than one: the text is not the one that the edit was found for
         yield replaced(text, dict(edits))
 

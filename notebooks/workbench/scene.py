@@ -152,7 +152,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
     percept = perceive(trace, observer)
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    start = hold(rig, "display", base)[0] if icon.context.control == "current" else base
     return Drawing(
         icon=icon,
         rig=rig,
@@ -214,7 +214,7 @@ def _told(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
     if trace.reason is not None:
         verb = "not reached: it" if trace.outcome is not None else "not played as written:"
         said.append(f"{drawing.icon.name} is {verb} {trace.reason}")
-    site = reading.icons.frame.site if reading.icons is not None else None
+    site = reading.icons.context.site if reading.icons is not None else None
     if site is not None and site != rig.site:
         said.append(f"the set is for the site {site}, the rig {rig.name} is for {rig.site}")
     if drawing.percept.onset_s is None:

@@ -115,8 +115,8 @@ class Job:
         ]
         parts += [str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
         for icon in self.icons:
-            corners = icon.lower(None if icon.frame.control != "current" else 0.0)
-            parts += [icon.name, repr(icon.frame), repr(corners.time_s), repr(corners.value), str(icon)]
+            corners = icon.corners(None if icon.context.control != "current" else 0.0)
+            parts += [icon.name, repr(icon.context), repr(corners.time_s), repr(corners.value), str(icon)]
         return hashlib.sha256("\0".join(parts).encode("utf-8")).hexdigest()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,15 +70,8 @@ def member(family: Family, shares: Sequence[float]) -> Icon:
     >>> member(read_cue("search-space").families[0], [0.5, 0.33, 0.0, 0.9]).name
     'dip_depth=3.5_rate=1.66_pause=0.5_times=2'
     """
-    from thermicon.icons import Family, Icon, Parameter
-
-    own = tuple(
-        Parameter(parameter.name, parameter.unit, listed=(value_at(parameter, share),))
-        for parameter, share in zip(family.parameters, shares, strict=False)
-    )
-    held = {field.name: getattr(family, field.name) for field in fields(family) if field.init}
-    found = Family.unproven({**held, "parameters": own})[0]
-    return Icon(found.name, found.statements, found.frame, found.metadata)
+    pairs = zip(family.parameters, shares, strict=False)
+    return family.variant({parameter.name: value_at(parameter, share) for parameter, share in pairs})
 
 
 def value_at(parameter: Parameter, share: float) -> float:

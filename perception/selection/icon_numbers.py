@@ -42,8 +42,8 @@ class Number:
 def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
     """Every number that can be made larger or smaller, in the order of the text; totals only check and are left out.
 
-    >>> from thermicon.icons import Change, Hold, Icon, Return
-    >>> dip = Icon("dip", (Change("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
+    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> dip = Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
     >>> [(number.field, number.value) for number in numbers_of(dip, 32.0)]
     [('by_K', 6.0), ('rate_K_per_s', 3.0), ('duration_s', 4.0), ('rate_per_s', 3.0)]
     """
@@ -76,13 +76,13 @@ def repeated(icon: Icon, count: int) -> Icon:
 def line_of(icon: Icon, path: Sequence[int]) -> str:
     """The line of text at a path: of a repeat its first line.
 
-    >>> from thermicon.icons import Change, Hold, Icon, Return
-    >>> line_of(Icon("dip", (Change("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3))), (1,))
+    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> line_of(Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3))), (1,))
     'hold for 4 s'
     """
     from thermicon.icons.model.format import statement_text
 
-    return statement_text(statement_at(icon, path), icon.frame.control).split("\n")[0].strip()
+    return statement_text(statement_at(icon, path), icon.context.control).split("\n")[0].strip()
 
 
 def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) -> Iterator[Number]:

@@ -123,9 +123,9 @@ def shape_of(icon: Icon, rig: Rig) -> object:
     from thermicon.circuit.solver.inverse import baseline_C
 
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
-    corners = icon.lower(start)
-    return icon.frame.control, base, corners
+    start = hold(rig, "display", base)[0] if icon.context.control == "current" else base
+    corners = icon.corners(start)
+    return icon.context.control, base, corners
 
 
 def objection(trace: Trace) -> str | None:

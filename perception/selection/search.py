@@ -245,7 +245,7 @@ def _as_set(icons: IconSet, found: Sequence[Icon], fixed: int, seed: int) -> Ico
     for icon, name in zip(found[fixed:], _names(found, fixed)[fixed:], strict=True):
         origin = f"from {icon.name.replace('_', ' ')}"
         tags = (*icon.metadata.tags, "found by search", f"seed {seed}", origin)
-        entries.append(Icon(name, icon.statements, icon.frame, replace(icon.metadata, tags=tags)))
+        entries.append(Icon(name, icon.statements, icon.context, replace(icon.metadata, tags=tags)))
     name = f"{icons.name}-found" if icons.name else ""
     title = f"{icons.title}, found by search" if icons.title else "Found by search"
-    return IconSet(name, title, icons.frame, icons.metadata, tuple(entries))
+    return IconSet(name, title, icons.context, icons.metadata, tuple(entries))

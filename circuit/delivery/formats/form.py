@@ -137,8 +137,8 @@ def events_in(realised: Realised) -> tuple[Event, ...]:
     """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
     icon, rig = realised.icon, realised.rig
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
-    return events_of(icon.lower(start), 0.0 if isinstance(realised.played, Setpoints) else realised.lead_s)
+    start = hold(rig, "display", base)[0] if icon.context.control == "current" else base
+    return events_of(icon.corners(start), 0.0 if isinstance(realised.played, Setpoints) else realised.lead_s)
 
 
 def command_column(realised: Realised) -> Column:

@@ -69,12 +69,12 @@ def columns(realised: Realised) -> tuple[Column, ...]:
 def write(realised: Realised) -> bytes:
     """Return the protocol; raises FormatError for a cue that is no ramp, plateau and return of the display."""
     icon = realised.icon
-    if icon.frame.control != "display":
+    if icon.context.control != "display":
         raise FormatError(
             f"tcs2-protocol-ini needs an icon that prescribes the display; {icon.name} prescribes the "
-            f"{icon.frame.control}: use tcs2-serial"
+            f"{icon.context.control}: use tcs2-serial"
         )
-    stimulus = stimulus_of(icon.lower(baseline_C(icon, realised.rig)), realised.device.most("ramp rate"))
+    stimulus = stimulus_of(icon.corners(baseline_C(icon, realised.rig)), realised.device.most("ramp rate"))
     return ("\n".join(_lines(stimulus)) + "\n").encode("ascii")
 
 

@@ -92,10 +92,10 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]
-    both = Icon("both", [*first.statements, rest(2.0), *second.statements], frame=second.frame)
-    gap = round((first.lower().duration_s + 2.0) * 25)
+    both = Icon("both", [*first.statements, rest(2.0), *second.statements], context=second.context)
+    gap = round((first.corners().duration_s + 2.0) * 25)
     after = perceive(simulate(both, RIG, rate_Hz=25.0, tail_s=18.0))
-    alone = perceive(simulate(second, RIG, rate_Hz=25.0, tail_s=18.0 - second.lower().duration_s))
+    alone = perceive(simulate(second, RIG, rate_Hz=25.0, tail_s=18.0 - second.corners().duration_s))
     rows = alone.psi_cold.size
     stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip

@@ -59,7 +59,7 @@ class TestSerial:
         baseline, pairs = read_profile(load_format("tcs2-serial").write(found).decode("ascii"))
         times = np.cumsum([0.0, *(duration for duration, _ in pairs)])
         levels = [baseline, *(level for _, level in pairs)]
-        corners = icon.lower()
+        corners = icon.corners()
         grid = np.linspace(0, corners.duration_s, 200)
         assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
         assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)

@@ -1,4 +1,4 @@
-"""What icons carry besides statements: the frame they are meant in, and metadata; and what names and texts may be."""
+"""What icons carry besides statements: the context they are meant in, and metadata; and what names and texts may be."""
 
 import re
 from dataclasses import dataclass
@@ -32,13 +32,13 @@ def text_fault(text: str) -> str | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class Context:
     """What a set prescribes and where: control, baseline in °C (None: whoever plays it says) and body site.
 
     Raises ValueError for an unknown control, a baseline outside −10 to 60 °C, or a site that is no name.
 
-    >>> Frame("display", 32)
-    Frame(control='display', baseline_C=32.0, site=None)
+    >>> Context("display", 32)
+    Context(control='display', baseline_C=32.0, site=None)
     """
 
     control: Control = "skin"
