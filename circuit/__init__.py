@@ -37,7 +37,7 @@ from .delivery.devicefile import DeviceError
 from .delivery.device import Device, device_names
 from .delivery.samples import Samples
 from .delivery.setpoints import Setpoints
-from .delivery.realise import Realised, realise
+from .delivery.deliver import DeliveredDrive, deliver
 from .solver.difference import Difference, difference
 from .delivery.events import Event, events_of
 from .packing.worstcase import worst_case, worst_cases
@@ -124,8 +124,8 @@ __all__ = [
     "device_names",
     "Samples",
     "Setpoints",
-    "Realised",
-    "realise",
+    "DeliveredDrive",
+    "deliver",
     "Difference",
     "difference",
     "Event",

@@ -13,7 +13,7 @@ from ..solver.network import network_of
 from ..solver.pwm import steady_of
 from ..solver.simulate import rows_until
 from ..solver.steady import steady_state
-from .realised import Realised
+from .delivered_drive import DeliveredDrive
 from .samples import Samples
 
 ROWS_HZ = 10.0
@@ -42,25 +42,25 @@ class OpenLoopSpread:
         return {"baseline_C": list(self.baseline_C), "step_K": list(self.step_K)}
 
 
-def open_loop_spread(realised: Realised) -> OpenLoopSpread | None:
+def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
     """Return what the corners of the rig's uncertainty do to a drive; None where a loop follows set-points.
 
     A corner without a steady state, or one that runs away, is left to the gate.
 
     >>> from thermicon.circuit.delivery.device import Device
-    >>> from thermicon.circuit.delivery.realise import realise
+    >>> from thermicon.circuit.delivery.deliver import deliver
     >>> from thermicon.circuit.rig.rig import Rig
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
-    >>> spread = open_loop_spread(realise(icon, rig, Device.load("dac-16")))
+    >>> spread = open_loop_spread(deliver(icon, rig, Device.load("dac-16")))
     >>> spread is not None and spread.baseline_C[0] < 32.0 < spread.baseline_C[1]
     True
     """
-    played, device = realised.played, realised.device
+    played, device = delivery.played, delivery.device
     if device.driven_by in ("set-points", "temperatures") or not isinstance(played, Samples):
         return None
-    drive, lanes, starts, gains = realised.delivered, [], [], []
-    for corner in corners_of(realised.rig):
+    drive, lanes, starts, gains = delivery.delivered, [], [], []
+    for corner in corners_of(delivery.rig):
         try:
             if device.driven_by == "duty":
                 low, high = device.interval("output range")

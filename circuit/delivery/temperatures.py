@@ -22,11 +22,11 @@ from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import hold
 from .device import Device
 from .devicefile import DeviceError
-from .realised import Realised
+from .delivered_drive import DeliveredDrive
 from .samples import Samples, led, rate_of
 
 
-def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:
+def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
     """Return a cue as a controller around the rig's module delivers it.
 
     Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
@@ -45,7 +45,7 @@ def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     delivered = follow_samples(rig, samples)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig, rate_Hz=rate_Hz)
-    return Realised(
+    return DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome, ()
     )  # fmt: skip
 

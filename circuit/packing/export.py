@@ -1,4 +1,4 @@
-"""Export: a cue realised, judged in the worst case, and packed into files; nothing here touches the disk."""
+"""Export: a cue is delivered, judged in the worst case and packed into files; nothing here touches the disk."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from ..delivery.device import Device
 from ..delivery.formats import Format, FormatError
 from ..delivery.formats.form import Played
 from ..delivery.prevent import must_prevent
-from ..delivery.realise import realise
-from ..delivery.realised import Realised
+from ..delivery.deliver import deliver
+from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.spread import OpenLoopSpread, open_loop_spread
 from ..rig.rig import Rig
 from ..safety.repeated import check_pause
@@ -24,7 +24,7 @@ from .worstcase import worst_case, worst_cases
 
 
 class Verdict(Protocol):
-    """What a gate of safety says of one realised cue."""
+    """The verdict of a safety gate on one delivered cue."""
 
     @property
     def colour(self) -> str:
@@ -50,15 +50,15 @@ class Verdict(Protocol):
         """What the hardware must prevent, as the sidecar and the players hold it."""
 
 
-Gate = Callable[[Realised], Verdict]
-"""What judges one realised cue."""
+Gate = Callable[[DeliveredDrive], Verdict]
+"""A function that judges one delivered cue."""
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
     """One cue that is ready to be written, or to be refused."""
 
-    realised: Realised
+    delivery: DeliveredDrive
     verdict: Verdict
     apart: Difference
     refusals: tuple[Refusal, ...]
@@ -67,8 +67,8 @@ class Prepared:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is to be known of the delivery, then what is amber; not again what it is refused for."""
-        narrowed = self.realised.narrowed
-        told = self.realised.told
+        narrowed = self.delivery.narrowed
+        told = self.delivery.told
         if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
             told = tuple(text for text in told if text != narrowed.text)
         refused = [refusal.text for refusal in self.refusals]
@@ -100,8 +100,8 @@ def prepare(
     ('green', ())
     """
     form.check(device)
-    realised = realise(icon, rig, device, tail_s=tail_s)
-    return _judged(realised, worst_case(realised, pause_s) if gate is None else gate(realised))
+    delivery = deliver(icon, rig, device, tail_s=tail_s)
+    return _judged(delivery, worst_case(delivery, pause_s) if gate is None else gate(delivery))
 
 
 def prepare_set(
@@ -127,18 +127,18 @@ def prepare_set(
     """
     check_pause(pause_s)
     form.check(device)
-    realised = []
+    delivery = []
     for done, icon in enumerate(icons, 1):
-        realised.append(realise(icon, rig, device, tail_s=tail_s))
+        delivery.append(deliver(icon, rig, device, tail_s=tail_s))
         if step is not None:
             step(done, len(icons))
-    verdicts = worst_cases(realised, pause_s) if realised else ()
-    return tuple(_judged(one, verdict) for one, verdict in zip(realised, verdicts, strict=True))
+    verdicts = worst_cases(delivery, pause_s) if delivery else ()
+    return tuple(_judged(one, verdict) for one, verdict in zip(delivery, verdicts, strict=True))
 
 
-def _judged(realised: Realised, verdict: Verdict) -> Prepared:
-    apart = realised.apart
-    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart), open_loop_spread(realised))
+def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:
+    apart = delivery.apart
+    return Prepared(delivery, verdict, apart, refusals_of(delivery, verdict, apart), open_loop_spread(delivery))
 
 
 def _bare(warning: str) -> str:
@@ -183,34 +183,34 @@ def pack(
     `felt` and `losses` are what perception says, by the names of cues; a cue with refusals is written as forced.
     Raises FormatError where two cues would get the same name, or one is unsafe.
     """
-    check_names([one.realised.icon.name for one in ready], form)
+    check_names([one.delivery.icon.name for one in ready], form)
     drives = {}
     for one in ready:
-        name = one.realised.icon.name
+        name = one.delivery.icon.name
         if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
             raise FormatError(f"{name}: {unsafe[0]}")
-        drive = form.file_name(one.realised)
+        drive = form.file_name(one.delivery)
         if drive.casefold() in form.set_files:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
         try:
-            drives[name] = drive, form.write(one.realised)
+            drives[name] = drive, form.write(one.delivery)
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
-        names = [one.realised.icon.name for one in ready]
+        names = [one.delivery.icon.name for one in ready]
         played = [_played(one, drives[name][0], form) for one, name in zip(ready, names, strict=True)]
         shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
     files: dict[str, bytes] = {}
     for one in ready:
-        name = one.realised.icon.name
+        name = one.delivery.icon.name
         drive, content = drives[name]
         over = [str(refusal) for refusal in one.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         about = sidecar(
-            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
+            one.delivery, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
             demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
         )  # fmt: skip
         files[beside(name, form)] = sidecar_text(sealed(about))
@@ -225,7 +225,7 @@ def _played(one: Prepared, file: str, form: Format) -> Played:
         float(value) if isinstance(value := known.get(key), (int, float)) else None
         for key in ("recovery_s", "shortest_pause_s")
     )
-    return Played(one.realised, file, beside(one.realised.icon.name, form), one.verdict.colour, recovery, shortest)
+    return Played(one.delivery, file, beside(one.delivery.icon.name, form), one.verdict.colour, recovery, shortest)
 
 
 def beside(name: str, form: Format) -> str:

@@ -41,8 +41,8 @@ class Case:
     number: int
 
     def __repr__(self) -> str:
-        one = self.ready[0].realised
-        cues = " ".join(" ".join(str(each.realised.icon).split()) for each in self.ready)
+        one = self.ready[0].delivery
+        cues = " ".join(" ".join(str(each.delivery.icon).split()) for each in self.ready)
         changes = ", ".join(one.rig.changes)
         where = f"{one.rig.name} with {changes} | {one.device.name} as {self.form}"
         return f"#{self.number} {cues} | {where} | pause {self.pause_s}"

@@ -86,7 +86,7 @@ class Bench:
         form = load_format("psychopy")
         ready = prepare(ICON, RIG, device, form, gate=GreenVerdict)
         self.files = pack([ready], form)
-        self.drive = form.file_name(ready.realised)
+        self.drive = form.file_name(ready.delivery)
         (folder / self.drive).write_bytes(self.files[self.drive])
         self.path = str(folder / self.drive)
         self.clock = Clock()
@@ -280,4 +280,4 @@ class TestMustPrevent:
         form = load_format("c-array")
         ready = prepare(ICON, RIG, Device.load("dac-12"), form, gate=GreenVerdict)
         assert form.player is not None
-        assert set(form.player([Played(ready.realised, "a.h", "a.json")], MUST)) == set(form.set_files)
+        assert set(form.player([Played(ready.delivery, "a.h", "a.json")], MUST)) == set(form.set_files)

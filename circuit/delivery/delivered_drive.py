@@ -29,7 +29,7 @@ class Narrowed:
 
 
 @dataclass(frozen=True, slots=True)
-class Realised:
+class DeliveredDrive:
     """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
 
     The device gets the best that its range allows: a design within that range. `played` is what goes into files,
@@ -56,7 +56,7 @@ class Realised:
 
     def __repr__(self) -> str:
         return (
-            f"Realised({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at {self.rate_Hz:g} Hz, "
+            f"DeliveredDrive({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at {self.rate_Hz:g} Hz, "
             f"skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
         )
 
