@@ -11,7 +11,7 @@ from .rig.rules import Limits, Rule
 from .rig.rigfile import RigError
 from .rig.rig import Rig, rig_names
 from .solver.drive import Drive, DriveError, read_drive
-from .solver.steady import hold, steady_state
+from .solver.steady import steady_state, state_under_current
 from .solver.inverse import Design, design, design_many
 from .solver.static import check_static
 from .solver.trace import Outcome, Trace, write_trace
@@ -38,7 +38,7 @@ from .delivery.device import Device, device_names
 from .delivery.samples import Samples
 from .delivery.setpoints import Setpoints
 from .delivery.deliver import DeliveredDrive, deliver
-from .solver.difference import Difference, difference
+from .solver.delivery_deviation import DeliveryDeviation, delivery_deviation
 from .delivery.events import Event, events_of
 from .packing.worstcase import worst_case, worst_cases
 from .packing.export import Prepared, Verdict, pack, prepare, prepare_set
@@ -66,8 +66,8 @@ __all__ = [
     "Drive",
     "DriveError",
     "read_drive",
-    "hold",
     "steady_state",
+    "state_under_current",
     "Design",
     "design",
     "design_many",
@@ -126,8 +126,8 @@ __all__ = [
     "Setpoints",
     "DeliveredDrive",
     "deliver",
-    "Difference",
-    "difference",
+    "DeliveryDeviation",
+    "delivery_deviation",
     "Event",
     "events_of",
     "worst_case",

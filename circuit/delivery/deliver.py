@@ -20,14 +20,14 @@ from ..solver.drive import Drive
 from ..solver.inverse import Design, design
 from ..solver.pwm import steady_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import hold
+from ..solver.steady import steady_state
 from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive, Narrowed
 from .device import Device
-from .delivered_drive import Narrowed, DeliveredDrive
 from .regulated import deliver_setpoints, traces_of_setpoints
 from .samples import Samples, current_of, led, rate_of, sample, within
 from .setpoints import Setpoints
-from .temperatures import designed_until, follow_samples, deliver_temperatures
+from .temperatures import deliver_temperatures, designed_until, follow_samples
 
 BRIDGE_ROUNDS = 3
 """Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
@@ -143,7 +143,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
     """Return the current by which the display follows set-points from `lead_s` on; RigError where there is no rest."""
-    rest, state = hold(rig, "display", float(setpoints.level_C[0]))
+    rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
     bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = int(np.ceil(end_s / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period

@@ -18,9 +18,9 @@ from ..solver.inverse import baseline_C, target_at
 from ..solver.prescribed import modes_of
 from ..solver.simulate import rows_until
 from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .delivered_drive import DeliveredDrive
 from .setpoints import Setpoints, closed, setpoints_of
 from .thermode import display_of
 

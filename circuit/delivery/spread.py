@@ -12,7 +12,7 @@ from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.network import network_of
 from ..solver.pwm import steady_of
 from ..solver.simulate import rows_until
-from ..solver.steady import steady_state
+from ..solver.steady import state_under_current
 from .delivered_drive import DeliveredDrive
 from .samples import Samples
 
@@ -66,7 +66,9 @@ def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
                 low, high = device.interval("output range")
                 start = steady_of(corner.rig, float(played.command[0]), min(-low, high) * (1.0 + corner.gain_relative))
             else:
-                start = steady_state(network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative))
+                start = state_under_current(
+                    network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative)
+                )
         except ArithmeticError:
             continue
         lanes.append(network_of(corner.rig))

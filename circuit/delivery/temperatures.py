@@ -19,10 +19,10 @@ from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import hold
+from ..solver.steady import steady_state
+from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .delivered_drive import DeliveredDrive
 from .samples import Samples, led, rate_of
 
 
@@ -56,7 +56,7 @@ def follow_samples(rig: Rig, samples: Samples) -> Drive:
     It ends with the set-points, in a row of the current that holds the rest.
     """
     levels = samples.command
-    rest, state = hold(rig, "display", float(levels[0]))
+    rest, state = steady_state(rig, "display", float(levels[0]))
     bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period

@@ -8,16 +8,16 @@ from typing import Protocol
 
 from thermicon.icons import Icon
 
+from ..delivery.deliver import deliver
+from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.device import Device
 from ..delivery.formats import Format, FormatError
 from ..delivery.formats.form import Played
 from ..delivery.prevent import must_prevent
-from ..delivery.deliver import deliver
-from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.spread import OpenLoopSpread, open_loop_spread
 from ..rig.rig import Rig
 from ..safety.repeated import check_pause
-from ..solver.difference import Difference
+from ..solver.delivery_deviation import DeliveryDeviation
 from .refusal import Refusal, refusals_of
 from .sidecar import sealed, sidecar, sidecar_text
 from .worstcase import worst_case, worst_cases
@@ -60,7 +60,7 @@ class Prepared:
 
     delivery: DeliveredDrive
     verdict: Verdict
-    apart: Difference
+    deviation: DeliveryDeviation
     refusals: tuple[Refusal, ...]
     spread: OpenLoopSpread | None = None
 
@@ -68,7 +68,7 @@ class Prepared:
     def warnings(self) -> tuple[str, ...]:
         """What is to be known of the delivery, then what is amber; not again what it is refused for."""
         narrowed = self.delivery.narrowed
-        told = self.delivery.told
+        told = self.delivery.warnings
         if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
             told = tuple(text for text in told if text != narrowed.text)
         refused = [refusal.text for refusal in self.refusals]
@@ -137,8 +137,9 @@ def prepare_set(
 
 
 def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:
-    apart = delivery.apart
-    return Prepared(delivery, verdict, apart, refusals_of(delivery, verdict, apart), open_loop_spread(delivery))
+    deviation = delivery.deviation
+    refusals = refusals_of(delivery, verdict, deviation)
+    return Prepared(delivery, verdict, deviation, refusals, open_loop_spread(delivery))
 
 
 def _bare(warning: str) -> str:
@@ -210,7 +211,7 @@ def pack(
         over = [str(refusal) for refusal in one.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         about = sidecar(
-            one.delivery, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
+            one.delivery, form, one.deviation, one.verdict.to_dict(), (felt or {}).get(name), over,
             demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
         )  # fmt: skip
         files[beside(name, form)] = sidecar_text(sealed(about))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from ..delivery.setpoints import Setpoints
 from ..inputs import signed
 from ..rig.rig import Rig
-from ..solver.difference import Difference, loss_limit
+from ..solver.delivery_deviation import DeliveryDeviation, loss_limit
 from ..solver.inverse import design
 from ..solver.simulate import duration_s
 from ..solver.trace import Outcome
@@ -45,7 +45,7 @@ class Refusal:
         return f"{_SAID[self.kind]}: {self.text}"
 
 
-def refusals_of(delivery: DeliveredDrive, verdict: Verdict, apart: Difference) -> tuple[Refusal, ...]:
+def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
     """Return the causes that speak against exporting a cue, what cannot be forced first.
 
     A consequence is not listed beside its cause: what a device with too small a range misses or loses is told with the
@@ -54,7 +54,7 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, apart: Difference) -
     found, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
         found.append(Refusal("unsafe", verdict.reason or "the gate says red"))
-    lost = lost_text(apart)
+    lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         found.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
         lost = "" if narrowed else lost
@@ -100,10 +100,10 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
     return round(FINELY_A * -(-high // FINELY_A), 2)
 
 
-def lost_text(apart: Difference) -> str:
+def lost_text(deviation: DeliveryDeviation) -> str:
     """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
     limit = loss_limit("receptor difference")
-    lost = [one for one in apart.places if "receptor" in one.place and one.rms_K > limit]
+    lost = [one for one in deviation.places if "receptor" in one.place and one.rms_K > limit]
     if not lost:
         return ""
     first, *others = sorted(lost, key=lambda one: -one.rms_K)
@@ -141,8 +141,8 @@ def _lossy(delivery: DeliveredDrive, lost: str) -> str:
     device, played = delivery.device, delivery.played
     if isinstance(played, Setpoints):
         why = f"its set-points have steps of {played.step_K:g} K"
-    elif delivery.warnings:
-        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in delivery.warnings)
+    elif delivery.device_warnings:
+        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in delivery.device_warnings)
     elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
         why = f"it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
     else:

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
+from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.device import Device
 from ..delivery.formats.form import Format, events_in
-from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.samples import Samples
 from ..delivery.setpoints import Setpoints
 from ..delivery.spread import OpenLoopSpread
@@ -17,7 +17,7 @@ from ..delivery.thermode import lag_of
 from ..program import own_version, this_program
 from ..records import Record
 from ..safety.summary import summarise
-from ..solver.difference import Difference, loss_table
+from ..solver.delivery_deviation import DeliveryDeviation, loss_table
 from .digests import digest, digest_of_content, plain
 
 NO_CLEARANCE = (
@@ -29,7 +29,7 @@ NO_CLEARANCE = (
 def sidecar(
     delivery: DeliveredDrive,
     form: Format,
-    apart: Difference,
+    deviation: DeliveryDeviation,
     safety: Mapping[str, object],
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
@@ -47,7 +47,7 @@ def sidecar(
     under an open loop.
     """
     icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
-    text, told = str(icon), [*rig.warnings, *delivery.told]
+    text, told = str(icon), [*rig.warnings, *delivery.warnings]
     if not delivery.device.played:
         told.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
     return {
@@ -78,7 +78,7 @@ def sidecar(
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(delivery),
-        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in deviation.places},
         "open_loop_spread": None if spread is None else spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],

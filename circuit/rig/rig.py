@@ -31,7 +31,7 @@ from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from .rules import Limits
 from .settings import put_all, read_settings
 from .skin import Column, Layer, Skin, column_of
-from .uncertainty import surer, uncertainty_of
+from .uncertainty import tightened, uncertainty_of
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
@@ -178,7 +178,7 @@ class Rig:
             )
         if loosened := self.limits.loosened:
             found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
-        if claims := surer(self.uncertainty):
+        if claims := tightened(self.uncertainty):
             found.append(
                 f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {self.uncertainty.reason}"
             )

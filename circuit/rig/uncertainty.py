@@ -61,10 +61,10 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
     return found
 
 
-def surer(one: Uncertainty) -> tuple[str, ...]:
+def tightened(one: Uncertainty) -> tuple[str, ...]:
     """A few words for each uncertainty that is smaller than the shipped one.
 
-    >>> surer(uncertainty_of({"gain_relative": 0.02}))
+    >>> tightened(uncertainty_of({"gain_relative": 0.02}))
     ('gain ±2 % instead of ±10 %',)
     """
     return tuple(

@@ -18,7 +18,7 @@ from .displayed_batch import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from .network import network_of
 from .simulate import rows_until, simulate
-from .steady import hold, steady_state
+from .steady import state_under_current, steady_state
 
 TRACKINGS = ("replay", "display", "ideal")
 """What each rig is played: the nominal current open loop, the nominal display trajectory, or its own solution."""
@@ -146,7 +146,7 @@ class _Stage:
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
         plan = design(icon, self.nominal, self.end_s)
-        states = [steady_state(network_of(rig), plan.rest_A) for rig in self.rigs]
+        states = [state_under_current(network_of(rig), plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
         bank = Bank.of([network_of(rig) for rig in self.rigs])
@@ -157,7 +157,7 @@ class _Stage:
         plans = design_many(icons, self.nominal, self.end_s)
         currents = np.array([plan.drive.current_A[:-1] for plan in plans])
         states = {
-            (r, amperes): steady_state(network_of(rig), amperes)
+            (r, amperes): state_under_current(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
             for amperes in {plan.rest_A for plan in plans}
         }
@@ -174,7 +174,7 @@ class _Stage:
             bases = [float(display[0]) for display in shown]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        held = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
         lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
         states = [state for _, state in lanes]
         if self.nominal.controller is None:

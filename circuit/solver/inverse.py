@@ -14,7 +14,7 @@ from ..rig.rig import Rig
 from ..rig.skin import Array
 from .batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
-from .steady import hold
+from .steady import steady_state
 from .trace import Outcome, judge
 
 LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
@@ -76,7 +76,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
     """As `design`, by the inverse of the module alone: a loop of the rig's own takes no part."""
     control = icon.frame.control
-    current, state = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
+    current, state = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     if control == "current":
         corners = icon.lower(current)
         times, values = list(corners.time_s), list(corners.value)
@@ -112,7 +112,7 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
         if not cues:
             continue
         bases = [baseline_C(icon, rig) for icon in cues]
-        rest = {base: hold(rig, control, base) for base in set(bases)}
+        rest = {base: steady_state(rig, control, base) for base in set(bases)}
         targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
         lanes = np.arange(len(cues), dtype=np.int64)
         states = bank.states([rest[base][1] for base in bases])

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ..rig.rig import Rig
 from ..rig.skin import Array, Column
 
-PROBES = (
+RECORDED = (
     "hot_plate_C",
     "display_C",
     "skin_C",
@@ -42,7 +42,7 @@ class Network:
     """A rig as lumps; n skin lumps, arrays read-only.
 
     `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
-    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for PROBES; `plates` (15,) for the kernel:
+    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED; `plates` (15,) for the kernel:
     α, R, 1/Θ, hot and cold plate J/K, sink °C, 1/R_sink, deep °C, least and most current A, compliance voltage V,
     then the heat sink's own controller: capacity J/K (0: ideal), W/K, W/(K·s), greatest power W.
     """
@@ -72,8 +72,8 @@ class Network:
         return float(weight[COLD - start]) if start <= COLD else 0.0
 
     def read(self, state_C: Array, probe: str) -> float:
-        """Value of one of PROBES at a state (n + 3,) in °C."""
-        row = PROBES.index(probe)
+        """Value of one of RECORDED at a state (n + 3,) in °C."""
+        row = RECORDED.index(probe)
         start = int(self.probe_start[row])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
 

@@ -15,7 +15,7 @@ from ..rig.rig import Rig
 from ..rig.skin import Array
 from .drive import Drive
 from .network import network_of
-from .steady import steady_state
+from .steady import state_under_current
 
 RESISTANCE = 1
 """Place of the module's resistance among `Network.plates`."""
@@ -74,7 +74,7 @@ def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
     """
     network = network_of(rig)
     if duty == 0:
-        return steady_state(network, 0.0)
+        return state_under_current(network, 0.0)
     plates = network.plates.copy()
     plates[RESISTANCE] /= abs(duty)
-    return steady_state(replace(network, plates=plates), duty * peak_A)
+    return state_under_current(replace(network, plates=plates), duty * peak_A)

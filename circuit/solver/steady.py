@@ -29,7 +29,7 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
-def steady_state(network: Network, current_A: float) -> Array:
+def state_under_current(network: Network, current_A: float) -> Array:
     """Return the state (n + 3,) in °C that a current held for ever leads to.
 
     Raises ArithmeticError when there is none (the module would heat without end).
@@ -85,10 +85,10 @@ def check_sink(rig: Rig, state_C: Array) -> None:
         )
 
 
-def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
+def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """Return (current A, state °C) that hold `skin` or `display` at a baseline; raises RigError when none can.
 
-    >>> current, state = hold(Rig.load("thenar"), "skin", 32.0)
+    >>> current, state = steady_state(Rig.load("thenar"), "skin", 32.0)
     >>> round(current, 2)
     0.08
     """
@@ -97,7 +97,7 @@ def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
     current = holding_current_A(network, control, level_C)
     try:
-        state = steady_state(network, current)
+        state = state_under_current(network, current)
     except ArithmeticError as problem:
         raise RigError(f"{what}: {problem}") from None
     reached = network.read(state, probe)

@@ -11,13 +11,13 @@ import numpy as np
 
 from ..rig.rules import Limits
 from ..rig.skin import Array
-from .network import PROBES
+from .network import RECORDED
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *PROBES)
+COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
 
 CLOSE_K = 0.1

@@ -86,7 +86,7 @@ def tell(ready: Sequence[Prepared]) -> None:
 def told_of(one: Prepared) -> Iterator[str]:
     """How an icon is played and how far that is from the design, then a warning a line."""
     delivery = one.delivery
-    receptors = [each for each in one.apart.places if "receptor" in each.place]
+    receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     yield (

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Prepared, DeliveredDrive
+    from thermicon.circuit import DeliveredDrive, Prepared
 
     from ..files.exporting import Ready
 

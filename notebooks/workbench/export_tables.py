@@ -50,7 +50,7 @@ def asked_html(prepared: Sequence[Prepared]) -> str:
 
 
 def _delivered(one: Prepared, felt: FeltChange | None) -> str:
-    delivery, receptors = one.delivery, [each for each in one.apart.places if "receptor" in each.place]
+    delivery, receptors = one.delivery, [each for each in one.deviation.places if "receptor" in each.place]
     largest = max((abs(each.largest_K), each.at_s) for each in receptors)
     moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None
     cells = (

@@ -139,7 +139,7 @@ def scene(
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
-    from thermicon.circuit import duration_s, hold, judge_safety, simulate
+    from thermicon.circuit import duration_s, judge_safety, simulate, steady_state
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.perception import perceive
 
@@ -152,7 +152,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
     percept = perceive(trace, observer)
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    start = steady_state(rig, "display", base)[0] if icon.frame.control == "current" else base
     return Drawing(
         icon=icon,
         rig=rig,

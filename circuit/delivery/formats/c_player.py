@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib import resources
 
-from ..prevent import MustPrevent
 from ..delivered_drive import DeliveredDrive
+from ..prevent import MustPrevent
 from .form import Played
 
 PLAYER = "thermicon_player.h"

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ...inputs import InputError
 from ...solver.inverse import baseline_C
-from ...solver.steady import hold
+from ...solver.steady import steady_state
+from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..events import Event, events_of
 from ..prevent import MustPrevent
-from ..delivered_drive import DeliveredDrive
 from ..samples import Samples
 from ..setpoints import Setpoints
 
@@ -137,7 +137,7 @@ def events_in(delivery: DeliveredDrive) -> tuple[Event, ...]:
     """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
     icon, rig = delivery.icon, delivery.rig
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
+    start = steady_state(rig, "display", base)[0] if icon.frame.control == "current" else base
     return events_of(icon.lower(start), 0.0 if isinstance(delivery.played, Setpoints) else delivery.lead_s)
 
 

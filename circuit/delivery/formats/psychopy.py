@@ -6,8 +6,8 @@ import csv
 import io
 from collections.abc import Sequence
 
-from ..prevent import MustPrevent
 from ..delivered_drive import DeliveredDrive
+from ..prevent import MustPrevent
 from . import csv_table, setpoint_csv, tcs2_serial
 from .c_player import command_for, filled
 from .form import Column, Format, Played, events_in, samples_of

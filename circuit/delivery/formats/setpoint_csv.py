@@ -8,8 +8,8 @@ import io
 import numpy as np
 
 from ...rig.skin import Array
-from ..device import Device
 from ..delivered_drive import DeliveredDrive
+from ..device import Device
 from .csv_table import marks_of
 from .form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
 

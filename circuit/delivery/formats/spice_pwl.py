@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ..netlist import EDGE_S, points
 from ..delivered_drive import DeliveredDrive
+from ..netlist import EDGE_S, points
 from .form import PLAYS_CURRENT, Column, Format, command_column
 
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import (
+    DeliveredDrive,
     Device,
     DeviceError,
-    DeliveredDrive,
     Record,
     Rig,
     Samples,
@@ -26,7 +26,7 @@ from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import duty_of, steady_of, switched
-from thermicon.circuit.solver.steady import steady_state
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.icons import Icon, load_library, parse
 
 RIG = Rig.load("thenar")
@@ -47,7 +47,7 @@ def samples(delivery: DeliveredDrive) -> Samples:
 
 
 def rms_K(delivery: DeliveredDrive) -> float:
-    return max(place.rms_K for place in delivery.apart.places)
+    return max(place.rms_K for place in delivery.deviation.places)
 
 
 @pytest.mark.parametrize("name", ["dac-16", "keysight-33500b", "rigol-dg1000z", "ni-analogue-output"])
@@ -61,7 +61,7 @@ def test_a_drive_begins_and_ends_at_rest_and_lies_within_half_a_step_of_the_desi
     assert abs(current[0] - plan.rest_A) <= half
     assert np.abs(current[1:-1] - plan.drive.current_A[:-1]).max() <= half
     assert (found.lead_s, found.end_s, found.rate_Hz) == (0.01, 8.01, 100.0)
-    assert found.warnings == ()
+    assert found.device_warnings == ()
 
 
 def test_the_design_on_the_clock_of_the_file_is_the_design() -> None:
@@ -87,13 +87,14 @@ def test_the_trace_is_that_of_the_delivered_drive() -> None:
 def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be() -> None:
     step, weak = load_library("six-icons")["cooling-step"], RIG.with_(**{"driver.transconductance_A_per_V": 0.1})
     found = deliver(step, weak, Device.load("dac-16"))
-    assert found.warnings == (
+    assert found.device_warnings == (
         "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design asks for up to "
         "1.11 A; raise that to 0.12 if the current source can, or use a device of more volts",
     )
     assert found.delivered.current_A.max() <= 1.0
     assert rms_K(found) < 0.01  # the display catches up after the corner
-    assert deliver(step, weak.with_(**{"driver.transconductance_A_per_V": 0.12}), Device.load("dac-16")).warnings == ()
+    stronger = weak.with_(**{"driver.transconductance_A_per_V": 0.12})
+    assert deliver(step, stronger, Device.load("dac-16")).device_warnings == ()
 
 
 @pytest.mark.parametrize("name", ["thenar", "forearm", "hand-dorsum", "fingertip", "shani2021"])
@@ -108,7 +109,7 @@ def test_the_default_converter_gives_every_shipped_rig_all_that_its_driver_can(n
 def test_a_slew_rate_holds_the_command_back() -> None:
     found = deliver(STEP, RIG, changed(Device.load("dac-16"), "slew rate", value=10.0))
     assert np.abs(np.diff(samples(found).command)).max() <= 0.1 + 1e-3
-    assert found.warnings == ("dac-16: its slew rate of 10 V/s holds the command back",)
+    assert found.device_warnings == ("dac-16: its slew rate of 10 V/s holds the command back",)
 
 
 @pytest.mark.parametrize(
@@ -167,9 +168,9 @@ class TestBridge:
         assert taken == pytest.approx(from_skin, abs=1e-9)
 
     def test_full_duty_is_a_steady_current(self) -> None:
-        assert steady_of(RIG, 0.5, 1.0)[1] != pytest.approx(steady_state(network_of(RIG), 0.5)[1], abs=0.1)
-        assert steady_of(RIG, 1.0, 0.9) == pytest.approx(steady_state(network_of(RIG), 0.9), abs=1e-9)
-        assert steady_of(RIG, 0.0, 1.9) == pytest.approx(steady_state(network_of(RIG), 0.0), abs=1e-9)
+        assert steady_of(RIG, 0.5, 1.0)[1] != pytest.approx(state_under_current(network_of(RIG), 0.5)[1], abs=0.1)
+        assert steady_of(RIG, 1.0, 0.9) == pytest.approx(state_under_current(network_of(RIG), 0.9), abs=1e-9)
+        assert steady_of(RIG, 0.0, 1.9) == pytest.approx(state_under_current(network_of(RIG), 0.0), abs=1e-9)
 
     def test_a_fast_carrier_comes_to_rest_where_the_mean_and_its_square_say(self) -> None:
         still = Icon("still", parse("cue 1\nicon a { hold for 20 s }\n")["a"].statements)
@@ -251,7 +252,7 @@ class TestSetpoints:
         found = deliver(load_library("six-icons")["cooling-step"], RIG, self.THERMODE)
         late = found.trace.display_C[150:200] - found.designed_trace.display_C[150:200]
         assert late == pytest.approx(3.0 * 0.21, rel=1e-3)
-        assert found.apart.losses() == ()
+        assert found.deviation.losses() == ()
         assert found.outcome is not None
         assert found.outcome.reached
 
@@ -332,7 +333,7 @@ class TestSetpoints:
         assert isinstance(found.played, Setpoints)
         assert found.played.closing == 1
         assert found.played.level_C[-1] == found.played.level_C[0]
-        assert max(one.rms_K for one in found.apart.places) < 0.05
+        assert max(one.rms_K for one in found.deviation.places) < 0.05
         assert worst_case(found, 10.0).safe
 
     def test_too_many_segments_are_an_error_for_corners_and_drawn_coarser_for_a_curve(self) -> None:

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, DeviceError, Record, Rig, RigError, Samples, prepare, deliver, simulate_current
-from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit import Device, DeviceError, Record, Rig, RigError, Samples, deliver, prepare, simulate_current
 from thermicon.circuit.delivery.deliver import traces_until
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.spread import open_loop_spread
 from thermicon.circuit.packing.export import pack
 from thermicon.circuit.safety.corners import corners_of
@@ -46,7 +46,7 @@ class TestDeliveredDrive:
         assert found.trace.has_current
         assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.05
         assert found.trace.current_A.max() <= RIG.driver.current_max_A
-        assert found.apart.losses() == ()
+        assert found.deviation.losses() == ()
         again = simulate_current(found.delivered, RIG)
         assert again.skin_C == pytest.approx(found.trace.skin_C, abs=1e-9)
 
@@ -74,7 +74,7 @@ class TestDeliveredDrive:
         slow = with_records(Record("update rate", "Hz", "test", value=10.0))
         found = deliver(STEP, RIG, slow)
         assert (found.rate_Hz, found.requested_Hz, found.lead_s) == (10.0, 100.0, 0.1)
-        assert found.apart.places[1].rms_K < 0.1
+        assert found.deviation.places[1].rms_K < 0.1
 
     def test_it_goes_on_at_rest(self) -> None:
         designed, delivered = traces_until(deliver(STEP, RIG, LOOP), 20.0)

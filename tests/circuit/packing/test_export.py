@@ -14,9 +14,9 @@ import pytest
 
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import (
+    DeliveredDrive,
     Device,
     Prepared,
-    DeliveredDrive,
     Rig,
     Verdict,
     prepare,
@@ -98,7 +98,7 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
     )
     assert one.warnings == ()
     dull = replace(one.delivery, narrowed=replace(one.delivery.narrowed, outcome=None))  # type: ignore[type-var]
-    (lossy,) = refusals_of(dull, one.verdict, one.apart)
+    (lossy,) = refusals_of(dull, one.verdict, one.deviation)
     assert re.search(r"^loses too much: dac-16 plays .* With that the \w+ receptor differs by ", str(lossy))
 
 
@@ -189,7 +189,7 @@ def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], 
 def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() -> None:
     delivery = ready("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).delivery
     assert delivery.trace.beyond
-    assert delivery.told == delivery.warnings == ()
+    assert delivery.warnings == delivery.device_warnings == ()
 
 
 def test_a_format_that_cannot_hold_an_icon_names_it() -> None:

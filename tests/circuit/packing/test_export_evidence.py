@@ -21,8 +21,8 @@ from tests.circuit.packing.evidence import PER_PART, Told, run_part
 from tests.circuit.packing.exported_files import read_file, sidecar_in
 from tests.circuit.packing.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.packing.spice_replay import by_ngspice
-from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
+from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.export import Verdict, pack
 from thermicon.circuit.packing.worstcase import worst_case
 

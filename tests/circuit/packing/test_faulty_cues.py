@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Rig, prepare, deliver, worst_case
+from thermicon.circuit import Device, Drive, Rig, deliver, prepare, worst_case
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.export import Prepared, pack
 from thermicon.circuit.safety.ensemble import Ensemble, row_of

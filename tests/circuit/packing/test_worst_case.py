@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Rig, gate, judge_safety, prepare, deliver, worst_case
+from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, worst_case
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.export import pack
 from thermicon.circuit.safety.gate import gate_set

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, steady_state
+from thermicon.circuit import Rig, RigError, rig_names, state_under_current
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.thermode import contact_corners
@@ -62,7 +62,7 @@ def test_every_factor_changes_what_it_names_and_makes_another_rig() -> None:
     assert (there.heat_sink.temperature_C, there.deep_C) == (42.0, THENAR.deep_C)
     assert there != THENAR  # caches are keyed by the rig
     # without a current the display moves with the heat sink by the share of the skin's path to it
-    rest, warm = (steady_state(network_of(rig), 0.0) for rig in (THENAR, perturbed(THENAR, heat_sink_K=2.0)))
+    rest, warm = (state_under_current(network_of(rig), 0.0) for rig in (THENAR, perturbed(THENAR, heat_sink_K=2.0)))
     assert 0 < (warm - rest).max() <= 2.0
 
 

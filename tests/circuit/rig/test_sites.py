@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, simulate, steady_state
+from thermicon.circuit import Rig, RigError, rig_names, simulate, state_under_current
 from thermicon.circuit.packing.refusal import needed_A
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
@@ -135,7 +135,9 @@ def test_what_shani2021_says_of_itself_is_so() -> None:
     cue = load_library("cooling-step-skin")["cooling-step"]
     slab = 0.081e-3 / 0.24 + 2e-3 / 0.45
     low, high = ((37 / slab + film * 24) / (1 / slab + film) for film in (12, 8))
-    hot, hotter = (network_of(rig).read(steady_state(network_of(rig), -0.5), "skin_C") for rig in (SHANI, THENAR))
+    hot, hotter = (
+        network_of(rig).read(state_under_current(network_of(rig), -0.5), "skin_C") for rig in (SHANI, THENAR)
+    )
     cools = simulate(cue, SHANI.with_(**{"driver.current_min_A": 0})).outcome
     both = simulate(cue, SHANI).outcome
     assert cools is not None

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Device, DeliveredDrive, Rig, Setpoints, prepare, deliver
+from thermicon.circuit import DeliveredDrive, Device, Rig, Setpoints, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
 from thermicon.circuit.packing.export import pack
