@@ -44,7 +44,8 @@ def netlist(
 
     Its run starts from the steady state of `rest_A`, the current that has been held for ever (`Design.rest_A`); the
     drive's first current follows 1 µs later. None: from the steady state of the drive's first current. With
-    `out_file`, a control section (ngspice only) has `ngspice -b` write WRITTEN_BY_NGSPICE there, a row for each time in s.
+    `out_file`, a control section (ngspice only) has `ngspice -b` write WRITTEN_BY_NGSPICE there,
+    one row for each time in s.
 
     >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]

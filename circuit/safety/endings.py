@@ -15,7 +15,7 @@ import numpy as np
 from ..rig.rules import Limits
 from ..rig.skin import Array
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
-from ..solver.poweroff import unpowered
+from ..solver.network import unpowered
 from ..solver.steady import state_under_current
 from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally

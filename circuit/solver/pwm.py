@@ -15,11 +15,8 @@ from ..rig.rig import Rig
 from ..rig.skin import Array
 from .drive import Drive
 from .network import network_of
+from .plate import RESISTANCE
 from .steady import state_under_current
-
-RESISTANCE = 1
-"""Place of the module's resistance among `Network.plates`."""
-
 
 SIMULATED_CARRIER_HZ = 500.0
 """Fastest switching that is simulated: at 500 Hz and 1.5 A the display already ripples by under 10 mK, and a faster

@@ -11,7 +11,19 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..rig.skin import Array
 from .network import COLD, HOT, SKIN, Network, network_of
-from .plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
+from .plate import (
+    ALPHA,
+    CONDUCTANCE,
+    RESISTANCE,
+    SINK_C,
+    SINK_W_PER_K,
+    current_for_heat_A,
+    greatest_cooling_A,
+    hot_plate_C,
+)
+
+PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)
+"""Places of the plate numbers that decide a steady state."""
 
 
 @lru_cache(maxsize=512)
@@ -34,7 +46,7 @@ def state_under_current(network: Network, current_A: float) -> Array:
 
     Raises ArithmeticError when there is none (the module would heat without end).
     """
-    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
     skin = float(network.conductance_W_per_K[0])
     zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
@@ -59,7 +71,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
 
     Where the module cannot cool that far, the result is the current of greatest cooling; its steady state tells.
     """
-    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
     cold = level_C
     if control == "skin":
