@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
     from ..delivery.delivered_drive import DeliveredDrive
-    from .export import Verdict
+    from .prepare import Verdict
 
 _SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
 

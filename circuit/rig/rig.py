@@ -27,9 +27,10 @@ from .parts import (
 )
 from .probefile import probes_of
 from .receptors import HORNY_LAYER, ReceptorDepths
+from .rig_text import toml_text
 from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from .rules import Limits
-from .settings import put_all, read_settings
+from .settings import flattened, put_all, read_settings
 from .skin import Column, Layer, Skin, column_of
 from .uncertainty import tightened, uncertainty_of
 
@@ -102,14 +103,49 @@ class Rig:
 
     @staticmethod
     def load(source: str | Path) -> Rig:
-        """Return a shipped rig by name, or a rig from a `.toml` file; raises RigError with every fault."""
-        path = Path(source)
-        if path.suffix == ".toml" or path.exists():
+        """Return a shipped rig by name, or a rig from a `.toml` file.
+
+        A file with the name of a shipped rig is read in its place; a folder of that name is not.
+
+        Raises
+        ------
+        RigError
+            With every fault of the file on a line of its own, or the nearest name where there is no such rig.
+
+        """
+        path, names = Path(source), rig_names()
+        if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
             text = read_text(path, "rig file", 1, RigError)
             return _build(parse_toml(text, str(path)), str(path))
-        if str(source) not in rig_names():
-            raise RigError(f"{source}: no such rig; {nearest(str(source), rig_names())}")
+        if str(source) not in names:
+            raise RigError(f"{source}: no such rig; {nearest(str(source), names)}")
         return _shipped(str(source))
+
+    def save(self, path: str | Path) -> None:
+        """Write the rig as a rig file, which `Rig.load` reads as an equal rig; an existing file is replaced.
+
+        Parameters
+        ----------
+        path
+            A file whose name ends in `.toml`.
+
+        Raises
+        ------
+        RigError
+            For another ending, a path that cannot be written, and a rig that no rig file may describe, such as a
+            corner of the uncertainty beyond the limits of the file.
+
+        """
+        where = Path(path)
+        if where.suffix != ".toml":
+            raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
+        text = toml_text(json.loads(self.document))
+        if _build(parse_toml(text, str(where)), str(where)) != self:
+            raise RigError(f"{where}: rig {self.name} does not read back as it is; it was not saved")
+        try:
+            where.write_text(text, encoding="utf-8")
+        except OSError as problem:
+            raise RigError(f"{where}: cannot be written ({problem.strerror or problem})") from None
 
     def _pump_for(self, what: str) -> HeatPump:
         if self.pump is None:
@@ -217,11 +253,27 @@ class Rig:
         return about(self)
 
     def with_(self, **changes: object) -> Rig:
-        """Return a new rig with dotted keys of the rig file changed; a layer is named by its place or its name.
+        """Return a new rig with keys of the rig file changed, in the units of the file.
 
-        Keys are those of the rig file, in its units: `rig.with_(**{"skin.layer.0.thickness_mm": 0.2})`.
+        Parameters
+        ----------
+        **changes
+            Dotted keys, or tables as dictionaries, of which only the given keys change. A layer or probe is named by
+            its place or its name.
+
+        Raises
+        ------
+        RigError
+            For an unknown key, with the nearest one, and for a value that cannot be.
+
+        Examples
+        --------
+        >>> rig = Rig.load("thenar")
+        >>> rig.with_(**{"skin.layer.dermis.thickness_mm": 1.2}, contact={"area_cm2": 4}).changes
+        ('skin.layer.dermis.thickness_mm=1.2', 'contact.area_cm2=4')
+
         """
-        document = json.loads(self.document)
+        document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)
         said = {text.partition("=")[0]: text for text in self.changes}
         said.update({key: f"{key}={value}" for key, value in changes.items()})

@@ -23,6 +23,10 @@ class SafetyVerdict:
 
     findings: tuple[Check, ...]
 
+    def __repr__(self) -> str:
+        passed = ", ".join(f"{check.quantity} {check.value:.4g} {check.unit}" for check in self.findings)
+        return f"SafetyVerdict({self.colour}{f': {passed}' if passed else ''})"
+
     @property
     def colour(self) -> str:
         """Green, amber or red."""

@@ -34,6 +34,10 @@ class Batch:
     probes: tuple[str, ...]
     values: Array
 
+    def __repr__(self) -> str:
+        _, rigs, icons, rows = self.values.shape
+        return f"Batch({icons} icons on {rigs} rigs, {rows} rows, {self.time_s[-1]:g} s: {', '.join(self.probes)})"
+
     def __getitem__(self, probe: str) -> Array:
         """Values of one probe, (rigs, icons, rows)."""
         return np.asarray(self.values[self.probes.index(probe)])

@@ -30,6 +30,10 @@ class Design:
     start_C: Array
     outcome: Outcome | None
 
+    def __repr__(self) -> str:
+        reached = "" if self.outcome is None else f", {'reached' if self.outcome.reached else 'NOT reached'}"
+        return f"Design({self.drive!r}, rest {self.rest_A:.3g} A{reached})"
+
 
 def periods(rig: Rig, end_s: float) -> Array:
     """Ends in s of the driver periods that cover a time."""

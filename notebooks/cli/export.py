@@ -18,7 +18,7 @@ from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import DeliveredDrive, Rig
-    from thermicon.circuit.packing.export import Prepared
+    from thermicon.circuit.packing.prepare import Prepared
 
 CAUTION = (
     "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
@@ -39,7 +39,7 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.export import check_names
+    from thermicon.circuit.packing.pack import check_names
 
     form = load_format(to)
     check_export_folder(folder)
@@ -113,7 +113,7 @@ def refused(ready: Ready, force: bool) -> bool:
 
 def steps_of(delivery: DeliveredDrive) -> str:
     """How the updates of a drive are told: so many a second, or so many segments."""
-    from thermicon.circuit import Setpoints
+    from thermicon.circuit.delivery.setpoints import Setpoints
 
     played = delivery.played
     if isinstance(played, Setpoints):

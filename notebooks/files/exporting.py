@@ -109,7 +109,7 @@ def prepare_icons(
     """
     from thermicon.circuit import Device
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.export import prepare_set
+    from thermicon.circuit.packing.prepare import prepare_set
 
     made = load_format(form)
     played = Device.load(device or made.device)

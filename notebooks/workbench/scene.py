@@ -14,7 +14,8 @@ from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, SafetyVerdict, Trace
+    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit.safety.limits import SafetyVerdict
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 

@@ -7,22 +7,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    DeliveredDrive,
-    Device,
-    DeviceError,
-    Record,
-    Rig,
-    Samples,
-    Setpoints,
-    deliver,
-    simulate,
-    simulate_current,
-)
+from thermicon.circuit import DeliveredDrive, Device, DeviceError, Rig, deliver, simulate, simulate_current
 from thermicon.circuit.delivery.deliver import traces_until
-from thermicon.circuit.delivery.samples import rate_of, within
-from thermicon.circuit.delivery.setpoints import closed, setpoints_of
+from thermicon.circuit.delivery.samples import Samples, rate_of, within
+from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
 from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.records import Record
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import duty_of, steady_of, switched

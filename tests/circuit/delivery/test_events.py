@@ -2,8 +2,15 @@
 
 import pytest
 
-from thermicon.circuit import Drive, Rig, delivery_deviation, events_of, simulate_current
-from thermicon.circuit.solver.delivery_deviation import DeliveryDeviation, Deviation, loss_limit, loss_table
+from thermicon.circuit import Drive, Rig, simulate_current
+from thermicon.circuit.delivery.events import events_of
+from thermicon.circuit.solver.delivery_deviation import (
+    DeliveryDeviation,
+    Deviation,
+    delivery_deviation,
+    loss_limit,
+    loss_table,
+)
 from thermicon.icons import Corners, load_library
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from thermicon.circuit import Device, Prepared, Rig, RigError, prepare
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.packing.export import Gate, prepare_set
+from thermicon.circuit.packing.prepare import Gate, prepare_set
 from thermicon.icons import Icon, parse
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")

@@ -22,7 +22,8 @@ from tests.circuit.packing.independent import Json
 from tests.circuit.packing.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
 from thermicon.circuit import Prepared
 from thermicon.circuit.delivery.formats import Format, FormatError, load_format
-from thermicon.circuit.packing.export import Gate, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Gate
 
 PER_PART = 100
 LOOKED_AT = 6

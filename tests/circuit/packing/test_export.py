@@ -13,16 +13,10 @@ from typing import Any
 import pytest
 
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import (
-    DeliveredDrive,
-    Device,
-    Prepared,
-    Rig,
-    Verdict,
-    prepare,
-)
+from thermicon.circuit import DeliveredDrive, Device, Prepared, Rig, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Verdict
 from thermicon.circuit.packing.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.packing.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest

@@ -23,7 +23,8 @@ from tests.circuit.packing.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.packing.spice_replay import by_ngspice
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import Verdict, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Verdict
 from thermicon.circuit.packing.worstcase import worst_case
 
 DRIVES = int(os.environ.get("THERMICON_EVIDENCE", "10000"))

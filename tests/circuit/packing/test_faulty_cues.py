@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Rig, deliver, prepare, worst_case
+from thermicon.circuit import Device, Drive, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import Prepared, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Prepared
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon, parse
 

@@ -6,9 +6,10 @@ from functools import cache
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, worst_case
+from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.safety.gate import gate_set
 from thermicon.icons import load_library, parse
 

@@ -4,11 +4,12 @@ import math
 
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, state_under_current
+from thermicon.circuit import Rig, RigError, rig_names
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.thermode import contact_corners
 from thermicon.circuit.solver.network import network_of, skin_network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 THENAR = Rig.load("thenar")
 

@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, simulate, state_under_current
+from thermicon.circuit import Rig, RigError, rig_names, simulate
 from thermicon.circuit.packing.refusal import needed_A
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.circuit.studies.paper import coldest_display_C
 from thermicon.icons import load_library
 

@@ -5,7 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate, worst_case
+from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set

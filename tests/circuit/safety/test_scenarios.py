@@ -6,22 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from thermicon.circuit import (
-    Drive,
-    DriveError,
-    Rig,
-    RigError,
-    corners_of,
-    design,
-    play_out,
-    simulate_current,
-    state_under_current,
-)
+from thermicon.circuit import Drive, DriveError, Rig, RigError, design, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.endings import ENDINGS
+from thermicon.circuit.safety.scenarios import play_out
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of, switched
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, state_under_current
+from thermicon.circuit import Rig
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.solver.batch_inputs import Intervals, State, run_on
 from thermicon.circuit.solver.constant_current import READ, ConstantCurrent
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 THENAR = Rig.load("thenar")
 LANES = np.arange(4, dtype=np.int64)

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate_current, state_under_current
+from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.circuit.studies.paper import (
     coldest_display_C,
     controlled_cue,

@@ -14,10 +14,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import DeliveredDrive, Device, Rig, Setpoints, deliver, prepare
+from thermicon.circuit import DeliveredDrive, Device, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.packing.pack import pack
 from thermicon.icons import Corners, Icon, load_library, parse
 
 RIG = Rig.load("thenar")

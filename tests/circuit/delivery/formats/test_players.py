@@ -14,11 +14,12 @@ from typing import Any
 import pytest
 
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
-from thermicon.circuit import Device, Record, Rig, prepare
+from thermicon.circuit import Device, Rig, prepare
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.records import Record
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
