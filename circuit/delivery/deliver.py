@@ -12,9 +12,9 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..inputs import signed
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
 from ..solver.inverse import Design, design

@@ -11,8 +11,8 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.inverse import baseline_C, target_at
 from ..solver.prescribed import modes_of

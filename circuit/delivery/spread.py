@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rig.skin import Array
+from ..arrays import Array
 from ..safety.corners import corners_of
 from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.network import network_of

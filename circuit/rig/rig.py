@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from ..inputs import nearest, read_text
-from .about import about
 from .module import Peltier
 from .modules import ModuleOrigin, module_names, module_of, unlike_before
 from .parts import (
@@ -25,13 +24,13 @@ from .parts import (
     Thermode,
     Uncertainty,
 )
-from .probefile import probes_of
-from .receptors import HORNY_LAYER, ReceptorDepths
+from .probes import probes_of
+from .rig_summary import rig_summary
 from .rig_text import toml_text
 from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from .rules import Limits
 from .settings import flattened, put_all, read_settings
-from .skin import Column, Layer, Skin, column_of
+from .skin import STRATUM_CORNEUM, Column, Layer, ReceptorDepths, Skin, column_of
 from .uncertainty import tightened, uncertainty_of
 
 LIVING_C = (28.0, 38.5)
@@ -250,7 +249,7 @@ class Rig:
         >>> print(Rig.load("thenar").about().splitlines()[2])
           rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
         """
-        return about(self)
+        return rig_summary(self)
 
     def with_(self, **changes: object) -> Rig:
         """Return a new rig with keys of the rig file changed, in the units of the file.
@@ -353,12 +352,12 @@ def _assemble(table: RigTable, document: str) -> Rig:
         )
         for layer in skin.layer
     )
-    if skin.depth_from == HORNY_LAYER and layers[0].name != HORNY_LAYER:
+    if skin.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
         raise ValueError(
-            f'skin.depth_from = "{HORNY_LAYER}": needs a first layer of that name, not "{layers[0].name}"; '
+            f'skin.depth_from = "{STRATUM_CORNEUM}": needs a first layer of that name, not "{layers[0].name}"; '
             f'rename the layer or use "surface"'
         )
-    above = skin.layer[0].thickness_mm if skin.depth_from == HORNY_LAYER else 0.0
+    above = skin.layer[0].thickness_mm if skin.depth_from == STRATUM_CORNEUM else 0.0
     body = Skin(
         skin.site,
         skin.rest_C,

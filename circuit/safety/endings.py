@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current

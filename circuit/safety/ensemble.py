@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from ..solver.batch_inputs import Bank, Index, Intervals, State, cut, run_on
+from ..solver.batch_inputs import Bank, Intervals, State, cut, run_on
 from ..solver.constant_current import ConstantCurrent
 from ..solver.drive import Drive, DriveError
 from ..solver.network import Network, network_of

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.trace import Trace
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
 from .tally import WATCHED, Tally

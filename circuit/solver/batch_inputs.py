@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from .cores import cores
 from .network import RECORDED, Network, network_of
-
-Index = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
-from ..rig.skin import Array
-from .batch_inputs import Index
 from .network import COLD, HOT, RECORDED, SKIN, Network
 
 READ = RECORDED[:5]

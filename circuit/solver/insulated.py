@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.parts import Probe
 from ..rig.rig import Rig
-from ..rig.skin import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,9 +10,9 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
-from ..rig.skin import Array
-from .batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
+from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
 from .steady import steady_state
 from .trace import Outcome, judge

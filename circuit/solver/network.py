@@ -12,8 +12,9 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array, Column
+from ..rig.skin import Column
 from .plate import DEEP_C, PLATE_NUMBERS, SINK_C, SINK_POWER_W
 
 RECORDED = (

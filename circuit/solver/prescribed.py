@@ -13,8 +13,8 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from .network import COLD, HOT, RECORDED, SKIN, Network, skin_network_of
 
 FELT = RECORDED[RECORDED.index("display_C") :]

@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from .drive import Drive
 from .network import network_of
 from .plate import RESISTANCE

@@ -8,11 +8,11 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from .batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from .batch_inputs import FEWEST, bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at

@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
 from .network import COLD, HOT, SKIN, Network, network_of
 from .plate import (
     ALPHA,

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from .network import RECORDED
 
 if TYPE_CHECKING:

@@ -14,9 +14,10 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, Array, column_of
+from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, column_of
 from ..solver.batch_inputs import Bank, cut, run_follow, run_forward
 from ..solver.drive import Drive
 from ..solver.inverse import baseline_C, design, periods, target_at

@@ -16,9 +16,9 @@ import numpy as np
 
 from thermicon.icons import Icon, load_library
 
+from ..arrays import Array
 from ..records import Table, load_records
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.network import network_of
 from ..solver.simulate import simulate
 from ..solver.steady import state_under_current

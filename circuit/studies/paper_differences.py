@@ -187,15 +187,15 @@ def _mesh(rig: Rig) -> PaperDifference:
 
 
 def _depth(palm: Rig) -> PaperDifference:
-    seen, horny = dermis_change(palm), palm.skin.layers[0].thickness_m
+    seen, corneum = dermis_change(palm), palm.skin.layers[0].thickness_m
     surface = [seen.at(depth)[0] for depth in seen.receptor_m]
-    below = [seen.at(depth + horny)[0] for depth in seen.receptor_m]
+    below = [seen.at(depth + corneum)[0] for depth in seen.receptor_m]
     return PaperDifference(
         "depth of the receptors",
         False,
         "0.15 and 0.30 mm, counted from the surface, in an epidermis of 0.081 mm.",
         f"on the rig thenar {surface[0]:.1f} and {surface[1]:.1f} K there, but {below[0]:.1f} and {below[1]:.1f} K "
-        f"when depth is counted from the base of its {horny * 1e3:g} mm horny layer.",
-        "On the palm 0.15 mm is still in the horny layer, where no receptor can be; which count the sources mean is "
+        f"when depth is counted from the base of its {corneum * 1e3:g} mm stratum corneum.",
+        "On the palm 0.15 mm is still in the stratum corneum, where no receptor can be; which count the sources mean is "
         "not stated.",
     )

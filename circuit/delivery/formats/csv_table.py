@@ -7,7 +7,7 @@ import io
 
 import numpy as np
 
-from ...rig.skin import Array
+from ...arrays import Array
 from ..delivered_drive import DeliveredDrive
 from .form import PLAYS_SAMPLES, Column, Format, command_column, events_in, samples_of
 

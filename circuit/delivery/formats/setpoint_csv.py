@@ -7,7 +7,7 @@ import io
 
 import numpy as np
 
-from ...rig.skin import Array
+from ...arrays import Array
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from .csv_table import marks_of

@@ -21,7 +21,7 @@ def test_inside_the_bounds_of_a_file_a_corner_is_what_with_gives(name: str) -> N
     assert len(corners) == (65 if rig.thermode is None else 5)
     for corner in (corners[1], corners[-1]):
         changes = {
-            "contact.resistance_m2K_per_W": rig.contact.resistance_m2K_per_W * (1 + corner.contact_relative),
+            "contact.resistance_m2K_per_W": rig.contact.resistance_m2K_per_W * (1 + corner.contact_resistance_relative),
             "ambient.temperature_C": rig.ambient.temperature_C + corner.ambient_K,
         }
         if rig.thermode is None:

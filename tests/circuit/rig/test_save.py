@@ -25,7 +25,8 @@ def test_changes_probes_sheets_and_odd_texts_survive(tmp_path: Path) -> None:
         title='"quotes", \\ and µ',
         notes=["two\nlines"],
         probe=probe,
-        **{"module.datasheet": sheets, "contact.area_cm2": 0.1},
+        contact={"area_cm2": 0.1},
+        module={"datasheet": sheets},
     )
     rig.save(tmp_path / "mine.toml")
     again = Rig.load(tmp_path / "mine.toml")

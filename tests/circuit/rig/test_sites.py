@@ -79,14 +79,14 @@ def test_receptors_are_nodes_of_the_mesh(name: str) -> None:
 def test_receptor_depths_in_both_conventions() -> None:
     depths = THENAR.receptor_depths()
     assert (depths.cold_mm, depths.warm_mm) == (0.15, 0.30)
-    assert (depths.cold_below_horny_mm, depths.warm_below_horny_mm) == (-0.02, 0.13)
+    assert (depths.cold_below_corneum_mm, depths.warm_below_corneum_mm) == (-0.02, 0.13)
     base = THENAR.with_(**{"skin.depth_from": "stratum corneum"})
     assert base.receptor_depths() == type(depths)(0.32, 0.47, 0.15, 0.30)
     assert base.skin.cold_receptor_m == pytest.approx(0.32e-3)
     thick = base.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
     assert thick.receptor_depths() == Rig.load("fingertip").receptor_depths()
     assert base.with_(**{"skin.depth_from": "surface"}).receptor_depths() == depths
-    assert SHANI.receptor_depths().cold_below_horny_mm is None
+    assert SHANI.receptor_depths().cold_below_corneum_mm is None
 
 
 @pytest.mark.parametrize(

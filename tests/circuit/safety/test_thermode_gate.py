@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Limits, Rig, deliver
+from thermicon.circuit.arrays import Array
 from thermicon.circuit.packing.worstcase import ways_of, worst_case, worst_cases
-from thermicon.circuit.rig.skin import Array
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.safety.thermode import Shown, Under
