@@ -11,21 +11,21 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.inverse import baseline_C, target_at
 from ..solver.prescribed import modes_of
 from ..solver.simulate import rows_until
 from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .realised import Realised
 from .setpoints import Setpoints, closed, setpoints_of
 from .thermode import display_of
 
 
-def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:
+def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
     """Return a cue as a thermode delivers it; its clock begins with the start command.
 
     Raises DeviceError where the cue prescribes a current, or what the thermode cannot be told.
@@ -46,7 +46,7 @@ def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
     )
     designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end, rate_Hz)
     rate = 1.0 / setpoints.tick_s
-    return Realised(
+    return DeliveredDrive(
         icon, rig, device, rate, rate, 0.0, setpoints, None, designed, trace, outcome, (), undelayed
     )  # fmt: skip
 

@@ -13,10 +13,10 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.parts import Thermode
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
 from .inverse import baseline_C, steps_at, target_at
 from .network import skin_network_of
 from .prescribed import FELT, Index, SkinModes, modes_of, modes_on, shown

@@ -8,9 +8,9 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
 from .displayed import design_display
 from .prescribed import FELT, modes_of
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
-from ..rig.skin import Array
-from .batch_inputs import Index, bank_of, cut, run_follow, run_forward, run_regulate
+from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
-from .steady import hold
+from .steady import steady_state
 from .trace import Outcome, judge
 
 LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
@@ -29,6 +29,10 @@ class Design:
     rest_A: float
     start_C: Array
     outcome: Outcome | None
+
+    def __repr__(self) -> str:
+        reached = "" if self.outcome is None else f", {'reached' if self.outcome.reached else 'NOT reached'}"
+        return f"Design({self.drive!r}, rest {self.rest_A:.3g} A{reached})"
 
 
 def periods(rig: Rig, end_s: float) -> Array:
@@ -76,7 +80,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
     """As `design`, by the inverse of the module alone: a loop of the rig's own takes no part."""
     control = icon.context.control
-    current, state = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
+    current, state = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     if control == "current":
         corners = icon.corners(current)
         times, values = list(corners.time_s), list(corners.value)
@@ -112,7 +116,7 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
         if not cues:
             continue
         bases = [baseline_C(icon, rig) for icon in cues]
-        rest = {base: hold(rig, control, base) for base in set(bases)}
+        rest = {base: steady_state(rig, control, base) for base in set(bases)}
         targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
         lanes = np.arange(len(cues), dtype=np.int64)
         states = bank.states([rest[base][1] for base in bases])

@@ -8,17 +8,17 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from .batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from .batch_inputs import FEWEST, bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
-from .network import PROBES, network_of
+from .network import RECORDED, network_of
 from .probes import between, divided, joined, readings_of, sensed
-from .steady import check_sink, hold, steady_state
+from .steady import check_sink, state_under_current, steady_state
 from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
@@ -63,7 +63,7 @@ def duration_s(icon: Icon, rig: Rig) -> float:
     if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
-        return float(icon.corners(hold(rig, "display", baseline_C(icon, rig))[0]).duration_s)
+        return float(icon.corners(steady_state(rig, "display", baseline_C(icon, rig))[0]).duration_s)
     return float(icon.corners(baseline_C(icon, rig)).duration_s)
 
 
@@ -136,7 +136,7 @@ def _replay(
 ) -> tuple[Trace, Array]:
     first = float(drive.current_A[0])
     try:
-        state = steady_state(network_of(rig), first) if start_C is None else start_C
+        state = state_under_current(network_of(rig), first) if start_C is None else start_C
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     check_sink(rig, state)
@@ -154,7 +154,7 @@ def _run(
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
     own = readings_of(rig)
     recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
-    probes, others = recorded[: len(PROBES), ::parts], recorded[len(PROBES) :]
+    probes, others = recorded[: len(RECORDED), ::parts], recorded[len(RECORDED) :]
     listed = 0 if own is None else len(own[0])
     trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
     return trace, others[listed:, ::parts]
@@ -164,18 +164,18 @@ def _trace(
     rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
     probes: Array, own: tuple[tuple[str, Array], ...],
 ) -> Trace:  # fmt: skip
-    """The trace of recorded PROBES (probes, rows); RigError where they are not physical."""
-    temperatures = probes[: PROBES.index("heat_flow_skin_W_per_m2")]
+    """The trace of recorded RECORDED (probes, rows); RigError where they are not physical."""
+    temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
     possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
     if not possible.all():
         at = int(np.argmin(possible))
-        where = PROBES[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
+        where = RECORDED[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
         raise RigError(
             f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
             f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
         )
     current = drive.at(rows)
-    values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
+    values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
     voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
     limits = (rig.driver.current_min_A, rig.driver.current_max_A)
     return Trace(

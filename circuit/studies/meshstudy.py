@@ -14,15 +14,16 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, Array, column_of
+from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, column_of
 from ..solver.batch_inputs import Bank, cut, run_follow, run_forward
 from ..solver.drive import Drive
 from ..solver.inverse import baseline_C, design, periods, target_at
 from ..solver.network import Network, network_on
 from ..solver.simulate import rows_until
-from ..solver.steady import holding_current_A, steady_state
+from ..solver.steady import holding_current_A, state_under_current
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -238,14 +239,14 @@ class _Currents:
         return _Currents(plan.drive, plan.rest_A, end)
 
     def on(self, network: Network) -> tuple[Drive, Array]:
-        return self.drive, steady_state(network, self.rest_A)
+        return self.drive, state_under_current(network, self.rest_A)
 
 
 def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[Drive, Array]:
     """The current that leads one mesh along a cue, and where it starts."""
     assert isinstance(cue, Icon)
     control, base, ends = cue.context.control, baseline_C(cue, rig), periods(rig, end_s)
-    state = steady_state(network, holding_current_A(network, control, base))
+    state = state_under_current(network, holding_current_A(network, control, base))
     bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
     target = target_at(cue, base, ends)[np.newaxis]
     currents, _, _ = run_follow(

@@ -30,6 +30,9 @@ class Nearest:
     slower: float
     smaller: float
 
+    def __repr__(self) -> str:
+        return f"Nearest({self.icon.name!r}: {self.sentence})"
+
     @property
     def sentence(self) -> str:
         """What to change, in one sentence."""

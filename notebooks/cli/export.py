@@ -17,8 +17,8 @@ from ..text.progress import progress_bar
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Realised, Rig
-    from thermicon.circuit.packing.export import Prepared
+    from thermicon.circuit import DeliveredDrive, Rig
+    from thermicon.circuit.packing.prepare import Prepared
 
 CAUTION = (
     "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
@@ -39,7 +39,7 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.export import check_names
+    from thermicon.circuit.packing.pack import check_names
 
     form = load_format(to)
     check_export_folder(folder)
@@ -47,7 +47,7 @@ def export_file(
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, rig)
-    with progress_bar("realising") as progress:
+    with progress_bar("simulating") as progress:
         rest = others(whole, chosen)
         ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
     for warning in ready.warnings:
@@ -77,7 +77,7 @@ def tell(ready: Sequence[Prepared]) -> None:
             note(line)
     for about, text in gate_words(ready):
         note(f"{about}: {text}")
-    spreads = [(one.spread, one.realised.icon.name) for one in ready if one.spread is not None]
+    spreads = [(one.spread, one.delivery.icon.name) for one in ready if one.spread is not None]
     if spreads:
         widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
         note(f"{name}: {widest}")
@@ -85,17 +85,17 @@ def tell(ready: Sequence[Prepared]) -> None:
 
 def told_of(one: Prepared) -> Iterator[str]:
     """How an icon is played and how far that is from the design, then a warning a line."""
-    realised = one.realised
-    receptors = [each for each in one.apart.places if "receptor" in each.place]
+    delivery = one.delivery
+    receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     yield (
-        f"{realised.icon.name}: {number(realised.file_s, 2)} s {steps_of(realised)} on "
-        f"{realised.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
+        f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {steps_of(delivery)} on "
+        f"{delivery.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
     for warning in one.warnings:
-        yield f"warning: {realised.icon.name}: {warning}"
+        yield f"warning: {delivery.icon.name}: {warning}"
 
 
 def refused(ready: Ready, force: bool) -> bool:
@@ -111,14 +111,14 @@ def refused(ready: Ready, force: bool) -> bool:
     return final or (forcible and not force)
 
 
-def steps_of(realised: Realised) -> str:
+def steps_of(delivery: DeliveredDrive) -> str:
     """How the updates of a drive are told: so many a second, or so many segments."""
-    from thermicon.circuit import Setpoints
+    from thermicon.circuit.delivery.setpoints import Setpoints
 
-    played = realised.played
+    played = delivery.played
     if isinstance(played, Setpoints):
         return f"in {len(played.segments)} segments"
-    return f"at {number(realised.rate_Hz, 1)} Hz"
+    return f"at {number(delivery.rate_Hz, 1)} Hz"
 
 
 def _shown(names: Sequence[str], most: int = 6) -> list[str]:

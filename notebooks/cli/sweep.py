@@ -84,14 +84,14 @@ def sweep(
 ) -> pd.DataFrame:
     """Play every icon at every value of a key of the rig; a row each, values in the unit of the rig file.
 
-    Columns: icon, the key, the fields of `thermicon.circuit.Summary`, what the receptors see, and `reason`. A value at
+    Columns: icon, the key, the fields of a `Summary`, what the receptors see, and `reason`. A value at
     which the rig cannot be, or cannot play the icon, gives a row with only the reason. Raises RigError for a key that
     no rig has.
     """
     import pandas as pd
 
-    from thermicon.circuit import Summary
     from thermicon.circuit.rig.settings import put
+    from thermicon.circuit.safety.summary import Summary
 
     put(json.loads(rig.document), key, float(values[0]))
     played, rows = list(icons), []

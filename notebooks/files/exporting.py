@@ -1,4 +1,4 @@
-"""An export from icons to files, for command line and workbench: realised, judged, compared, packed, written."""
+"""An export from icons to files, for command line and workbench: delivered, judged, compared, packed, written."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Ready:
 
         found = []
         for one in self.prepared:
-            name, causes = one.realised.icon.name, one.refusals
+            name, causes = one.delivery.icon.name, one.refusals
             felt = self.losses.get(name, ())
             if felt and not causes:
                 more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
@@ -86,7 +86,7 @@ def formats_for(device: Device) -> tuple[str, ...]:
 
 
 def ready_of(icon: Icon | None, rig: Rig, device: str | None = None, form: str = FORMAT) -> Ready:
-    """Realise and judge one icon; raises ValueError without one, InputError where the device cannot play it."""
+    """Deliver and judge one icon; raises ValueError without one, InputError where the device cannot play it."""
     if icon is None:
         raise ValueError("there is no icon to export: the text has errors")
     return prepare_icons([icon], [], rig, device, form)
@@ -102,14 +102,14 @@ def prepare_icons(
     tail_s: float = 0.0,
     pause_s: float | None = None,
 ) -> Ready:
-    """Realise and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
+    """Deliver and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
 
     ``tail_s`` is followed after the last corner, ``pause_s`` lies between plays (None: the recovery time).
     Raises InputError where the device cannot play an icon, or not in this format.
     """
     from thermicon.circuit import Device
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.export import prepare_set
+    from thermicon.circuit.packing.prepare import prepare_set
 
     made = load_format(form)
     played = Device.load(device or made.device)
@@ -135,24 +135,24 @@ def compare_felt(
     warn: Callable[[str], None],
 ) -> tuple[PerceivedChange, ...]:
     """What the device changes of the exported icons for a nominal person, beside the others of the set."""
-    from thermicon.circuit.delivery.realise import realise, traces_until
+    from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
 
-    everyone = [one.realised for one in ready]
+    everyone = [one.delivery for one in ready]
     for icon in rest:
         try:
-            everyone.append(realise(icon, rig, device, tail_s=tail_s))
+            everyone.append(deliver(icon, rig, device, tail_s=tail_s))
         except InputError as problem:
             warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
-    end = max(realised.end_s for realised in everyone) + AFTER_S
-    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[realised] for realised in everyone]
+    end = max(delivery.end_s for delivery in everyone) + AFTER_S
+    groups = [everyone] if len(everyone) <= MOST_COMPARED else [[delivery] for delivery in everyone]
     if len(groups) > 1:
         warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
     felt: list[PerceivedChange] = []
     for group in groups:
-        traces = [traces_until(realised, end) for realised in group]
-        names = [realised.icon.name for realised in group]
+        traces = [traces_until(delivery, end) for delivery in group]
+        names = [delivery.icon.name for delivery in group]
         felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
     return tuple(felt[: len(ready)])
 

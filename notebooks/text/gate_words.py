@@ -42,7 +42,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     from thermicon.circuit.safety.gate import Gate
 
     gates = [
-        (one.realised.icon.name, one.verdict) for one in ready if isinstance(one.verdict, Gate) and one.verdict.safe
+        (one.delivery.icon.name, one.verdict) for one in ready if isinstance(one.verdict, Gate) and one.verdict.safe
     ]
     if not gates:
         return []

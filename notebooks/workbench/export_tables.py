@@ -26,12 +26,12 @@ def delivered_html(ready: Ready) -> str:
     """A row for every icon: how long, how near to the design, detection and safety; then warnings and refusals."""
     head = ("icon", "lasts", "rate", "receptors within", "rms", "detected", "d′ changes by", "safety")
     felt = {change.icon: change for change in ready.felt}
-    rows = "".join(_delivered(one, felt.get(one.realised.icon.name)) for one in ready.prepared)
+    rows = "".join(_delivered(one, felt.get(one.delivery.icon.name)) for one in ready.prepared)
     cells = "".join(f"<th>{name}</th>" for name in head)
     table = f'<table class="th"><thead><tr>{cells}</tr></thead><tbody>{rows}</tbody></table>'
     told: dict[str, list[str]] = {}  # what holds for many icons is said once
     for one in ready.prepared:
-        name = one.realised.icon.name
+        name = one.delivery.icon.name
         for line in one.warnings:
             told.setdefault(line, []).append(name)
     warned = [f"{', '.join(names)}: {said}" for said, names in told.items()]
@@ -50,13 +50,13 @@ def asked_html(prepared: Sequence[Prepared]) -> str:
 
 
 def _delivered(one: Prepared, felt: PerceivedChange | None) -> str:
-    realised, receptors = one.realised, [each for each in one.apart.places if "receptor" in each.place]
+    delivery, receptors = one.delivery, [each for each in one.deviation.places if "receptor" in each.place]
     largest = max((abs(each.largest_K), each.at_s) for each in receptors)
     moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None
     cells = (
-        escape(realised.icon.name),
-        f"{number(realised.file_s, 2)} s",
-        steps_of(realised).removeprefix("at ").removeprefix("in "),
+        escape(delivery.icon.name),
+        f"{number(delivery.file_s, 2)} s",
+        steps_of(delivery).removeprefix("at ").removeprefix("in "),
         f"{number(1e3 * largest[0])} mK at {largest[1]:.2f} s",
         f"{number(1e3 * max(each.rms_K for each in receptors))} mK",
         f"{percent(felt.detection.designed)} → {percent(felt.detection.delivered)}" if felt else "–",
@@ -73,7 +73,7 @@ def gate_html(one: Prepared) -> str:
     """
     verdict = one.verdict
     checks: Sequence[Check] = getattr(verdict, "checks", ())
-    name, beyond = escape(one.realised.icon.name), sum(not check.passed for check in checks)
+    name, beyond = escape(one.delivery.icon.name), sum(not check.passed for check in checks)
     summary = f'{name}: <span class="{COLOURS[verdict.colour]}">safety {verdict.colour}</span>'
     kept = f"{beyond} of {len(checks)} limits exceeded" if beyond else f"{len(checks)} limits kept"
     sources = {source: place for place, source in enumerate(dict.fromkeys(check.source for check in checks), 1)}

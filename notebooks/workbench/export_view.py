@@ -152,7 +152,7 @@ class ExportView:
         made = prepare_icons(chosen, rest, rig, device, form, step, pause_s=pause_of(typed))
         shown = self.design.scene.icon
         red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
-        named = (k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown)
+        named = (k for k, one in enumerate(made.prepared) if one.delivery.icon.name == shown)
         place = next(red, next(named, 0))  # what stops all of them is looked at first
         picture = export_svg(made, place)
         turn.tell(lambda: self._show(made, place, picture, want))

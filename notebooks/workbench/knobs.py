@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from thermicon.circuit import Rig, RigError, hold, rig_names
+from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.perception import Observer, age_factor, load_thresholds
 from thermicon.perception.observer.people import YOUNG_YEARS
@@ -195,7 +195,7 @@ _OF_SITE = ("site", "cold_receptor_mm", "warm_receptor_mm", "depth_from", "layer
 def _held(rig: Rig) -> Rig:
     """The rig, if there is a current that holds its skin at rest; RigError otherwise. A thermode needs none."""
     if rig.thermode is None:
-        hold(rig, "skin", rig.skin.rest_C)
+        steady_state(rig, "skin", rig.skin.rest_C)
     return rig
 
 

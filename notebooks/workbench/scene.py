@@ -14,7 +14,8 @@ from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, SafetyVerdict, Trace
+    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit.safety.limits import SafetyVerdict
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 
@@ -139,7 +140,7 @@ def scene(
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
-    from thermicon.circuit import duration_s, hold, judge_safety, simulate
+    from thermicon.circuit import duration_s, judge_safety, simulate, steady_state
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.perception import perceive
 
@@ -152,7 +153,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
     percept = perceive(trace, observer)
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.context.control == "current" else base
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     return Drawing(
         icon=icon,
         rig=rig,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.solver.difference import loss_limit
+from thermicon.circuit.solver.delivery_deviation import loss_limit
 
 from ..arrays import Array
 from ..observer.observer import Observer, check_norm

@@ -250,7 +250,7 @@ def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
 
 
 def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
-    from thermicon.circuit import usual_tracking
+    from thermicon.circuit.solver.batch import usual_tracking
 
     return asked or ", ".join(sorted({usual_tracking(icon) for icon in icons}))
 

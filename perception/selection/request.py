@@ -119,11 +119,11 @@ def energy_J(trace: Trace, until_s: float) -> float:
 
 def shape_of(icon: Icon, rig: Rig) -> object:
     """What two icons share that play alike: control and corner points."""
-    from thermicon.circuit import hold
+    from thermicon.circuit import steady_state
     from thermicon.circuit.solver.inverse import baseline_C
 
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.context.control == "current" else base
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     corners = icon.corners(start)
     return icon.context.control, base, corners
 

@@ -10,7 +10,7 @@ import itertools
 from dataclasses import replace
 from functools import lru_cache
 
-from thermicon.circuit import Rig, hold
+from thermicon.circuit import Rig, steady_state
 from thermicon.circuit.records import Record, Table
 from thermicon.circuit.solver.network import network_of
 
@@ -30,7 +30,7 @@ def neutral_flux(known: Table, channel: Channel) -> Record:
     zone = known.one("complete adaptation")
     rig = Rig.load(RIG)
     network, column = network_of(rig), receptor_column("heat flow", channel)
-    low, high = (network.read(hold(rig, "skin", level)[1], column) for level in zone.interval)
+    low, high = (network.read(steady_state(rig, "skin", level)[1], column) for level in zone.interval)
     return Record(
         quantity="neutral heat flow",
         unit="W/m²",

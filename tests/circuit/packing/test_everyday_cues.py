@@ -74,7 +74,7 @@ def case_of(icon: Icon, rig: Rig, device: Device, column: str, cue: str, forms: 
         if device.driven_by not in form.takes:
             continue
         try:
-            form.write(ready.realised)
+            form.write(ready.delivery)
             written.append((name, ""))
         except FormatError as problem:
             written.append((name, str(problem)))

@@ -3,17 +3,8 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Drive,
-    Rig,
-    RigError,
-    design,
-    design_many,
-    simulate,
-    simulate_current,
-    simulate_many,
-    simulate_stream,
-)
+from thermicon.circuit import Drive, Rig, RigError, design, simulate, simulate_current, simulate_many, simulate_stream
+from thermicon.circuit.solver.inverse import design_many
 from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")

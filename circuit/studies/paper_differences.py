@@ -8,7 +8,7 @@ import numpy as np
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
-from ..solver.steady import hold
+from ..solver.steady import steady_state
 from .meshstudy import Mesh, mesh_study
 from .paper import (
     ControlledCue,
@@ -28,7 +28,7 @@ SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class PaperDifference:
     """One point of comparison: whether we agree, what the paper says, what we find, and why."""
 
     topic: str
@@ -43,10 +43,10 @@ class Difference:
         )
 
 
-def account() -> tuple[Difference, ...]:
+def paper_differences() -> tuple[PaperDifference, ...]:
     """Play the paper's cue on its own rig (limits lifted) and on `thenar`, and say point by point where we differ.
 
-    >>> for point in account():
+    >>> for point in paper_differences():
     ...     print(point.topic, "-", "agrees" if point.agrees else "differs")
     shape under control - agrees
     current - differs
@@ -71,9 +71,9 @@ def account() -> tuple[Difference, ...]:
     )
 
 
-def _shape(cue: ControlledCue) -> Difference:
+def _shape(cue: ControlledCue) -> PaperDifference:
     wrong = cue.distortions
-    return Difference(
+    return PaperDifference(
         "shape under control",
         wrong["skin"][0] < wrong["skin"][1] and wrong["display"][1] < wrong["display"][0],
         "with the skin prescribed the skin's curve is the well-shaped step and the display's is distorted; the older "
@@ -85,15 +85,15 @@ def _shape(cue: ControlledCue) -> Difference:
     )
 
 
-def _current(rig: Rig) -> Difference:
+def _current(rig: Rig) -> PaperDifference:
     own = printed().one("module current").central
     misses = miss_by_limit(rig, [rig.driver.current_max_A, own]).miss_K
-    return Difference(
+    return PaperDifference(
         "current",
         False,
         "the drive that makes the skin's step is found and played; no limit is given.",
         f"at {rig.driver.current_max_A:g} A the skin misses by {misses[0]:.2f} K, at the module's own {own:g} A by "
-        f"{misses[1]:.2f} K; {hold(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
+        f"{misses[1]:.2f} K; {steady_state(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
         f"The limit is derived: with it held the display settles at {coldest_display_C(rig):.1f} °C, and the paper "
         f"says about {printed().one('lowest contact temperature').central:g} °C at the lowest. A corner in the skin's "
         "temperature asks for a current that grows without bound as the corner gets sharper, and the printed slab's "
@@ -101,12 +101,12 @@ def _current(rig: Rig) -> Difference:
     )
 
 
-def _directions(rig: Rig, cue: ControlledCue) -> Difference:
+def _directions(rig: Rig, cue: ControlledCue) -> PaperDifference:
     one_way = simulate(cooling_step("skin"), rig.with_(**{"driver.current_min_A": 0}), tail_s=4.0).outcome
     assert one_way is not None
     hot = printed().one("surface stays below").central
     warm = simulate(cooling_step("skin"), rig, tail_s=4.0).display_C.max()
-    return Difference(
+    return PaperDifference(
         "directions of current",
         False,
         f"cooling only, so that the surface stays below the hot plate's {hot:g} °C by construction.",
@@ -117,9 +117,9 @@ def _directions(rig: Rig, cue: ControlledCue) -> Difference:
     )
 
 
-def _rest(rig: Rig, palm: Rig) -> Difference:
+def _rest(rig: Rig, palm: Rig) -> PaperDifference:
     low, high = (film * (rig.skin.rest_C - rig.ambient.temperature_C) for film in SURFACE_FILM_W_PER_M2K)
-    return Difference(
+    return PaperDifference(
         "rest",
         False,
         "skin over tissue fixed at 37 °C rests at about 32 °C in room air.",
@@ -130,10 +130,10 @@ def _rest(rig: Rig, palm: Rig) -> Difference:
     )
 
 
-def _receptors(rig: Rig) -> Difference:
+def _receptors(rig: Rig) -> PaperDifference:
     seen, said, rate = dermis_change(rig), printed().one("dermis change").central, printed().one("dermis rate").central
     (cold, cold_rate), (warm, warm_rate) = (seen.at(depth) for depth in seen.receptor_m)
-    return Difference(
+    return PaperDifference(
         "change at the receptors",
         False,
         f"about {said:g} °C at about {rate:g} °C/s at the thermoreceptors.",
@@ -145,10 +145,10 @@ def _receptors(rig: Rig) -> Difference:
     )
 
 
-def _insulated(rig: Rig) -> Difference:
+def _insulated(rig: Rig) -> PaperDifference:
     assumed, near = thermistors(rig), _lateral_for(rig, printed().one("dermis change").central)
     moved, other = (abs(float(np.ptp(found.trace.probe("3")))) for found in (assumed, near))
-    return Difference(
+    return PaperDifference(
         "thermistor on insulated skin",
         False,
         "its curve is flat and resembles the one inside the dermis; distance may stand for depth.",
@@ -169,12 +169,12 @@ def _lateral_for(rig: Rig, change_K: float) -> Thermistors:
     return thermistors(rig, lateral_m=float(brentq(over, 0.3e-3, 5e-3, xtol=2e-5)))
 
 
-def _mesh(rig: Rig) -> Difference:
+def _mesh(rig: Rig) -> PaperDifference:
     study = mesh_study(
         rig, cooling_step("display"), way="temperature", meshes=[Mesh("1 + 5", elements=(1, 5)), Mesh("own")]
     )
     early, late, fine = study.part(0, 0.5), study.part(0, 4.0), np.abs(study.error_K[1]).max() * 1e3
-    return Difference(
+    return PaperDifference(
         "mesh",
         False,
         "one element and five are enough: finer ones change the results insignificantly.",
@@ -186,16 +186,16 @@ def _mesh(rig: Rig) -> Difference:
     )
 
 
-def _depth(palm: Rig) -> Difference:
-    seen, horny = dermis_change(palm), palm.skin.layers[0].thickness_m
+def _depth(palm: Rig) -> PaperDifference:
+    seen, corneum = dermis_change(palm), palm.skin.layers[0].thickness_m
     surface = [seen.at(depth)[0] for depth in seen.receptor_m]
-    below = [seen.at(depth + horny)[0] for depth in seen.receptor_m]
-    return Difference(
+    below = [seen.at(depth + corneum)[0] for depth in seen.receptor_m]
+    return PaperDifference(
         "depth of the receptors",
         False,
         "0.15 and 0.30 mm, counted from the surface, in an epidermis of 0.081 mm.",
         f"on the rig thenar {surface[0]:.1f} and {surface[1]:.1f} K there, but {below[0]:.1f} and {below[1]:.1f} K "
-        f"when depth is counted from the base of its {horny * 1e3:g} mm horny layer.",
-        "On the palm 0.15 mm is still in the horny layer, where no receptor can be; which count the sources mean is "
+        f"when depth is counted from the base of its {corneum * 1e3:g} mm stratum corneum.",
+        "On the palm 0.15 mm is still in the stratum corneum, where no receptor can be; which count the sources mean is "
         "not stated.",
     )

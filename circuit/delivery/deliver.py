@@ -12,43 +12,43 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..inputs import signed
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
 from ..solver.inverse import Design, design
 from ..solver.pwm import steady_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import hold
+from ..solver.steady import steady_state
 from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive, Narrowed
 from .device import Device
-from .realised import Narrowed, Realised
-from .regulated import realise_setpoints, traces_of_setpoints
+from .regulated import deliver_setpoints, traces_of_setpoints
 from .samples import Samples, current_of, led, rate_of, sample, within
 from .setpoints import Setpoints
-from .temperatures import designed_until, follow_samples, realise_temperatures
+from .temperatures import deliver_temperatures, designed_until, follow_samples
 
 BRIDGE_ROUNDS = 3
 """Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
 
 
-__all__ = ["Narrowed", "Realised", "designed_until", "followed", "realise", "start_of", "traces_until"]
+__all__ = ["Narrowed", "DeliveredDrive", "designed_until", "followed", "deliver", "start_of", "traces_until"]
 
 
-def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> Realised:
+def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> DeliveredDrive:
     """Return what a device makes of a cue on a rig; the traces have `rate_Hz` rows a second.
 
     Raises RigError where the baseline cannot be held, DeviceError where the device cannot play the cue at all.
 
     >>> from thermicon.icons import load_library
-    >>> realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
-    Realised('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
+    >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
+    DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
     """
     if device.driven_by == "set-points":
-        return realise_setpoints(icon, rig, device, tail_s, rate_Hz)
+        return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
     if device.driven_by == "temperatures":
-        return realise_temperatures(icon, rig, device, tail_s, rate_Hz)
+        return deliver_temperatures(icon, rig, device, tail_s, rate_Hz)
     end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
@@ -62,7 +62,7 @@ def realise(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
         told = (narrowed.text, *told)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    found = Realised(
+    found = DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
         model, plan.outcome, told, None, narrowed,
     )  # fmt: skip
@@ -85,9 +85,9 @@ def _sampled(
     return samples, told
 
 
-def start_of(realised: Realised) -> Array | None:
+def start_of(delivery: DeliveredDrive) -> Array | None:
     """State in °C from which a delivered drive starts; None: the steady state of its first current."""
-    return _start_of(realised.device, realised.rig, realised.played)
+    return _start_of(delivery.device, delivery.rig, delivery.played)
 
 
 def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
@@ -97,17 +97,17 @@ def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | 
     return steady_of(rig, float(played.command[0]), min(-low, high))
 
 
-def traces_until(realised: Realised, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
+def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, the rest held at the end."""
-    rig, played = realised.rig, realised.played
+    rig, played = delivery.rig, delivery.played
     if isinstance(played, Setpoints):
-        designed, delivered, _ = traces_of_setpoints(realised.icon, rig, realised.device, played, end_s, rate_Hz)
+        designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s, rate_Hz)
         return designed, delivered
-    designed = simulate_current(designed_until(realised.designed, end_s), rig, rate_Hz=rate_Hz)
+    designed = simulate_current(designed_until(delivery.designed, end_s), rig, rate_Hz=rate_Hz)
     until = played.until(end_s)
-    by_loop = realised.device.driven_by == "temperatures"
-    drive = _cut(follow_samples(rig, until) if by_loop else current_of(realised.device, rig, until), end_s)
-    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(realised))
+    by_loop = delivery.device.driven_by == "temperatures"
+    drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
+    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(delivery))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
@@ -143,7 +143,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
     """Return the current by which the display follows set-points from `lead_s` on; RigError where there is no rest."""
-    rest, state = hold(rig, "display", float(setpoints.level_C[0]))
+    rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
     bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = int(np.ceil(end_s / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period

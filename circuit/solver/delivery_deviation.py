@@ -15,7 +15,7 @@ PLACES = {"skin": "skin_C", "cold receptor": "cold_receptor_C", "warm receptor":
 
 
 @dataclass(frozen=True, slots=True)
-class Apart:
+class Deviation:
     """Delivered minus designed at one place: largest difference in K (signed) and its time in s, rms in K."""
 
     place: str
@@ -25,16 +25,16 @@ class Apart:
 
 
 @dataclass(frozen=True, slots=True)
-class Difference:
+class DeliveryDeviation:
     """How far a delivered trace lies from the designed one, at the skin and at both receptors."""
 
-    places: tuple[Apart, ...]
+    places: tuple[Deviation, ...]
 
     def __repr__(self) -> str:
         told = ", ".join(
             f"{one.place} {one.largest_K * 1e3:+.3g} mK (rms {one.rms_K * 1e3:.3g})" for one in self.places
         )
-        return f"Difference({told})"
+        return f"DeliveryDeviation({told})"
 
     def losses(self) -> tuple[str, ...]:
         """A sentence for each receptor whose rms difference is over the stated loss."""
@@ -46,12 +46,12 @@ class Difference:
         )
 
 
-def difference(designed: Trace, delivered: Trace) -> Difference:
+def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     """Return how far the delivered trace lies from the designed one; both have the same rows.
 
     >>> from thermicon.circuit import Drive, Rig, simulate_current
     >>> low, high = (simulate_current(Drive([0, 1], [a, a]), Rig.load("thenar")) for a in (0.08, 0.081))
-    >>> [round(one.largest_K, 3) for one in difference(low, high).places]
+    >>> [round(one.largest_K, 3) for one in delivery_deviation(low, high).places]
     [-0.082, -0.08, -0.078]
     """
     if len(designed.time_s) != len(delivered.time_s):
@@ -61,8 +61,8 @@ def difference(designed: Trace, delivered: Trace) -> Difference:
         apart = getattr(delivered, column) - getattr(designed, column)
         most = int(np.argmax(np.abs(apart)))
         rms = float(np.sqrt(np.mean(apart**2)))
-        found.append(Apart(place, float(apart[most]), float(designed.time_s[most]), rms))
-    return Difference(tuple(found))
+        found.append(Deviation(place, float(apart[most]), float(designed.time_s[most]), rms))
+    return DeliveryDeviation(tuple(found))
 
 
 @cache

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 WIDTH = 118
 
 
-def about(rig: Rig) -> str:
+def rig_summary(rig: Rig) -> str:
     """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text."""
     flux = -rig.resting_flux_W_per_m2
     how = "solved from the rest" if rig.skin.deep_C is None else "given"

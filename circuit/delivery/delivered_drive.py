@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from thermicon.icons import Icon
 
 from ..rig.rig import Rig
-from ..solver.difference import Difference, difference
+from ..solver.delivery_deviation import DeliveryDeviation, delivery_deviation
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
 from .device import Device
@@ -29,7 +29,7 @@ class Narrowed:
 
 
 @dataclass(frozen=True, slots=True)
-class Realised:
+class DeliveredDrive:
     """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
 
     The device gets the best that its range allows: a design within that range. `played` is what goes into files,
@@ -50,14 +50,14 @@ class Realised:
     designed_trace: Trace
     trace: Trace
     outcome: Outcome | None
-    warnings: tuple[str, ...]
+    device_warnings: tuple[str, ...]
     prompt_trace: Trace | None = None
     narrowed: Narrowed | None = None
 
     def __repr__(self) -> str:
         return (
-            f"Realised({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at {self.rate_Hz:g} Hz, "
-            f"skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
+            f"DeliveredDrive({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at "
+            f"{self.rate_Hz:g} Hz, skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
         )
 
     @property
@@ -77,14 +77,14 @@ class Realised:
         return self.drives
 
     @property
-    def apart(self) -> Difference:
+    def deviation(self) -> DeliveryDeviation:
         """How far the delivery lies from the design, a constant lag left out."""
-        return difference(self.designed_trace, self.prompt_trace or self.trace)
+        return delivery_deviation(self.designed_trace, self.prompt_trace or self.trace)
 
     @property
-    def told(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """What is to be known of the delivery: warnings, and what it asks of the driver (which a bridge replaces)."""
-        return self.warnings if self.device.driven_by == "duty" else (*self.warnings, *self.trace.beyond)
+        return self.device_warnings if self.device.driven_by == "duty" else (*self.device_warnings, *self.trace.beyond)
 
     @property
     def end_s(self) -> float:
