@@ -13,7 +13,7 @@ from ..text.messages import load_rig, note, usage
 from ..text.tables import show, table
 from .cues import pick, read_set
 from .duel import duel_of
-from .sides import Request, check_request, kind_of_both
+from .compare_inputs import Request, check_request, kind_of_both
 from .simulate import headline
 
 if TYPE_CHECKING:

@@ -83,7 +83,7 @@ def compare_command(
     """
     check_changes(changes or [])
     from .compare import compare
-    from .sides import Request
+    from .compare_inputs import Request
 
     compare(first, second, Request(file, icon, rig, tuple(changes or ())), figure)
 
