@@ -10,17 +10,20 @@ from ..figures.differences import Aligned, align, differences, quantity, with_un
 from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.messages import load_rig, note, usage
+from ..text.number_text import number, percent
 from ..text.tables import show, table
-from .cues import pick, read_set
-from .duel import duel_of
 from .compare_inputs import Request, check_request, kind_of_both
+from .cues import pick, read_set
 from .simulate import headline
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
+    from thermicon.icons import Icon, IconSet
+    from thermicon.perception import Duel
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
+MOST_IN_A_SET = 30
+"""Larger sets are compared icon by icon alone; `thermicon.perception.beats` takes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,3 +138,32 @@ def _tables(first: str, second: str, request: Request) -> list[Comparison]:
         if curves.ignored:
             note(f"{curves.name}: ignored, since no trace has them: {', '.join(curves.ignored)}")
     return [Comparison("", align(read[0], read[1]))]
+
+
+def duel_of(first: IconSet, second: IconSet, rig: Rig) -> str | None:
+    """Return one sentence on which of two sets wins; None where one has a single icon, or very many."""
+    from thermicon.perception import beats
+
+    if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
+        return None
+    return duel_line(beats(first, second, rig))
+
+
+def duel_line(found: Duel) -> str:
+    """Say how often A beats B, and by how much.
+
+    >>> from thermicon.perception import Duel
+    >>> duel_line(Duel(0.93, 0.02, 0.41, "worst", 100))
+    'predicted: A is told apart better than B in 93 % of 100 draws of person, contact, room and rig; in the middle its \
+worst pair is d′ 0.4 farther apart'
+    """
+    share, better = (found.probability, "A") if found.probability >= 0.5 else (1.0 - found.probability, "B")
+    other = "B" if better == "A" else "A"
+    drawn = f"{found.draws} draws of person, contact, room and rig"
+    if share < 0.5 + 2.0 * found.standard_error:
+        return f"predicted: A and B are told apart equally well, as far as {drawn} can say"
+    gain = abs(found.gain)
+    return (
+        f"predicted: {better} is told apart better than {other} in {percent(share)} of {drawn}; "
+        f"in the middle its worst pair is d′ {number(gain)} farther apart"
+    )

@@ -11,9 +11,8 @@ import typer
 from ..files.export_folder import check_export_folder
 from ..files.exporting import Ready, others, prepare_icons, write
 from ..text.gate_words import gate_words
-from ..text.messages import REFUSED, note
+from ..text.messages import REFUSED, note, progress_bar
 from ..text.number_text import number
-from ..text.progress import progress_bar
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:

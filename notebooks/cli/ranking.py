@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +11,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
-from ..text.messages import note, usage
-from ..text.progress import progress_bar
+from ..text.messages import note, progress_bar, usage
 from ..text.rank_text import show_ranking
 from .cache import kept
 from .cues import MOST_ICONS, read_set, warn_of_frames
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from thermicon.perception import Ranking
     from thermicon.perception.selection.request import Choosing
 
+PLAIN_OPTIONS = ("people", "seed", "tracking", "norm", "trials", "by", "parameters", "context", "gap", "bias")
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
 
@@ -113,7 +114,6 @@ def rank_files(
     near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
     if report_out is not None:
         from ..pages.report import report
-        from .command_line import command_text
 
         made = report(ranking, icons, rig, command_text(files, rig, request), near)
         with complete_or_absent(report_out) as draft:
@@ -132,3 +132,25 @@ def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
     missed = {score.name for score in ranking.icons if not score.reachable}
     near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
     return {name: found.sentence for name, found in near.items() if found is not None}
+
+
+def command_text(files: Sequence[str], rig: Rig, request: Request) -> str:
+    """Return the command that asks this, without its outputs: files by their names, and what is not the default.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.notebooks.cli.ranking import Request
+    >>> command_text(["/home/a/two icons.cue"], Rig.load("thenar"), Request(people=20))
+    "thermicon rank 'two icons.cue' --people 20"
+    """
+    words = ["thermicon", "rank", *(Path(name).name for name in files)]
+    usual, held = Request(), {name: getattr(request, name) for name in PLAIN_OPTIONS}
+    words += [] if rig.name == "thenar" else ["--rig", rig.name]
+    words += [word for change in rig.changes for word in ("--set", change)]
+    for name, value in held.items():
+        words += [] if value == getattr(usual, name) else [f"--{name}", str(value)]
+    if (asked := request.choosing) is not None:
+        words += ["--choose", str(asked.count), "--objective", asked.objective]
+        words += [word for icon in asked.must for word in ("--must", icon)]
+        words += [] if asked.most_s is None else ["--most-time", f"{asked.most_s:g}"]
+        words += [] if asked.most_J is None else ["--most-energy", f"{asked.most_J:g}"]
+    return shlex.join(words + ["--edits"] * (request.edits == "all"))

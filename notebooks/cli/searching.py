@@ -70,7 +70,7 @@ def search_command(
         check_output(output, (".cue",), "a set of icons")
     from thermicon.perception import search
 
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
     from .cues import read_set, warn_of_frames
 
     icons, where = read_set([file]), load_rig(rig, changes or [])

@@ -109,7 +109,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     from thermicon.circuit.safety.sessionplan import order_text
 
     from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
     from .cues import read_set, warn_of_site
 
     for path, suffixes, what in (

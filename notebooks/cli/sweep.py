@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
-from ..text.messages import fail, note, usage
+from ..text.messages import Progress, fail, note, progress_bar, usage
 from ..text.number_text import span
-from ..text.progress import Progress, progress_bar
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:

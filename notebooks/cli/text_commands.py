@@ -1,15 +1,19 @@
-"""The commands about icons as text: ``convert``, ``cite`` and ``explain``. They are put on the program in ``cli``."""
+"""The commands about icons as text: ``convert``, ``cite`` and ``explain``; ``main`` registers them."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..text.messages import check_changes, load_rig, usage
+from .cues import read_set, warn_of_site
 from .options import Changes, IconName, OneFile
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
 
 CONTROLS = ("skin", "display")
 
@@ -67,9 +71,20 @@ def cite_command(
     check_changes(changes or [])
     if bibtex and (rig is not None or changes):
         raise usage("describes a rig in the paragraph; BibTeX entries have no rig", "--rig" if rig else "--set")
-    from .cite import cite_file
-
     cite_file(file, bibtex, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:
+    """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
+    from thermicon.icons.papers.cite import bibtex, methods
+
+    icons = read_set([file])
+    if as_bibtex:
+        typer.echo(bibtex(icons), nl=False)
+        return
+    if rig is not None:
+        warn_of_site(file, icons, rig)
+    typer.echo(methods(icons, None if rig is None else rig.about()))
 
 
 def explain_command(

@@ -53,7 +53,7 @@ def validate_command(
         check_folder(output)
     from thermicon.perception.validation.validate import validate
 
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..text import rank_notes as beside
 from ..text import rank_text as told
-from ..text.byrules import rules_caveat, rules_lines
 from ..text.choices import choice_lines
 from ..text.number_text import number, percent, seconds
+from ..text.rank_notes import rules_caveat, rules_lines
 from .report_page import Cell, bullets, cards, element, facts, grid, page
 from .report_views import icon_parts, view_parts
 

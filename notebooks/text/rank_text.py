@@ -5,10 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from .byrules import rules_caveat, rules_lines, rules_table
 from .choices import choice_lines
 from .number_text import number, percent, seconds
-from .rank_notes import asked_so, carried_lines, norm_lines, outside_lines, playable, trouble_lines
+from .rank_notes import (
+    asked_so,
+    carried_lines,
+    norm_lines,
+    outside_lines,
+    playable,
+    rules_caveat,
+    rules_lines,
+    rules_table,
+    trouble_lines,
+)
 from .tables import show, table
 
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05

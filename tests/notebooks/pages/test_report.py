@@ -14,8 +14,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.notebooks.cli.command_line import command_text
-from thermicon.notebooks.cli.ranking import Request
+from thermicon.notebooks.cli.ranking import Request, command_text
 from thermicon.notebooks.pages.report import LIMITS, SAFETY, report
 from thermicon.notebooks.pages.report_page import page
 from thermicon.perception import Ranking, rank
