@@ -97,7 +97,7 @@ def write_report(report: ValidationReport, folder: Path) -> None:
     """
     from thermicon.perception.validation.validate_file import report_file
 
-    from ..pages.pages import as_html, as_markdown
+    from ..pages.blocks import as_html, as_markdown
     from ..pages.validation_page import TITLE, page
 
     blocks, pictures = page(report), draw_pictures(report)

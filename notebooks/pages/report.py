@@ -12,7 +12,7 @@ from ..text import rank_text as told
 from ..text.choices import choice_lines
 from ..text.number_text import number, percent, seconds
 from ..text.rank_notes import rules_caveat, rules_lines
-from .report_page import Cell, bullets, cards, element, facts, grid, page
+from .blocks import Block, Bullets, Cards, Cell, Facts, Heading, Text, as_html, grid
 from .report_views import icon_parts, view_parts
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def report(
 
     result = ranking_file(ranking, mapped=False)  # the map is drawn, not told
     title = icons.title or "Thermal icons"
-    parts = [
+    parts: list[Block] = [
         *_head(result, ranking, title),
         *_asked(result, icons, rig, command, date),
         *_warnings(result, cures or {}),
@@ -66,22 +66,23 @@ def report(
         *_pairs(result),
         *_rules(result),
         *icon_parts(result, icons, rig),
-        element("h2", "Limits of the prediction"),
-        bullets(LIMITS),
-        element("h2", "Safety"),
-        element("p", SAFETY),
+        Heading("Limits of the prediction"),
+        Bullets(LIMITS),
+        Heading("Safety"),
+        Text(SAFETY),
     ]
-    return page(f"{title}: predicted ranking", parts)
+    return as_html(parts, f"{title}: predicted ranking")
 
 
-def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[str]:
+def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Block]:
     whole, count = result["set"], len(result["icons"])
-    yield element("h1", title)
-    yield element("p", f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon", "lead")
-    yield element("p", rules_caveat(result) if ranking.by == "rules" else told.caveat(result), "note")
+    yield Heading(title, 1)
+    yield Text(f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon", "lead")
+    yield Text(rules_caveat(result) if ranking.by == "rules" else told.caveat(result), "note")
     if ranking.by == "rules":
         apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
-        yield cards([(f"{apart} of {len(result['pairs'])}", "pairs told apart by rules")] if result["pairs"] else [])
+        if result["pairs"]:
+            yield Cards(((f"{apart} of {len(result['pairs'])}", "pairs distinguishable by the rules"),))
         return
     spread = "" if ranking.people == 1 else "; for 95 % of people {} to {}"
     low, high = whole["percent_correct_interval"]
@@ -101,10 +102,10 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[str]
                     f"between {pair['a']} and {pair['b']}, {confused}",
                 )
             )
-    yield cards(shown)
+    yield Cards(tuple(shown))
 
 
-def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date: str) -> Iterator[str]:
+def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date: str) -> Iterator[Block]:
     changes = ", ".join(result["rig_changes"]) or "none"
     draws = result["set"]["parameter_draws"]
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
@@ -121,22 +122,22 @@ def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date:
         ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
         ("content hash", result["content_hash"]),
     ]
-    yield element("h2", "What was asked")
-    yield facts([row for row in rows if row[1]])
-    yield element("p", "The hash is of the icons' text, the rig and the observer's numbers: equal hashes, equal input.")
+    yield Heading("What was asked")
+    yield Facts(tuple(row for row in rows if row[1]))
+    yield Text("The hash is of the icons' text, the rig and the observer's numbers: equal hashes, equal input.")
 
 
-def _warnings(result: dict[str, Any], cures: Mapping[str, str]) -> Iterator[str]:
+def _warnings(result: dict[str, Any], cures: Mapping[str, str]) -> Iterator[Block]:
     lines = beside.trouble_lines(result["icons"], cures)
     outside = beside.outside_lines(result["icons"])
     if lines or outside:
-        yield element("h2", "Warnings")
-        yield from (element("p", line, "warn") for line in lines)
-        yield from (element("p", line, "note") for line in outside)
+        yield Heading("Warnings")
+        yield from (Text(line, "warn") for line in lines)
+        yield from (Text(line, "note") for line in outside)
 
 
-def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
-    yield element("h2", "Ranking")
+def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[Block]:
+    yield Heading("Ranking")
     rows = ranking.rows()
     if ranking.by == "rules":
         cells = [
@@ -150,9 +151,9 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
         yield grid(("place", "icon", *counts[1:]), cells, counts)
         lines = [line.strip().removeprefix("- ") for line in rules_lines(result) if line.strip()]
         worst = next((k for k, line in enumerate(lines) if line.startswith("Worst pair")), len(lines))
-        yield bullets(lines[:worst])
-        yield from (element("h3", line) for line in lines[worst : worst + 1])
-        yield bullets(lines[worst + 1 :])
+        yield Bullets(tuple(lines[:worst]))
+        yield from (Heading(line, 3) for line in lines[worst : worst + 1])
+        yield Bullets(tuple(lines[worst + 1 :]))
         return
     labels = result["confusion"]["labels"]
     made = []
@@ -161,7 +162,7 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
         trouble = ["not safe"] * (not row["safe"]) + ["not reached"] * (not row["reachable"])
         made.append(
             [
-                *("*" if apart else str(place), row["icon"], Cell(percent(row["percent_correct"]), strong=True)),
+                *("*" if apart else str(place), row["icon"], Cell(percent(row["percent_correct"]), "strong")),
                 *(percent(row["detected_probability"]), seconds(row["onset_s"]), row["channel"] or "–"),
                 *(told.rival(result["confusion"], labels.index(row["icon"])), ", ".join(trouble) or "yes"),
             ]
@@ -170,30 +171,28 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[str]:
     yield grid(columns, made, ("place", "correct", "detected", "onset"))
     if result["chosen"]:
         best, *more = choice_lines(result["chosen"])
-        yield element("h3", best)
-        yield bullets([line.strip().removeprefix("- ") for line in more])
-    yield element("h2", "The set")
+        yield Heading(best, 3)
+        yield Bullets(tuple(line.strip().removeprefix("- ") for line in more))
+    yield Heading("The set")
     lines = [*told.number_lines(result), *beside.norm_lines(result), *beside.carried_lines(result["icons"])]
-    yield bullets([line.removeprefix("Set: ").strip() for line in lines])
+    yield Bullets(tuple(line.removeprefix("Set: ").strip() for line in lines))
 
 
-def _worst(result: dict[str, Any]) -> Iterator[str]:
+def _worst(result: dict[str, Any]) -> Iterator[Block]:
     if result["by"] == "rules" or not result["set"]["worst_pair"]:
         return
     first, *reasons = told.worst_lines(result)
-    yield element("h2", first)
-    yield bullets([line.strip().removeprefix("- ") for line in reasons])
+    yield Heading(first)
+    yield Bullets(tuple(line.strip().removeprefix("- ") for line in reasons))
     (pair,) = (p for p in result["pairs"] if [p["a"], p["b"]] == result["set"]["worst_pair"])
-    yield element("h3", "What the distance is made of")
+    yield Heading("Components of the distance", 3)
     rows = []
     for part in pair["parts"]:
         own = "K/s" if part["part"] == "rate" else part["unit"]
         shown = [_sized(part[key], own if key in "ab" else part["unit"]) for key in ("a", "b", "value", "noticeable")]
         rows.append([part["part"], *shown, "–" if part["above"] is None else "yes" if part["above"] else "no"])
     yield grid(("part", pair["a"], pair["b"], "differs by", "just noticed", "above it"), rows)
-    yield element(
-        "p", "Just noticed is said of icons felt back to back; naming one from memory takes several times as much."
-    )
+    yield Text("Just noticed is said of icons felt back to back; naming one from memory takes several times as much.")
 
 
 def _sized(value: float | None, unit: str) -> str:
@@ -208,37 +207,35 @@ def _sized(value: float | None, unit: str) -> str:
     return f"{value:.2f} {written}" if abs(value) < 10 else f"{value:.1f} {written}"
 
 
-def _pairs(result: dict[str, Any]) -> Iterator[str]:
+def _pairs(result: dict[str, Any]) -> Iterator[Block]:
     if result["by"] == "rules" or not result["pairs"]:
         return
-    yield element("h2", "Pairs, the most confused first")
+    yield Heading("Pairs, the most confused first")
     rows = sorted(result["pairs"], key=lambda pair: (-pair["confused_probability"], pair["a"], pair["b"]))
     names = [part["part"] for part in rows[0]["parts"]]
     cells = [
         [
-            *(pair["a"], pair["b"], Cell(f"{pair['d_prime']:.1f}", strong=True)),
+            *(pair["a"], pair["b"], Cell(f"{pair['d_prime']:.1f}", "strong")),
             f"{100 * pair['confused_probability']:.1f} %",
-            *(Cell(_sized(part["value"], part["unit"]), strong=bool(part["above"])) for part in pair["parts"]),
+            *(Cell(_sized(part["value"], part["unit"]), "strong" if part["above"] else "") for part in pair["parts"]),
         ]
         for pair in rows[:MOST_PAIRS]
     ]
     yield grid(("icon", "and", "d′", "confused", *names), cells, ("d′", "confused", *names))
     more = f" {len(rows) - MOST_PAIRS} more pairs are in the JSON." if len(rows) > MOST_PAIRS else ""
-    yield element("p", f"Bold parts are above what is just noticed back to back.{more}")
+    yield Text(f"Bold parts are above what is just noticed back to back.{more}")
 
 
-def _rules(result: dict[str, Any]) -> Iterator[str]:
-    yield element("h2", "Rules of thumb")
+def _rules(result: dict[str, Any]) -> Iterator[Block]:
+    yield Heading("Rules of thumb")
     rules = [(icon["name"], rule) for icon in result["icons"] for rule in icon["rules"]]
     rules += [("the rig", rule) for rule in result["set"]["rules"]]
     failed = [[name, rule["text"], rule["source"]] for name, rule in rules if not rule["pass"]]
     apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
     pairs = f" Rules alone tell {apart} of {len(result['pairs'])} pairs apart." if result["pairs"] else ""
-    yield element(
-        "p", f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} Those that fail:"
-    )
-    yield grid(("icon", "rule", "source"), failed) if failed else element("p", "none.")
+    yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} Those that fail:")
+    yield grid(("icon", "rule", "source"), failed) if failed else Text("none.")
     if result["set"]["rules_disagree"]:
         first, *more = told.disagreement_lines(result["set"]["rules_disagree"])
-        yield element("p", first)
-        yield bullets([line.strip().removeprefix("- ") for line in more])
+        yield Text(first)
+        yield Bullets(tuple(line.strip().removeprefix("- ") for line in more))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +11,7 @@ import ipywidgets as widgets
 from ..files.exporting import FORMAT, Ready, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
+from ..pages.blocks import fragment
 from .background import Newest, Turn
 from .cue_check import read_text
 from .export_tables import delivered_html, gate_html, written_html
@@ -121,7 +121,7 @@ class ExportView:
             folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
             written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
         except (OutputError, ValueError, RuntimeError) as wrong:
-            self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
+            self.said["written"].value = fragment("block", f"nothing was written: {wrong}", "th-bad")
             self._say("")
             return
         self.said["written"].value = written_html(self.ready, written)
@@ -206,7 +206,7 @@ class ExportView:
         (self.body.add_class if stale else self.body.remove_class)("thermicon-stale")
 
     def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = f'<span class="{kind}" style="white-space: normal">{escape(text)}</span>'
+        self.said["status"].value = fragment("marked", text, f"{kind} th-wrap")
 
     def _safely(self, act: Callable[[], None]) -> None:
         try:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
 from ..figures.map_drawing import map_svg
+from ..pages.blocks import fragment
 from ..text.choices import NAMES
 from .apply_edit import with_edit
 from .background import Newest, Turn
@@ -147,11 +147,10 @@ class SetView:
         self.apply.disabled = True
         if a == b:
             self.editor.forget()
-            self.said["pair"].value = f'<div class="th-head">{escape(a)}</div>'
+            self.said["pair"].value = fragment("block", a, "th-head")
             self.said["why"].value = ""
-            self.said[
-                "edit_text"
-            ].value = '<span class="th-soft">choose a cell of two icons: it tells what parts them</span>'
+            hint = "select a cell of two different icons to see what separates them"
+            self.said["edit_text"].value = fragment("marked", hint, "th-soft")
             return
         self.said["pair"].value, self.said["why"].value = pair_html(made.pair(a, b)), why_html(made.pair(a, b))
         self.said["edit_text"].value = edit_html(None)
@@ -166,7 +165,7 @@ class SetView:
             raise ValueError("there is no edit to apply")
         text = with_edit(self.design.text, edit.edited, edit.old, edit.new)
         self.apply.disabled = True
-        self.said["edit_text"].value = f'<span class="th-good">applied: {escape(edit.new)}</span>'
+        self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
     def _rank(self, turn: Turn, want: Wanted, quick: bool) -> None:
@@ -238,7 +237,7 @@ class SetView:
         turn.tell(lambda: self._offer_edit(found))
 
     def _no_edit(self, said: str) -> None:
-        self.said["edit_text"].value = f'<span class="th-caution">no edit: {escape(said)}</span>'
+        self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
 
     def _offer_edit(self, found: Edit | NoEdit) -> None:
         from thermicon.perception import NoEdit
@@ -288,7 +287,7 @@ class SetView:
             (part.add_class if stale else part.remove_class)("thermicon-stale")
 
     def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = f'<span class="{kind}">{escape(text)}</span>'
+        self.said["status"].value = fragment("marked", text, kind)
 
     def _safely(self, act: Callable[[], None]) -> None:
         try:
@@ -299,9 +298,9 @@ class SetView:
 
 def map_html(found: PerceptualMap) -> str:
     """The perceptual map with what is to be known of it."""
-    spread = f"; ellipses: half of {found.people} people" if found.covariance is not None else ""
-    told = f'<div class="th-soft">distances are d′, stress {found.stress:.2f}{spread}</div>'
-    return f'<div class="th-head">perceptual map</div>{told}{map_svg(found)}'
+    spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
+    note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
+    return f"{fragment('block', 'perceptual map', 'th-head')}{note}{map_svg(found)}"
 
 
 def _row(*parts: Any) -> widgets.Box:
