@@ -74,8 +74,12 @@ def _how_to_run(output: Path, record: str | None) -> str:
 def sweep_command(
     file: OneFile,
     vary: Annotated[
-        str,
-        typer.Option("--vary", metavar="KEY=LOW:HIGH:N", help="A key of the rig and N values; Nlog: in equal ratios."),
+        list[str],
+        typer.Option(
+            "--vary",
+            metavar="KEY=LOW:HIGH:N",
+            help="A key of the rig and N values from LOW to HIGH; Nlog for equal ratios. Give it twice for a grid.",
+        ),
     ],
     output: Annotated[
         Path,
@@ -89,13 +93,16 @@ def sweep_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Vary one key of the rig and write what every icon then does: misses, extremes, what receptors see, safety."""
+    """Vary one or two keys of the rig and write, for every icon, misses, extremes, receptor changes and safety.
+
+    Two keys make a grid: every combination of their values is played, and the table has one row per icon and
+    combination. Values are in the unit that the key ends with.
+    """
     check_changes(changes or [])
     check_tail(tail)
-    from .sweep import read_vary, sweep_file
+    from .sweep import read_varied, sweep_file
 
-    asked = read_vary(vary)
-    sweep_file(file, asked, icon, load_rig(rig, changes or []), tail, output, figure)
+    sweep_file(file, read_varied(vary), icon, load_rig(rig, changes or []), tail, output, figure)
 
 
 def compare_command(

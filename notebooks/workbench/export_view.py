@@ -12,9 +12,10 @@ from ..files.exporting import FORMAT, Ready, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
 from ..pages.blocks import fragment
-from .background import Newest, Turn
+from .background import Turn
 from .cue_check import read_text
 from .export_tables import delivered_html, gate_html, written_html
+from .live_view import LiveView
 from .set_model import MOST_RANKED
 
 if TYPE_CHECKING:
@@ -22,21 +23,19 @@ if TYPE_CHECKING:
 
     from .design_model import Designing
 
-SETTLES_S = 0.2
-Wanted = tuple[str, "Rig", "str | None", str, str, str]
+ExportRequest = tuple[str, "Rig", "str | None", str, str, str]
 """Text, rig, name of the icon (None: all), device, format, pause as typed."""
 
 
-class ExportView:
+class ExportView(LiveView[ExportRequest]):
     """The drives of one ``Designing``, prepared while it is ``shown``; ``box`` is what is shown."""
 
+    settles_s = 0.2
+    status_style = "th-wrap"
+
     def __init__(self, design: Designing, folder: Path) -> None:
-        self.design = design
-        self.shown = False
+        super().__init__(design)
         self.ready: Ready | None = None
-        self.worker = Newest(self._failed)
-        self._asked: Wanted | None = None
-        self._done: Wanted | None = None
         self._build(folder)
 
     def _build(self, folder: Path) -> None:
@@ -82,40 +81,35 @@ class ExportView:
         self.box = widgets.VBox([row]).add_class("thermicon-export")
         self._say("drives are prepared when this tab is opened")
 
-    def renew(self, after_s: float = SETTLES_S) -> None:
-        """Prepare the drives anew if the view is shown and what there is to prepare has changed."""
-        if not self.shown:
-            self.worker.forget()
-            self._asked = None
-            return
-        want = self._wanted()
-        if want == self._asked:
-            return
-        if want == self._done and self.ready is None:
-            return
-        if want == self._done:
-            self.worker.forget()
-            self._asked = None
-            self._mark(False)
-            self._allow()
-            return
+    def _mark_outdated(self, request: ExportRequest) -> None:
         self.button.disabled = True
         self.said["written"].value = ""
-        self._mark(self.ready is not None)
-        reading = read_text(want[0])
-        if reading.icons is None or (want[2] is None and len(reading.icons) > MOST_RANKED):
-            self.worker.forget()
-            self._asked = None
-            many = f"more than {MOST_RANKED} icons are exported by thermicon export"
-            self._say("the text has errors, so nothing is exported" if reading.icons is None else many, "th-caution")
-            return
-        self._asked = want
+        super()._mark_outdated(request)
+
+    def _obstacle(self, request: ExportRequest) -> str | None:
+        icons = read_text(request[0]).icons
+        if icons is None:
+            return "the text has errors, so nothing is exported"
+        if request[2] is None and len(icons) > MOST_RANKED:
+            return f"{len(icons):,} icons are more than {MOST_RANKED}: use the command thermicon export"
+        return None
+
+    def _job(self, request: ExportRequest) -> Callable[[Turn], None]:
         self._say("working …")
-        self.worker.ask(lambda turn: self._prepare(turn, want), after_s)
+        return lambda turn: self._prepare(turn, request)
+
+    def _show_finished(self) -> None:
+        self._allow()
+
+    def _has_result(self) -> bool:
+        return self.ready is not None
+
+    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
+        return (self.body,)
 
     def write(self) -> None:
         """Write the files; what is refused is said, and nothing is written then."""
-        if self.ready is None or self._wanted() != self._done:
+        if self.ready is None or self._request() != self._finished:
             raise OutputError("the drives are not ready yet")
         try:
             folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
@@ -132,13 +126,13 @@ class ExportView:
         self.said["written"].value = ""
         self._allow()
 
-    def _wanted(self) -> Wanted:
+    def _request(self) -> ExportRequest:
         name = self.design.scene.icon if self.which.value == "shown" else None
         return self.design.text, self.design.rig, name, self.device.value, self.form.value, self.pause.value
 
-    def _prepare(self, turn: Turn, want: Wanted) -> None:
+    def _prepare(self, turn: Turn, request: ExportRequest) -> None:
         """The job of the worker."""
-        text, rig, name, device, form, typed = want
+        text, rig, name, device, form, typed = request
         icons = read_text(text).icons
         assert icons is not None
         chosen = [icon for icon in icons if name in (None, icon.name)] if len(icons) <= MOST_RANKED else []
@@ -155,10 +149,10 @@ class ExportView:
         named = (k for k, one in enumerate(made.prepared) if one.realised.icon.name == shown)
         place = next(red, next(named, 0))  # what stops all of them is looked at first
         picture = export_svg(made, place)
-        turn.tell(lambda: self._show(made, place, picture, want))
+        turn.tell(lambda: self._show(made, place, picture, request))
 
-    def _show(self, made: Ready, place: int, picture: str, want: Wanted) -> None:
-        self.ready, self._asked, self._done = made, None, want
+    def _show(self, made: Ready, place: int, picture: str, request: ExportRequest) -> None:
+        self.ready, self._running, self._finished, self._failed_request = made, None, request, None
         self._mark(False)
         self.said["delivered"].value = delivered_html(made)
         self.said["figure"].value = picture
@@ -167,7 +161,7 @@ class ExportView:
 
     def _allow(self) -> None:
         """Whether there is something to write, and if not, why."""
-        if self.ready is None or self._wanted() != self._done:
+        if self.ready is None or self._request() != self._finished:
             return
         stops = [refusal for _, refusal in self.ready.against if not (self.insist.value and refusal.forcible)]
         self.button.disabled = bool(stops)
@@ -180,12 +174,13 @@ class ExportView:
             cure = "; take out what is red, or export the others one by one" if len(self.ready.prepared) > 1 else ""
             self._say(f"refused: what is not safe is never written ({', '.join(names)}){cure}", "th-bad")
 
-    def _failed(self, said: str) -> None:
-        self._asked, self._done, self.ready = None, self._wanted(), None
+    def _failed(self, message: str) -> None:
+        super()._failed(message)
+        self._finished, self.ready = None, None
         for name in ("delivered", "figure", "gate"):
             self.said[name].value = ""
         self._mark(False)
-        self._say(said, "th-bad")
+        self._say(message, "th-bad")
 
     def _device_chosen(self) -> None:
         """Offer the formats that the device takes; the one that was chosen stays if it can."""
@@ -201,18 +196,6 @@ class ExportView:
         from thermicon.circuit.delivery.formats import load_format
 
         return [(f"{name}: {load_format(name).title}", name) for name in formats_for(Device.load(device))]
-
-    def _mark(self, stale: bool) -> None:
-        (self.body.add_class if stale else self.body.remove_class)("thermicon-stale")
-
-    def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = fragment("marked", text, f"{kind} th-wrap")
-
-    def _safely(self, act: Callable[[], None]) -> None:
-        try:
-            act()
-        except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
 
 
 def pause_of(typed: str) -> float | None:

@@ -14,6 +14,7 @@ from .apply_edit import with_edit
 from .background import Newest, Turn
 from .cue_check import read_text
 from .design_view import SideCanvas
+from .live_view import LiveView
 from .set_model import (
     QUICK,
     WELL,
@@ -43,32 +44,29 @@ if TYPE_CHECKING:
     from .design_model import Designing
 
 ShowText = Callable[[str], None]
-Wanted = tuple[str, "Rig", "Choosing | None"]
-SETTLES_S = 0.25
-"""How long a text is left to change further before the set is ranked anew."""
+SetRequest = tuple[str, "Rig", "Choosing | None"]
+"""Text, rig, and the choice of a few icons, if any."""
 SHARES = 10
 SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
 WIDE, BESIDE = "1 1 500px", 6
 """Up to so many icons, table and heat maps stand side by side."""
 
 
-class SetView:
+class SetView(LiveView[SetRequest]):
     """The set of one ``Designing``, ranked while it is ``shown``; ``box`` is what is shown.
 
     ``show_text`` is called with the text after an edit is applied.
     """
 
+    settles_s = 0.25
+
     def __init__(self, design: Designing, show_text: ShowText) -> None:
-        self.design, self._show_text = design, show_text
-        self.shown = False
+        super().__init__(design)
+        self._show_text = show_text
         self.made: Ranked | None = None
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
-        self.worker, self.editor = Newest(self._failed), Newest(self._no_edit)
-        self._warmer = Newest()
-        self._asked: Wanted | None = None
-        self._done: Wanted | None = None
-        self._failed_for: Wanted | None = None
+        self.editor, self._warmer = Newest(self._no_edit), Newest()
         self._build()
 
     def _build(self) -> None:
@@ -105,35 +103,29 @@ class SetView:
     def _load(self, turn: Turn) -> None:
         rank_set(SMALL, self.design.nominal, 2, 0, progress=turn.go_on)
 
-    def renew(self, after_s: float = SETTLES_S) -> None:
-        """Rank the set anew if it is shown and what there is to rank has changed; mark what is there as stale.
+    def _mark_outdated(self, request: SetRequest) -> None:
+        self._mark(self.made is not None and request[:2] != self._source())
 
-        It waits for a time (s) in which the text may change further.
-        """
-        want = self._wanted()
-        if not self.shown:
-            self.worker.forget()  # the design view has the processor to itself
-            self._asked = None
-            return
-        if want in (self._asked, self._failed_for):
-            return
-        if want == self._done and self.made is not None:
-            self.worker.forget()
-            self._asked = None
-            self._mark(False)
+    def _obstacle(self, request: SetRequest) -> str | None:
+        reason = why_not(read_text(request[0]))
+        if reason is None or self.made is None:
+            return reason
+        return f"{reason}; the last valid set is shown, for {self.made.ranking.people} people"
+
+    def _job(self, request: SetRequest) -> Callable[[Turn], None]:
+        quick = self.made is None or request[:2] != self._source()
+        self._say("ranking …" if quick or not request[2] else "choosing …")
+        return lambda turn: self._rank(turn, request, quick)
+
+    def _show_finished(self) -> None:
+        if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
-            return
-        self._mark(self.made is not None and want[:2] != self._done_of())
-        if (why := why_not(read_text(want[0]))) is not None:
-            self.worker.forget()
-            self._asked = None
-            kept = "" if self.made is None else f"; the last good set is shown, for {self.made.ranking.people} people"
-            self._say(why + kept, "th-caution")
-            return
-        self._asked = want
-        quick = self.made is None or want[:2] != self._done_of()
-        self._say("ranking …" if quick or not want[2] else "choosing …")
-        self.worker.ask(lambda turn: self._rank(turn, want, quick), after_s)
+
+    def _has_result(self) -> bool:
+        return self.made is not None
+
+    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
+        return self.body, self.said["scores"]
 
     def pick(self, a: str, b: str) -> None:
         """Look at a pair: both icons over each other, why they are confused, and the cheapest edit."""
@@ -168,13 +160,13 @@ class SetView:
         self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
-    def _rank(self, turn: Turn, want: Wanted, quick: bool) -> None:
+    def _rank(self, turn: Turn, request: SetRequest, quick: bool) -> None:
         """The job of the worker: a few people at once, then as many as make numbers of it."""
-        text, rig, choosing = want
+        text, rig, choosing = request
         if quick:
             reference = None if self.made is None else self.made.map
             first = rank_set(text, rig, *QUICK, None, reference, turn.go_on)
-            turn.tell(lambda: self._show(first, want, False))
+            turn.tell(lambda: self._show(first, request, False))
         reference = None if self.made is None else self.made.map
         told = [0]
 
@@ -188,18 +180,17 @@ class SetView:
                 turn.tell(lambda: self._say(said))
 
         well = rank_set(text, rig, *WELL, choosing, reference, progress)
-        turn.tell(lambda: self._show(well, want, True))
+        turn.tell(lambda: self._show(well, request, True))
 
-    def _failed(self, said: str) -> None:
-        self._asked, self._failed_for = None, self._wanted()  # the same again would fail the same way
-        self._say(f"not ranked: {said}", "th-caution")
+    def _failed(self, message: str) -> None:
+        super()._failed(f"not ranked: {message}")
 
-    def _show(self, made: Ranked, want: Wanted, well: bool) -> None:
+    def _show(self, made: Ranked, request: SetRequest, well: bool) -> None:
         """Put a ranking on the page; runs on the kernel's own loop."""
-        self.made, self._failed_for = made, None
-        self._done = want if well else None
+        self.made, self._failed_request = made, None
+        self._finished = request if well else None
         if well:
-            self._asked = None
+            self._running = None
         from thermicon.perception.ranking.rank_file import ranking_file
 
         ranking, said = made.ranking, self.said
@@ -263,7 +254,7 @@ class SetView:
         self.heat.frame(frame.meta, frame.buffers)
         self.pick(*pair)
 
-    def _wanted(self) -> Wanted:
+    def _request(self) -> SetRequest:
         return self.design.text, self.design.rig, self._choosing()
 
     def _choosing(self) -> Choosing | None:
@@ -279,21 +270,9 @@ class SetView:
             self.count.options = options
             self.count.value = kept
 
-    def _done_of(self) -> tuple[str, Rig] | None:
+    def _source(self) -> tuple[str, Rig] | None:
+        """Text and rig of the ranking on the page."""
         return None if self.made is None else (self.made.text, self.made.rig)
-
-    def _mark(self, stale: bool) -> None:
-        for part in (self.body, self.said["scores"]):
-            (part.add_class if stale else part.remove_class)("thermicon-stale")
-
-    def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = fragment("marked", text, kind)
-
-    def _safely(self, act: Callable[[], None]) -> None:
-        try:
-            act()
-        except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
 
 
 def map_html(found: PerceptualMap) -> str:
