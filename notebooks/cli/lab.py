@@ -1,4 +1,4 @@
-"""``thermicon lab``: the notebooks in a folder of your own, opened in JupyterLab, or the workbench served as a page."""
+"""``thermicon lab``: the notebooks copied to a folder and opened in JupyterLab, or the workbench served as a page."""
 
 from __future__ import annotations
 
@@ -58,28 +58,26 @@ class Copied:
 
 def lab_command(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks, made if missing.")
+        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks; it is created if missing.")
     ] = FOLDER,
     page: Annotated[
-        bool, typer.Option("--page", help="Serve the workbench as a page, with Voila, instead of JupyterLab.")
+        bool,
+        typer.Option("--page", help="Serve the workbench as a web page (with Voila) instead of opening JupyterLab."),
     ] = False,
     files_only: Annotated[
-        bool, typer.Option("--files-only", help="Only put the notebooks there, for a Jupyter of your own.")
+        bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
     ] = False,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address and leave the browser to you.")
-    ] = False,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
     port: Annotated[
-        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 for a page]")
+        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 with --page]")
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Also replace notebooks that were changed, by those that are shipped.")
+        bool, typer.Option("--force", help="Also replace notebooks that you changed by the shipped ones.")
     ] = False,
 ) -> None:
-    """Put the notebooks into a folder and open JupyterLab there; Ctrl-C ends it.
+    """Copy the notebooks to a folder and open JupyterLab there; Ctrl-C stops it.
 
-    Notebooks that you changed are kept. Those that were only run, and of which thermicon now has another version, are
-    replaced.
+    Notebooks that you changed are kept. Notebooks that you only ran are replaced if thermicon has a newer version.
     """
     if page and files_only:
         raise usage("opens nothing, so there is no page to serve", "--files-only")

@@ -1,4 +1,4 @@
-"""``thermicon search``: a better set out of the families of a file, as a cue file and a table of before and after."""
+"""``thermicon search``: improve a set within its families, as a cue file and a table of before and after."""
 
 from __future__ import annotations
 
@@ -22,33 +22,52 @@ def search_command(
     file: OneFile,
     choose: Annotated[
         int | None,
-        typer.Option("--choose", metavar="K", help="So many icons in all, of any family.  [default: one of each]"),
+        typer.Option(
+            "--choose", metavar="K", help="Number of icons to choose, from any family.  [default: one of each]"
+        ),
     ] = None,
     objective: Annotated[
-        str, typer.Option("--objective", metavar="NAME", help="worst (pair), correct, bits, or bits-per-s.")
+        str,
+        typer.Option("--objective", metavar="NAME", help="What to improve: worst (pair), correct, bits or bits-per-s."),
     ] = "worst",
     evaluations: Annotated[
-        int, typer.Option("--evaluations", metavar="N", help="Icons to try: more take longer and find more.")
+        int,
+        typer.Option(
+            "--evaluations", metavar="N", help="Number of icons to try; more take longer and may find a better set."
+        ),
     ] = 2000,
     people: Annotated[
-        int, typer.Option("--people", metavar="N", help="Virtual people that judge what is found.")
+        int, typer.Option("--people", metavar="N", help="Number of virtual people for the final scores.")
     ] = 200,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of search and people.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
     tracking: Annotated[
         str | None,
-        typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
+        typer.Option(
+            "--tracking",
+            metavar="|".join(TRACKING),
+            help="What is the same for all people: current, display or target.  [default: by control]",
+        ),
     ] = None,
-    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    norm: Annotated[
+        str,
+        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
+    ] = "max",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="OUT.cue", readable=False, help="The found set, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.cue",
+            readable=False,
+            help="Write the improved set to a cue file, or - for stdout.",
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Better a set over the continuous parameters of its families; icons that are no families stay as they are.
+    """Improve a set of icons over the continuous parameters of its families; all other icons stay as they are.
 
-    What is found is the best for the model, which it was searched on: measure it on people before it is used.
+    The result is the best set for the model, with which it was searched: test it with people before you use it.
     """
     check_changes(changes or [])
     bounds = (

@@ -1,4 +1,4 @@
-"""``thermicon session``: a sequence of icons as one run, one verdict, and what every play does."""
+"""``thermicon session``: a sequence of icons as one run, with one verdict and one row per play."""
 
 from __future__ import annotations
 
@@ -52,40 +52,55 @@ def session_command(
     order: Annotated[
         Path | None,
         typer.Option(
-            "--order", metavar="FILE", readable=False, help="Names of icons in the order of play, one per line."
+            "--order",
+            metavar="FILE",
+            readable=False,
+            help="File with the names of the icons in the order of play, one per line.",
         ),
     ] = None,
-    random: Annotated[bool, typer.Option("--random", help="Every icon --repeats times, in random order.")] = False,
+    random: Annotated[bool, typer.Option("--random", help="Play every icon --repeats times, in random order.")] = False,
     gap: Annotated[
-        float, typer.Option("--gap", metavar="S", help="Time from the end of an icon to the start of the next.")
+        float,
+        typer.Option(
+            "--gap", metavar="S", help="Seconds from the end of one icon to the start of the next, 0 to 3600."
+        ),
     ] = 10.0,
     repeats: Annotated[
         int | None,
-        typer.Option("--repeats", metavar="N", help="Plays of each icon, or of the order.  [default: 8, or 1]"),
+        typer.Option(
+            "--repeats",
+            metavar="N",
+            help="Number of plays of each icon, or of the whole order.  [default: 8 with --random, 1 with --order]",
+        ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the random order.")] = 0,
     tracking: Annotated[
         str,
         typer.Option(
-            "--tracking", metavar="|".join(TRACKING), help="Currents open loop, or the display temperature followed."
+            "--tracking",
+            metavar="|".join(TRACKING),
+            help="Replay the currents open loop, or control the display temperature.",
         ),
     ] = "replay",
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
     figure: Annotated[
-        Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session.")
+        Path | None,
+        typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session: .png, .pdf or .svg."),
     ] = None,
     order_out: Annotated[
         Path | None,
-        typer.Option("--order-out", metavar="OUT", readable=False, help="Write the order as a file for --order."),
+        typer.Option(
+            "--order-out", metavar="OUT", readable=False, help="Write the order of play as a file for --order."
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Play a sequence of icons as one run: temperatures, dose, drift of the baseline, one verdict in the worst case.
+    """Simulate a session, a sequence of icons: temperatures, thermal dose, baseline drift and worst-case safety.
 
-    The verdict is a report: the exit code is 0 whatever its colour. Only export refuses.
+    The verdict is only reported: the exit code is 0 whatever its colour. Only export refuses icons.
     """
     check_changes(changes or [])
     if (order is None) == (not random):

@@ -16,25 +16,35 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 METHODS = ("sobol", "morris")
-Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
+Figure = Annotated[
+    Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw a figure: .png, .pdf or .svg.")
+]
 
 
 def netlist_command(
     file: OneFile,
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="OUT.cir", readable=False, help="The netlist, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.cir",
+            readable=False,
+            help="Write the netlist to a .cir, .net or .sp file, or - for stdout.",
+        ),
     ],
     icon: IconName = None,
     tail: Tail = 0.0,
     record: Annotated[
         str | None,
-        typer.Option("--ngspice", metavar="OUT.txt", help="Have ngspice -b write all probes there; not for LTspice."),
+        typer.Option(
+            "--ngspice", metavar="OUT.txt", help="Make ngspice -b write all probes to this file; not for LTspice."
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Write driver, module and skin as a circuit that LTspice and ngspice read, with the current that plays an icon."""
+    """Write driver, module and skin as a SPICE netlist for LTspice and ngspice, driven by the current of an icon."""
     check_changes(changes or [])
     check_tail(tail)
     netlist_file(file, icon, load_rig(rig, changes or []), tail, output, record)
@@ -84,7 +94,11 @@ def sweep_command(
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", metavar="OUT", readable=False, help="The table: .csv, .parquet, or - for stdout."
+            "-o",
+            "--output",
+            metavar="OUT",
+            readable=False,
+            help="Write the table to a .csv or .parquet file, or - for stdout.",
         ),
     ],
     icon: IconName = None,
@@ -106,18 +120,20 @@ def sweep_command(
 
 
 def compare_command(
-    first: Annotated[str, typer.Argument(metavar="A", help="A rig, FILE:ICON, a set, or a trace or log.")],
-    second: Annotated[str, typer.Argument(metavar="B", help="The same kind of thing.")],
+    first: Annotated[str, typer.Argument(metavar="A", help="A rig, FILE:ICON, a set, a trace or a log.")],
+    second: Annotated[str, typer.Argument(metavar="B", help="A second one of the same kind.")],
     file: Annotated[
         str | None,
-        typer.Option("--file", metavar="FILE", help="For two rigs: the icons to play.  [default: six-icons, one icon]"),
+        typer.Option(
+            "--file", metavar="FILE", help="For two rigs: the icons to play.  [default: one icon of six-icons]"
+        ),
     ] = None,
     icon: IconName = None,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Compare two rigs, two icons, two sets, or a trace and a measured log: a table of differences, B minus A.
+    """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
     .csv or .parquet files with time_s and columns of a trace.
@@ -131,28 +147,41 @@ def compare_command(
 
 def sensitivity_command(
     file: OneFile,
-    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people of every run.")] = 24,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people in each run.")] = 24,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
     method: Annotated[
         str,
-        typer.Option("--method", metavar="|".join(METHODS), help="Shares of variance, or effects by SALib."),
+        typer.Option(
+            "--method", metavar="|".join(METHODS), help="Total Sobol shares of variance, or Morris effects (by SALib)."
+        ),
     ] = "sobol",
     samples: Annotated[
         int | None,
         typer.Option(
-            "--samples", metavar="N", help="Base samples, a power of 2, or trajectories.  [default: 64; 16 for morris]"
+            "--samples",
+            metavar="N",
+            help="Number of base samples (a power of 2), or of trajectories for morris.  [default: 64; 16 for morris]",
         ),
     ] = None,
-    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    norm: Annotated[
+        str,
+        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
+    ] = "max",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="OUT.csv", readable=False, help="The table, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.csv",
+            readable=False,
+            help="Write the table to a .csv or .parquet file, or - for stdout.",
+        ),
     ] = None,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Tell which uncertain parameters of model, contact and skin move the prediction most: what to measure first."""
+    """Find which uncertain parameters of model, contact and skin change the prediction most: what to measure first."""
     check_changes(changes or [])
     bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples or 2, 2, 65_536))
     for option, value, least, most in bounds:

@@ -27,7 +27,7 @@ QUANTITIES = (
 def sweep_map(frame: pd.DataFrame, key: str, second: str) -> Figure:
     """Draw heat maps of a sweep over two keys, for the first icons of the table.
 
-    A white circle marks a combination at which the icon was not reached; combinations that could not be played are
+    A circle marks a combination at which the icon was not reached; combinations that could not be played are
     grey.
     """
     from matplotlib.figure import Figure
@@ -68,7 +68,7 @@ def _map(
         if hit is not None and hit == False  # noqa: E712
     ]
     if missed:
-        ax.scatter(*zip(*missed, strict=True), s=22, facecolors="none", edgecolors="white", linewidths=1.0)
+        ax.scatter(*zip(*missed, strict=True), s=20, facecolors="white", edgecolors="black", linewidths=0.7)
     for axis, ends in ((ax.xaxis, values.columns), (ax.yaxis, values.index)):
         places = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), MOST_TICKS)).round().astype(int))
         axis.set_ticks(list(places), [f"{ends[k]:g}" for k in places], fontsize=8)

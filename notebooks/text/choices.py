@@ -18,23 +18,25 @@ OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
 MOST_EXCLUDED = 5
 ONE_BY_ONE = 50
 
-ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K of the icons.")]
+ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K icons.")]
 ObjectiveName = Annotated[
     str | None,
     typer.Option(
         "--objective",
         metavar="NAME",
-        help="What to choose by: worst (pair), correct, bits, bits-per-s.  [default: worst]",
+        help="Criterion of the choice: worst (pair), correct, bits or bits-per-s.  [default: worst]",
     ),
 ]
 Must = Annotated[
-    list[str] | None, typer.Option("--must", metavar="ICON", help="An icon to have among the chosen; may be repeated.")
+    list[str] | None,
+    typer.Option("--must", metavar="ICON", help="An icon that must be chosen; may be given several times."),
 ]
 MostTime = Annotated[
-    float | None, typer.Option("--most-time", metavar="S", help="The chosen last at most so many seconds together.")
+    float | None, typer.Option("--most-time", metavar="S", help="Longest total duration of the chosen icons, in s.")
 ]
 MostEnergy = Annotated[
-    float | None, typer.Option("--most-energy", metavar="J", help="They take at most so many joules together.")
+    float | None,
+    typer.Option("--most-energy", metavar="J", help="Largest total electrical energy of the chosen icons, in J."),
 ]
 
 
