@@ -52,7 +52,11 @@ class Copied:
         if self.written:
             said.append(f"wrote {_counted(self.written)}")
         if self.current:
-            said.append(f"{_counted(self.current)} there already" if self.written else "nothing to write, all there")
+            said.append(
+                f"{_counted(self.current)} already there"
+                if self.written
+                else "nothing to write, all notebooks are there"
+            )
         return ", ".join(said)
 
 
@@ -89,7 +93,7 @@ def lab_command(
     if not files_only and find_spec(program) is None:
         extra = "thermicon[page]" if page else "jupyterlab"
         fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
-    tell(copy_notebooks(folder, force), folder)
+    report_copies(copy_notebooks(folder, force), folder)
     if not files_only:
         serve(command_of(folder, page, no_browser, port), folder, program)
 
@@ -103,7 +107,7 @@ def copy_notebooks(folder: Path, force: bool = False) -> Copied:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as made:
     ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
-    ('wrote 8 notebooks', 'nothing to write, all there')
+    ('wrote 8 notebooks', 'nothing to write, all notebooks are there')
     """
     check_folder(folder)
     shipped = shipped_notebooks()
@@ -128,12 +132,12 @@ def shipped_notebooks() -> dict[str, dict[str, Any]]:
     return {path.name: json.loads(path.read_text("utf-8")) for path in sorted(found, key=lambda path: path.name)}
 
 
-def tell(copied: Copied, folder: Path) -> None:
-    """Say what was written and what was kept."""
+def report_copies(copied: Copied, folder: Path) -> None:
+    """Report what was written and what was kept."""
     if copied.text:
         note(f"{folder}: {copied.text}")
     for name in copied.kept:
-        note(f"{folder / name}: kept, since you changed it; --force replaces it")
+        note(f"{folder / name}: kept because you changed it; --force replaces it")
 
 
 def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> list[str]:
@@ -156,7 +160,7 @@ def serve(command: list[str], folder: Path, program: str) -> None:
     It runs in an empty folder, since servers of Jupyter take settings, which are programs, from where they are started;
     kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
     """
-    note("Ctrl-C ends it")
+    note("press Ctrl-C to stop")
     own = {**os.environ, "PYTHONSAFEPATH": "1"}
     if program == "voila":
         own[VARIABLE] = str(folder.resolve())
@@ -172,7 +176,7 @@ def serve(command: list[str], folder: Path, program: str) -> None:
             _end(server)
             raise interrupted() from None
     if code != 0:
-        fail(f"{program} ended with an error (exit code {code}); what it says is above")
+        fail(f"{program} ended with an error (exit code {code}); its messages are above")
 
 
 def _end(server: subprocess.Popen[bytes]) -> None:

@@ -256,9 +256,9 @@ def rank_command(
     if parameters == 1:
         raise usage("an interval needs at least 2 draws; give 2 or more, or 0 for none", "--parameters")
     if by not in RANKED_BY:
-        raise usage(f"{by!r} is none of {', '.join(RANKED_BY)}", "--by")
+        raise usage(f"{by!r} is not one of {', '.join(RANKED_BY)}", "--by")
     if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     if workers is not None and cluster is not None:
         raise usage("applies to this machine; a cluster brings its own workers", "--workers")
     if workers is not None and not 1 <= workers <= 1024:

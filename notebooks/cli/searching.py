@@ -80,11 +80,11 @@ def search_command(
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if objective not in OBJECTIVES:
-        raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
+        raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     if norm not in ("max", "rms", "integral"):
-        raise usage(f"{norm!r} is none of max, rms, integral", "--norm")
+        raise usage(f"{norm!r} is not one of max, rms, integral", "--norm")
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
     from thermicon.perception import search
@@ -118,16 +118,16 @@ def search_command(
 
 
 def show_search(found: Searched, title: str, people: int, rig: str) -> None:
-    """Print the icons that were found, what they are worth beside the set that the search began with, and the note."""
+    """Print the improved set, its scores next to those of the initial set, and the caveat."""
     from ..text.number_text import number, percent
     from ..text.tables import show, table
 
     made = table("", "before", "after", numbers=("before", "after"))
     for what, before, after in (
         ("worst pair, d′", number(found.before.d_prime), number(found.after.d_prime)),
-        ("correct", percent(found.before.percent_correct), percent(found.after.percent_correct)),
-        ("bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
-        ("bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
+        ("proportion correct", percent(found.before.percent_correct), percent(found.after.percent_correct)),
+        ("information, bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
+        ("information rate, bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
     ):
         made.add_row(what, before, after)
     crowd = "1 virtual person" if people == 1 else f"{people} virtual people"
@@ -145,8 +145,8 @@ def show_search(found: Searched, title: str, people: int, rig: str) -> None:
         f"After: worst pair {' and '.join(found.after.worst_pair)}",
         began,
         "",
-        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, "
-        f"by {found.objective} (seed {found.seed}); before and after are for {crowd} on the {rig} rig.",
-        "These are predictions of a model, not measurements, and the set was searched for on that same model: "
-        "expect less of it from people than is said here.",
+        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the objective "
+        f"{found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
+        "These are predictions of a model, not measurements, and the set was optimised for that same model: "
+        "expect lower scores from people.",
     )

@@ -35,7 +35,7 @@ CAUTION = (
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What was asked for; `order` None shuffles with `seed`."""
+    """Options of a session; without an `order`, icons are shuffled with `seed`."""
 
     order: Path | None
     repeats: int
@@ -112,14 +112,14 @@ def session_command(
     if not 0 <= seed <= 2**63 - 1:
         raise usage(f"{seed} is outside 0 to {2**63 - 1}", "--seed")
     if tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS
     request = Request(order, count, seed, gap, tracking, json, figure, order_out)
     session_file(file, load_rig(rig, changes or []), request)
 
 
 def session_file(file: str, rig: Rig, request: Request) -> None:
-    """Play a session with the icons of a file; print the report and write what was asked for."""
+    """Simulate a session with the icons of a file; print the report and write the requested files."""
     from thermicon.circuit import play_session
     from thermicon.circuit.safety.sessionplan import order_text
 
@@ -158,7 +158,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
 
 
 def plan_of(icons: IconSet, request: Request) -> SessionPlan:
-    """The plan that was asked for; SessionError, before anything is played, where it is impossible."""
+    """The requested plan; SessionError for an impossible one, before anything is simulated."""
     from thermicon.circuit import SessionPlan
     from thermicon.circuit.safety.sessionplan import check_repeats, read_order
 
@@ -170,7 +170,7 @@ def plan_of(icons: IconSet, request: Request) -> SessionPlan:
 
 
 def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
-    """The session as JSON text; what does not exist is null."""
+    """The session as JSON text; missing values are null."""
     facts = {
         "thermicon": version("thermicon"),
         "content_hash": icons.content_hash,
@@ -182,7 +182,7 @@ def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
 
 
 def show_session(session: Session) -> None:
-    """Print the verdict, what the session does as a whole, and one row per play."""
+    """Print the verdict, a summary of the session, and one row per play."""
     from ..text.number_text import number, span
     from ..text.tables import show, table
 
@@ -202,21 +202,21 @@ def show_session(session: Session) -> None:
             play.verdict,
         )
     more = len(session.plays) - MOST_SHOWN
-    left = [f"and {more} more plays, which --json lists"] if more > 0 else []
+    left = [f"and {more} more plays; --json lists all"] if more > 0 else []
     show(*summary_lines(session), "", rows, *left)
     note(CAUTION)
 
 
 def summary_lines(session: Session) -> list[str]:
-    """What people want to know of a session first, a line each."""
+    """The summary of a session, line by line."""
     from ..text.number_text import number, span
 
     trace, plan = session.trace, session.plan
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
     shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
     lines = [
-        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s apart{shuffled}",
-        f"safety {session.verdict} in {session.scenarios} scenarios, over the whole session and after",
+        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s between plays{shuffled}",
+        f"safety {session.verdict} in {session.scenarios} scenarios, during the whole session and after it",
         *(f"  - {'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in session.findings),
     ]
     for words, column in (("skin", trace.skin_C), ("display", trace.display_C), ("hot plate", trace.hot_plate_C)):
@@ -224,7 +224,7 @@ def summary_lines(session: Session) -> list[str]:
     after = "more than 10 min" if session.recovery_s is None else f"{number(session.recovery_s)} s"
     lines += [
         *_dose_lines(session),
-        f"  baseline   {number(session.baseline_drift_K, 2)} K at most; back within 0.1 K {after} after the end",
+        f"  baseline   {number(session.baseline_drift_K, 2)} K at most; within 0.1 K again {after} after the end",
         f"  energy     {number(session.energy_J)} J into the module",
     ]
     over = [
@@ -237,7 +237,7 @@ def summary_lines(session: Session) -> list[str]:
 
 
 def _dose_lines(session: Session) -> list[str]:
-    """Dose on the rig as given and in the worst case, beside the limits of a session."""
+    """Thermal dose on the given rig and in the worst case, with the limits of a session."""
     lines = []
     for words, quantity, value, unit in (
         ("dose", "thermal dose", session.dose_cem43_min, " min CEM43"),

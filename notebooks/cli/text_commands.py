@@ -60,7 +60,7 @@ def convert_command(
     if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
         raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
     if control is not None and control not in CONTROLS:
-        raise usage(f"{control!r} is none of {', '.join(CONTROLS)}", "--control")
+        raise usage(f"{control!r} is not one of {', '.join(CONTROLS)}", "--control")
     from .convert import Recording, convert_file
 
     convert_file(file, output, icon, Recording(tolerance, name, column, control))

@@ -69,7 +69,7 @@ def validate_command(
 
 
 def show_report(report: ValidationReport) -> None:
-    """Print every number, published and predicted, and how many hold."""
+    """Print every number, published and predicted, and how many agree."""
     from thermicon.perception.observer.variants import VARIANTS
 
     from ..pages.validation_page import NAMES, number_text, unit_text
@@ -87,14 +87,14 @@ def show_report(report: ValidationReport) -> None:
     counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors that go by temperature; flow: by heat flow; R&dD: impulses of Ring & de Dear. Predictions, "
-        "not measurements; no parameter was set on these results. -o DIR writes sources, intervals, sizes of the "
-        "misses, mechanisms suspected and figures.",
+        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. These are "
+        "predictions, not measurements; no parameter was fitted to these results. -o DIR writes sources, intervals, "
+        "sizes of the misses, suspected mechanisms and figures.",
     )
 
 
 def write_report(report: ValidationReport, folder: Path) -> None:
-    """Write the report; nothing is left behind unless all of it is there, and an older report is replaced as a whole.
+    """Write the report completely or not at all; an older report is replaced as a whole.
 
     Raises `OutputError` where the folder cannot be written.
     """

@@ -188,7 +188,7 @@ def sensitivity_command(
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if method not in METHODS:
-        raise usage(f"{method!r} is none of {', '.join(METHODS)}", "--method")
+        raise usage(f"{method!r} is not one of {', '.join(METHODS)}", "--method")
     if samples is not None and method == "sobol" and samples & (samples - 1):
         raise usage(f"{samples} is not a power of 2, which sobol needs, such as 64", "--samples")
     from .sensitivity import Request, sensitivity_file

@@ -1,4 +1,4 @@
-"""``rank --report``: everything about one ranking as a single page that can be mailed, printed and read on a phone."""
+"""``rank --report``: one ranking as a single page that can be mailed, printed and read on a phone."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from ..text import rank_notes as beside
-from ..text import rank_text as told
+from ..text import rank_notes, rank_text
 from ..text.choices import choice_lines
-from ..text.number_text import number, percent, seconds
+from ..text.number_text import number, percent, percent_span, seconds
 from ..text.rank_notes import rules_caveat, rules_lines
 from .blocks import Block, Bullets, Cards, Cell, Facts, Heading, Text, as_html, grid
 from .report_views import icon_parts, view_parts
@@ -24,18 +23,18 @@ MOST_PAIRS = 60
 LIMITS = (
     "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
     "experiment has confirmed it for these icons.",
-    "The order of icons is less sure than the overall level: for the six icons of the one published experiment that it "
-    "can be held against, the model's best icon was the worst.",
-    "Onsets come out later than the windows usually quoted, those of warmth most.",
-    "The skin is a stack of flat layers: no edges, no spread sideways, one patch at a time. Pain, adaptation over "
-    "minutes, training, attention and several elements at once are outside the model.",
-    "Intervals over people hold what differs between people, not what is wrong with the model. The interval over the "
-    "model's parameters, where there is one, holds what data leave open, for this structure of the model.",
+    "The order of icons is less certain than the overall level: for the six icons of the only published experiment "
+    "that it can be checked against, the model's best icon was the worst.",
+    "Predicted onsets are later than the usually quoted windows, those of warmth most.",
+    "The skin is a stack of flat layers: no edges, no lateral heat flow, one patch at a time. Pain, adaptation over "
+    "minutes, training, attention and several simultaneous elements are outside the model.",
+    "Intervals over people cover differences between people, not errors of the model. The model uncertainty, where it "
+    "is given, covers what the data leave open, for this structure of the model.",
 )
 SAFETY = (
-    "Icons were held against limits of temperature for skin and display, which are this project's own, set inside "
-    "published ones (ISO 13732, IEC 60601-1). That is a calculation and not a medical or ethical clearance. Hardware "
-    "that touches people needs its own temperature cut-off that works without any software."
+    "Icons were checked against temperature limits for skin and display that are this project's own and stricter than "
+    "published ones (ISO 13732, IEC 60601-1). This is a calculation, not a medical or ethical clearance. Hardware that "
+    "touches people needs its own temperature cut-off that works without any software."
 )
 
 
@@ -47,18 +46,18 @@ def report(
     cures: Mapping[str, str] | None = None,
     date: str = "",
 ) -> str:
-    """The page as HTML text: the same bytes for the same arguments.
+    """Write the page as HTML text: the same bytes for the same arguments.
 
-    ``icons`` and ``rig`` are those that were ranked; ``command`` is shown as what was asked, ``cures`` say by name how
-    an icon that is not reached could be, and a ``date`` stands in the page only where it is given.
+    ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
+    an icon could be reached, and a ``date`` is printed only if it is given.
     """
     from thermicon.perception.ranking.rank_file import ranking_file
 
-    result = ranking_file(ranking, mapped=False)  # the map is drawn, not told
+    result = ranking_file(ranking, mapped=False)  # the map is drawn, not printed
     title = icons.title or "Thermal icons"
     parts: list[Block] = [
         *_head(result, ranking, title),
-        *_asked(result, icons, rig, command, date),
+        *_settings(result, icons, rig, command, date),
         *_warnings(result, cures or {}),
         *_ranking(result, ranking),
         *_worst(result),
@@ -78,19 +77,19 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Bloc
     whole, count = result["set"], len(result["icons"])
     yield Heading(title, 1)
     yield Text(f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon", "lead")
-    yield Text(rules_caveat(result) if ranking.by == "rules" else told.caveat(result), "note")
+    yield Text(rules_caveat(result) if ranking.by == "rules" else rank_text.caveat(result), "note")
     if ranking.by == "rules":
         apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
         if result["pairs"]:
             yield Cards(((f"{apart} of {len(result['pairs'])}", "pairs distinguishable by the rules"),))
         return
-    spread = "" if ranking.people == 1 else "; for 95 % of people {} to {}"
+    spread = "" if ranking.people == 1 else "; 95 % of people: {}"
     low, high = whole["percent_correct_interval"]
-    shown = [(percent(whole["percent_correct"]), "named correctly" + spread.format(percent(low), percent(high)))]
+    shown = [(percent(whole["percent_correct"]), "named correctly" + spread.format(percent_span(low, high)))]
     if whole["information_bits"] is not None:
         low, high = whole["information_bits_interval"]
         shown.append(
-            (f"{whole['information_bits']:.2f} bits", "of information" + spread.format(f"{low:.2f}", f"{high:.2f}"))
+            (f"{whole['information_bits']:.2f} bits", "of information" + spread.format(f"{low:.2f}–{high:.2f}"))
         )
         shown.append((f"{whole['bits_per_s']:.2f} bits/s", "at the mean duration of the icons"))
     for pair in result["pairs"]:
@@ -105,7 +104,7 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Bloc
     yield Cards(tuple(shown))
 
 
-def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date: str) -> Iterator[Block]:
+def _settings(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date: str) -> Iterator[Block]:
     changes = ", ".join(result["rig_changes"]) or "none"
     draws = result["set"]["parameter_draws"]
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
@@ -114,22 +113,22 @@ def _asked(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date:
         ("date", date),
         ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²; changes: {changes}"),
         ("people", f"{result['people']} virtual, seed {result['seed']}"),
-        ("each person gets", f"{result['tracking']} tracking"),
+        ("same for all people", f"{result['tracking']} tracking"),
         ("difference over time", f"{result['norm']} norm"),
-        ("icons are asked for", beside.asked_so(result["task"]).removeprefix(", ")),
+        ("task", rank_notes.task_note(result["task"]).removeprefix(", ")),
         ("draws of the parameters", str(draws) if draws else ""),
-        ("experiment foretold", f"{result['set']['trials']} trials"),
+        ("predicted experiment", f"{result['set']['trials']} trials"),
         ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
         ("content hash", result["content_hash"]),
     ]
-    yield Heading("What was asked")
+    yield Heading("Settings")
     yield Facts(tuple(row for row in rows if row[1]))
-    yield Text("The hash is of the icons' text, the rig and the observer's numbers: equal hashes, equal input.")
+    yield Text("The hash covers the icons' text, the rig and the observer's parameters: equal hashes mean equal input.")
 
 
 def _warnings(result: dict[str, Any], cures: Mapping[str, str]) -> Iterator[Block]:
-    lines = beside.trouble_lines(result["icons"], cures)
-    outside = beside.outside_lines(result["icons"])
+    lines = rank_notes.trouble_lines(result["icons"], cures)
+    outside = rank_notes.outside_lines(result["icons"])
     if lines or outside:
         yield Heading("Warnings")
         yield from (Text(line, "warn") for line in lines)
@@ -147,7 +146,7 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[Block]:
             ]
             for place, row in enumerate(rows, 1)
         ]
-        counts = ("place", "score", "rules passed", "pairs apart")
+        counts = ("place", "score", "rules passed", "distinct pairs")
         yield grid(("place", "icon", *counts[1:]), cells, counts)
         lines = [line.strip().removeprefix("- ") for line in rules_lines(result) if line.strip()]
         worst = next((k for k, line in enumerate(lines) if line.startswith("Worst pair")), len(lines))
@@ -164,24 +163,28 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[Block]:
             [
                 *("*" if apart else str(place), row["icon"], Cell(percent(row["percent_correct"]), "strong")),
                 *(percent(row["detected_probability"]), seconds(row["onset_s"]), row["channel"] or "–"),
-                *(told.rival(result["confusion"], labels.index(row["icon"])), ", ".join(trouble) or "yes"),
+                *(rank_text.rival(result["confusion"], labels.index(row["icon"])), ", ".join(trouble) or "yes"),
             ]
         )
-    columns = ("place", "icon", "correct", "detected", "onset", "felt as", "most confused with", "plays")
+    columns = ("place", "icon", "correct", "detected", "onset", "felt as", "most confused with", "playable")
     yield grid(columns, made, ("place", "correct", "detected", "onset"))
     if result["chosen"]:
         best, *more = choice_lines(result["chosen"])
         yield Heading(best, 3)
         yield Bullets(tuple(line.strip().removeprefix("- ") for line in more))
     yield Heading("The set")
-    lines = [*told.number_lines(result), *beside.norm_lines(result), *beside.carried_lines(result["icons"])]
+    lines = [
+        *rank_text.number_lines(result),
+        *rank_notes.norm_lines(result),
+        *rank_notes.carried_lines(result["icons"]),
+    ]
     yield Bullets(tuple(line.removeprefix("Set: ").strip() for line in lines))
 
 
 def _worst(result: dict[str, Any]) -> Iterator[Block]:
     if result["by"] == "rules" or not result["set"]["worst_pair"]:
         return
-    first, *reasons = told.worst_lines(result)
+    first, *reasons = rank_text.worst_lines(result)
     yield Heading(first)
     yield Bullets(tuple(line.strip().removeprefix("- ") for line in reasons))
     (pair,) = (p for p in result["pairs"] if [p["a"], p["b"]] == result["set"]["worst_pair"])
@@ -191,12 +194,14 @@ def _worst(result: dict[str, Any]) -> Iterator[Block]:
         own = "K/s" if part["part"] == "rate" else part["unit"]
         shown = [_sized(part[key], own if key in "ab" else part["unit"]) for key in ("a", "b", "value", "noticeable")]
         rows.append([part["part"], *shown, "–" if part["above"] is None else "yes" if part["above"] else "no"])
-    yield grid(("part", pair["a"], pair["b"], "differs by", "just noticed", "above it"), rows)
-    yield Text("Just noticed is said of icons felt back to back; naming one from memory takes several times as much.")
+    yield grid(("component", pair["a"], pair["b"], "difference", "just noticeable", "noticeable"), rows)
+    yield Text(
+        "Just noticeable holds for icons played back to back; naming one from memory needs several times as much."
+    )
 
 
 def _sized(value: float | None, unit: str) -> str:
-    """A number of a part with its unit; a factor has a sign of multiplication.
+    """Write a component with its unit; a factor has a multiplication sign.
 
     >>> _sized(1.5, "s"), _sized(2.0, "1"), _sized(None, "s")
     ('1.50 s', '2.00 ×', '–')
@@ -223,7 +228,7 @@ def _pairs(result: dict[str, Any]) -> Iterator[Block]:
     ]
     yield grid(("icon", "and", "d′", "confused", *names), cells, ("d′", "confused", *names))
     more = f" {len(rows) - MOST_PAIRS} more pairs are in the JSON." if len(rows) > MOST_PAIRS else ""
-    yield Text(f"Bold parts are above what is just noticed back to back.{more}")
+    yield Text(f"Components in bold are above the just noticeable difference of icons played back to back.{more}")
 
 
 def _rules(result: dict[str, Any]) -> Iterator[Block]:
@@ -232,10 +237,10 @@ def _rules(result: dict[str, Any]) -> Iterator[Block]:
     rules += [("the rig", rule) for rule in result["set"]["rules"]]
     failed = [[name, rule["text"], rule["source"]] for name, rule in rules if not rule["pass"]]
     apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
-    pairs = f" Rules alone tell {apart} of {len(result['pairs'])} pairs apart." if result["pairs"] else ""
-    yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} Those that fail:")
+    pairs = f" The rules alone distinguish {apart} of {len(result['pairs'])} pairs." if result["pairs"] else ""
+    yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} The following fail:")
     yield grid(("icon", "rule", "source"), failed) if failed else Text("none.")
     if result["set"]["rules_disagree"]:
-        first, *more = told.disagreement_lines(result["set"]["rules_disagree"])
+        first, *more = rank_text.disagreement_lines(result["set"]["rules_disagree"])
         yield Text(first)
         yield Bullets(tuple(line.strip().removeprefix("- ") for line in more))

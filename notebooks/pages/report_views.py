@@ -35,29 +35,27 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
 
     vector = len(ranking.icons) <= VECTOR_ICONS
     yield Heading("Pictures of the set")
-    confused = "Rows: the icon presented. Columns: the name it is answered with. Icons that are near are side by side."
+    confused = "Rows: the icon presented. Columns: the response. Similar icons are adjacent."
     maps = (
         _drawn(plot_confusion(ranking), "confusions between the icons, per cent", confused, vector),
         _drawn(
             plot_distance(ranking),
             "d′ of every pair",
-            "Median over people of the d′ by which two icons differ.",
+            "Median over people of the d′ between two icons.",
             vector,
         ),
     )
     yield from (Row(maps),) if vector else maps
     found = map_of(ranking)
     bent = (
-        f"Distances in the plane are as near to d′ as a plane allows (stress {found.stress:.2f}; 0: exactly). Only "
-        "distances count: directions have no meaning."
+        f"Distances in the plane approximate d′ (stress {found.stress:.2f}; 0: exact). Only distances matter: directions "
+        "have no meaning."
     )
     if found.covariance is not None:
-        bent += (
-            f" An ellipse holds half of {found.people} people, whose own maps were turned and shifted onto this one."
-        )
+        bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
     yield _drawn(plot_map(found), "the icons as points of a plane", bent, vector)
     if ranking.spread is not None and ranking.people > 1:
-        places = "Each person ranks the icons by how often each is named correctly; equal ones share their places."
+        places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
         yield _drawn(plot_places(ranking), "probability of each place for each icon", places, vector)
 
 
@@ -76,7 +74,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
     members = list(icons)
     yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
-        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes those of all.")
+        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes all of them.")
     for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
         yield Heading(icon.name, 3)
         facts = [

@@ -106,7 +106,7 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
     assert "told apart already" in ranked.said("edit_text")
     assert ranked.view.apply.disabled
     ranked.click(place("near"), place("near"))
-    assert "two icons" in ranked.said("edit_text")
+    assert "two different icons" in ranked.said("edit_text")
     assert "there is no cell" in str(ranked.click(0, 9)) or "there is no cell" in ranked.said("status")
 
 
@@ -139,7 +139,7 @@ def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
     bench.type(TWO.replace("by 4 °C", "by 4"))
     assert bench.stale
     assert "line 4, missing unit" in bench.said("status")
-    assert "last good set is shown" in bench.said("status")
+    assert "last valid set is shown" in bench.said("status")
     bench.type(TWO)
     bench.wait()
     assert not bench.stale
@@ -157,7 +157,7 @@ def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
 
 def test_a_set_of_one_says_that_it_is_never_confused() -> None:
     bench = Bench("cue 1; icon dip { cool by 4 °C at 2 °C/s; return at 2 °C/s }")
-    assert "never confused" in bench.said("scores")
+    assert "no distance" in bench.said("scores")
     assert "dip" in bench.said("table")
     assert bench.view._maps.layout.display == "none"
 
