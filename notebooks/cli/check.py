@@ -21,7 +21,7 @@ START_C = 32.0
 
 
 def check(files: Sequence[str], rig: Rig | None = None) -> None:
-    """Print one line per file, or every error of every file and exit with 1; with a rig, also check its static limits."""
+    """Print one line per file, or every error of every file and exit with 1; with a rig, check its limits too."""
     from thermicon.icons import CueErrors, read_cue
 
     problems: list[str] = []

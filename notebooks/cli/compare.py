@@ -164,6 +164,7 @@ and rig; the d′ of its worst pair is larger by 0.4 (median)'
         return f"predicted: no difference between A and B in how well their icons are distinguished, within {drawn}"
     gain = abs(found.gain)
     return (
-        f"predicted: the icons of {better} are easier to distinguish than those of {other} in {percent(share)} of {drawn}; "
+        f"predicted: the icons of {better} are easier to distinguish than those of {other} in {percent(share)} of "
+        f"{drawn}; "
         f"the d′ of its worst pair is larger by {number(gain)} (median)"
     )

@@ -58,7 +58,8 @@ def kind_of_both(first: str, second: str) -> str:
     if kinds[0] == kinds[1]:
         return kinds[0]
     raise usage(
-        f"{first} is {NAMES[kinds[0]]} and {second} is {NAMES[kinds[1]]}; both must be of the same kind{_cure(set(kinds))}",
+        f"{first} is {NAMES[kinds[0]]} and {second} is {NAMES[kinds[1]]}; both must be of the same kind"
+        f"{_cure(set(kinds))}",
         "B",
     )
 

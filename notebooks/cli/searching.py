@@ -145,8 +145,8 @@ def show_search(found: Searched, title: str, people: int, rig: str) -> None:
         f"After: worst pair {' and '.join(found.after.worst_pair)}",
         began,
         "",
-        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the objective "
-        f"{found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
+        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the "
+        f"objective {found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
         "These are predictions of a model, not measurements, and the set was optimised for that same model: "
         "expect lower scores from people.",
     )

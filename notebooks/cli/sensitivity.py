@@ -140,5 +140,5 @@ def sentences(found: Sensitivity) -> list[str]:
         "",
         f"{kind}; the last column is proportion correct at the low and the high end of each interval alone. "
         f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
-        f"{percent(found.percent_correct)} correct and {found.information_bits:.2f} bits with all parameters at their nominal values.",
+        f"{percent(found.percent_correct)} correct and {found.information_bits:.2f} bits at nominal values.",
     ]

@@ -215,7 +215,8 @@ def summary_lines(session: Session) -> list[str]:
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
     shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
     lines = [
-        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s between plays{shuffled}",
+        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, "
+        f"{number(plan.gap_s, 2)} s between plays{shuffled}",
         f"safety {session.verdict} in {session.scenarios} scenarios, during the whole session and after it",
         *(f"  - {'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in session.findings),
     ]

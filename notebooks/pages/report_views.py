@@ -48,7 +48,7 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     yield from (Row(maps),) if vector else maps
     found = map_of(ranking)
     bent = (
-        f"Distances in the plane approximate d′ (stress {found.stress:.2f}; 0: exact). Only distances matter: directions "
+        f"Distances in the plane approach d′ (stress {found.stress:.2f}; 0: exact). Only distances matter; directions "
         "have no meaning."
     )
     if found.covariance is not None:
