@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.export_folder import check_export_folder
-from ..files.exporting import Ready, others, prepare_icons, write
+from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
 from ..text.messages import REFUSED, note, progress_bar
 from ..text.number_text import number
@@ -97,7 +97,7 @@ def icon_lines(one: Prepared) -> Iterator[str]:
         yield f"warning: {realised.icon.name}: {warning}"
 
 
-def refused(ready: Ready, force: bool) -> bool:
+def refused(ready: PreparedExport, force: bool) -> bool:
     """Report why icons are refused; True if any is."""
     found = ready.against
     for name, refusal in found:

@@ -14,6 +14,7 @@ from typing import Annotated
 
 import typer
 
+from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
 from . import hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
@@ -326,6 +327,8 @@ for _name, _command, _panel in (
 def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
     try:
+        if is_command():
+            warn_if_hidden()
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")

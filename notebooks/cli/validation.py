@@ -87,7 +87,7 @@ def show_report(report: ValidationReport) -> None:
     counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. They are "
+        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
         "predictions, not measurements; no parameter was fitted to these results. -o DIR writes sources, intervals, "
         "sizes of the misses, suspected mechanisms and figures.",
     )

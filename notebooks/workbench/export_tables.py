@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from thermicon.circuit.safety.checks import Check
     from thermicon.perception import FeltChange
 
-    from ..files.exporting import Ready, Written
+    from ..files.exporting import PreparedExport, Written
 
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
 
 
-def delivered_html(ready: Ready) -> str:
+def delivered_html(ready: PreparedExport) -> str:
     """One row per icon: duration, deviation from the design, detection and safety; then demands, refusals, warnings."""
     columns = ("icon", "duration", "rate", "receptors within", "rms", "detected", "d′ changes by", "safety")
     felt = {change.icon: change for change in ready.felt}
@@ -94,7 +94,7 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
     }
 
 
-def written_html(ready: Ready, written: Written) -> str:
+def written_html(ready: PreparedExport, written: Written) -> str:
     """Which files were written, which older ones were removed, and how to play the drives."""
     drives = "1 drive with its sidecar" if len(ready.prepared) == 1 else f"{len(ready.prepared)} drives with sidecars"
     sentence = f"wrote {drives} into {written.folder.resolve()}"

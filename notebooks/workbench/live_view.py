@@ -9,8 +9,8 @@ from typing import Generic, TypeVar
 import ipywidgets as widgets
 
 from ..pages.blocks import fragment
-from .background import Newest, Turn
-from .design_model import Designing
+from .background import BackgroundWorker, Job
+from .design_model import DesignModel
 
 Request = TypeVar("Request")
 
@@ -24,12 +24,12 @@ class LiveView(ABC, Generic[Request]):
     settles_s: float
     status_style = ""
 
-    def __init__(self, design: Designing) -> None:
+    def __init__(self, design: DesignModel) -> None:
         self.design = design
         self.shown = False
         self.said: dict[str, widgets.HTML] = {}
         self.box: widgets.VBox
-        self.worker = Newest(self._failed)
+        self.worker = BackgroundWorker(self._failed)
         self._running: Request | None = None
         self._finished: Request | None = None
         self._failed_request: Request | None = None
@@ -72,7 +72,7 @@ class LiveView(ABC, Generic[Request]):
         """Why a request cannot be computed; None where it can."""
 
     @abstractmethod
-    def _job(self, request: Request) -> Callable[[Turn], None]:
+    def _job(self, request: Request) -> Callable[[Job], None]:
         """Announce the request on the page and return the work of the background thread."""
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""The set view: who is confused with whom, the pair that is looked at, what would part it, the map, the best few."""
+"""The set view: confusions, the selected pair with its cheapest edit, the perceptual map, and the best few icons."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from ..figures.map_drawing import map_svg
 from ..pages.blocks import fragment
 from ..text.choices import NAMES
 from .apply_edit import with_edit
-from .background import Newest, Turn
+from .background import BackgroundWorker, Job
 from .cue_check import read_text
 from .design_view import SideCanvas
 from .live_view import LiveView
 from .set_model import (
     QUICK,
     WELL,
-    Ranked,
+    RankedSet,
     edit_of,
     heat_frame,
     overlay_frame,
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from thermicon.perception import Edit, NoEdit, PerceptualMap
     from thermicon.perception.selection.request import Choosing
 
-    from .design_model import Designing
+    from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
 SetRequest = tuple[str, "Rig", "Choosing | None"]
@@ -49,24 +49,24 @@ SetRequest = tuple[str, "Rig", "Choosing | None"]
 SHARES = 10
 SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
 WIDE, BESIDE = "1 1 500px", 6
-"""Up to so many icons, table and heat maps stand side by side."""
+"""Table and heat maps are side by side for at most this number of icons."""
 
 
 class SetView(LiveView[SetRequest]):
-    """The set of one ``Designing``, ranked while it is ``shown``; ``box`` is what is shown.
+    """The set of one ``DesignModel``, ranked while its tab is ``shown``; ``box`` holds the widgets.
 
     ``show_text`` is called with the text after an edit is applied.
     """
 
     settles_s = 0.25
 
-    def __init__(self, design: Designing, show_text: ShowText) -> None:
+    def __init__(self, design: DesignModel, show_text: ShowText) -> None:
         super().__init__(design)
         self._show_text = show_text
-        self.made: Ranked | None = None
+        self.made: RankedSet | None = None
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
-        self.editor, self._warmer = Newest(self._no_edit), Newest()
+        self.editor, self._warmer = BackgroundWorker(self._no_edit), BackgroundWorker()
         self._build()
 
     def _build(self) -> None:
@@ -94,14 +94,14 @@ class SetView(LiveView[SetRequest]):
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
         self.box = widgets.VBox([top, self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
-        self._say("the set is ranked when this tab is opened")
+        self._say("the set is ranked when this tab opens")
 
     def warm(self) -> None:
-        """Load, beside the page, what ranking needs, so that the first look at a set does not wait for it."""
+        """Load what ranking needs in the background, so that the first ranking starts at once."""
         self._warmer.ask(self._load, 1.0)
 
-    def _load(self, turn: Turn) -> None:
-        rank_set(SMALL, self.design.nominal, 2, 0, progress=turn.go_on)
+    def _load(self, job: Job) -> None:
+        rank_set(SMALL, self.design.nominal, 2, 0, progress=job.go_on)
 
     def _mark_outdated(self, request: SetRequest) -> None:
         self._mark(self.made is not None and request[:2] != self._source())
@@ -112,10 +112,10 @@ class SetView(LiveView[SetRequest]):
             return reason
         return f"{reason}; the last valid set is shown, for {self.made.ranking.people} people"
 
-    def _job(self, request: SetRequest) -> Callable[[Turn], None]:
+    def _job(self, request: SetRequest) -> Callable[[Job], None]:
         quick = self.made is None or request[:2] != self._source()
         self._say("ranking …" if quick or not request[2] else "choosing …")
-        return lambda turn: self._rank(turn, request, quick)
+        return lambda job: self._rank(job, request, quick)
 
     def _show_finished(self) -> None:
         if self.made is not None:
@@ -128,7 +128,7 @@ class SetView(LiveView[SetRequest]):
         return self.body, self.said["scores"]
 
     def pick(self, a: str, b: str) -> None:
-        """Look at a pair: both icons over each other, why they are confused, and the cheapest edit."""
+        """Select a pair: show both icons together, why they are confused, and the cheapest edit."""
         made = self.made
         if made is None:
             return
@@ -146,10 +146,10 @@ class SetView(LiveView[SetRequest]):
             return
         self.said["pair"].value, self.said["why"].value = pair_html(made.pair(a, b)), why_html(made.pair(a, b))
         self.said["edit_text"].value = edit_html(None)
-        self.editor.ask(lambda turn: self._look_for_edit(turn, made, a, b), 0.1)
+        self.editor.ask(lambda job: self._look_for_edit(job, made, a, b), 0.1)
 
     def apply_edit(self) -> None:
-        """Write the edit that is told into the text, as one step that can be undone."""
+        """Apply the suggested edit to the text, as one step that can be undone."""
         from thermicon.perception import Edit
 
         edit = self.edit
@@ -160,33 +160,33 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
-    def _rank(self, turn: Turn, request: SetRequest, quick: bool) -> None:
-        """The job of the worker: a few people at once, then as many as make numbers of it."""
+    def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
+        """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
         text, rig, choosing = request
         if quick:
             reference = None if self.made is None else self.made.map
-            first = rank_set(text, rig, *QUICK, None, reference, turn.go_on)
-            turn.tell(lambda: self._show(first, request, False))
+            first = rank_set(text, rig, *QUICK, None, reference, job.go_on)
+            job.on_page(lambda: self._show(first, request, False))
         reference = None if self.made is None else self.made.map
-        told = [0]
+        reported = [0]
 
         def progress(done: int, total: int) -> None:
-            turn.go_on()
+            job.go_on()
             share = SHARES * done // max(total, 1)
-            if share > told[0]:
-                told[0] = share
+            if share > reported[0]:
+                reported[0] = share
                 doing = "choosing" if choosing is not None and not quick else "refining"
-                said = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
-                turn.tell(lambda: self._say(said))
+                status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
+                job.on_page(lambda: self._say(status))
 
         well = rank_set(text, rig, *WELL, choosing, reference, progress)
-        turn.tell(lambda: self._show(well, request, True))
+        job.on_page(lambda: self._show(well, request, True))
 
     def _failed(self, message: str) -> None:
         super()._failed(f"not ranked: {message}")
 
-    def _show(self, made: Ranked, request: SetRequest, well: bool) -> None:
-        """Put a ranking on the page; runs on the kernel's own loop."""
+    def _show(self, made: RankedSet, request: SetRequest, well: bool) -> None:
+        """Put a ranking on the page; runs on the kernel's event loop."""
         self.made, self._failed_request = made, None
         self._finished = request if well else None
         if well:
@@ -203,18 +203,18 @@ class SetView(LiveView[SetRequest]):
         known = set(made.labels)
         self.picked = self.picked if self.picked is not None and known.issuperset(self.picked) else None
         pair = self.picked or ranking.worst_pair or (made.labels[0],) * 2
-        if not alone:  # the maps first: they are what is waited for
+        if not alone:  # the maps first, since people wait for them
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = ranking_file(ranking, mapped=False)  # the map is made already, beside the one before
+        result = ranking_file(ranking, mapped=False)  # the map exists already, aligned with the one before
         said["scores"].value = scores_html(ranking)
         said["table"].value = ranking_table(ranking, result)
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
         people = f"{ranking.people} people"
-        self._say(f"{people}" if well else f"first look: {people}; refining …")
+        self._say(f"{people}" if well else f"preliminary: {people}; refining …")
         self._offer(len(made.icons))
         if alone:
             return
@@ -223,9 +223,9 @@ class SetView(LiveView[SetRequest]):
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
 
-    def _look_for_edit(self, turn: Turn, made: Ranked, a: str, b: str) -> None:
+    def _look_for_edit(self, job: Job, made: RankedSet, a: str, b: str) -> None:
         found = edit_of(made, a, b)
-        turn.tell(lambda: self._offer_edit(found))
+        job.on_page(lambda: self._offer_edit(found))
 
     def _no_edit(self, said: str) -> None:
         self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
@@ -241,7 +241,7 @@ class SetView(LiveView[SetRequest]):
         self._safely(lambda: self._cell(message))
 
     def _cell(self, message: dict[str, Any]) -> None:
-        """A cell was clicked: answer at once, so that the page knows that the kernel lives."""
+        """A cell was clicked: answer at once, so that the page knows that the kernel is alive."""
         if message.get("type") != "cell" or self.made is None:
             return
         seq = int(message.get("seq", 0))
@@ -263,7 +263,7 @@ class SetView(LiveView[SetRequest]):
         return Choosing(self.count.value, self.objective.value) if self.count.value else None
 
     def _offer(self, icons: int) -> None:
-        """How many can be chosen of so many icons."""
+        """Offer the possible numbers of chosen icons."""
         options = [("all", 0), *((f"best {k}", k) for k in range(2, icons))]
         if list(self.count.options) != options:
             kept = self.count.value if any(value == self.count.value for _, value in options) else 0
@@ -276,7 +276,7 @@ class SetView(LiveView[SetRequest]):
 
 
 def map_html(found: PerceptualMap) -> str:
-    """The perceptual map with what is to be known of it."""
+    """The perceptual map with its caption."""
     spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
     note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
     return f"{fragment('block', 'perceptual map', 'th-head')}{note}{map_svg(found)}"

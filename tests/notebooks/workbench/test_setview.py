@@ -10,8 +10,8 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.workbench.apply_edit import CannotApply, with_edit
-from thermicon.notebooks.workbench.background import Newest, Superseded, Turn
-from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
+from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
 from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
@@ -33,7 +33,7 @@ class Bench:
     """A set view that is shown, on a text."""
 
     def __init__(self, text: str) -> None:
-        self.design = Designing(text, Rig.load("thenar"))
+        self.design = DesignModel(text, Rig.load("thenar"))
         self.view = SetView(self.design, lambda new: self.type(new))
         self.design.on_change(self.view.renew)
         self.view.shown = True
@@ -146,7 +146,7 @@ def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
 
 
 def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
-    design = Designing(TWO, Rig.load("thenar"))
+    design = DesignModel(TWO, Rig.load("thenar"))
     view = SetView(design, lambda text: None)
     design.on_change(view.renew)
     design.receive({"type": "text", "text": THREE})
@@ -206,17 +206,17 @@ def test_a_map_stays_where_it_was_when_an_icon_changes(ranked: Bench) -> None:
 
 
 def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
-    worker, done = Newest(), list[str]()
+    worker, done = BackgroundWorker(), list[str]()
 
-    def slow(turn: Turn) -> None:
+    def slow(job: Job) -> None:
         with pytest.raises(Superseded):
             while True:
-                turn.go_on()
+                job.go_on()
         done.append("ended")
-        turn.tell(lambda: done.append("never"))
+        job.on_page(lambda: done.append("never"))
 
     worker.ask(slow)
-    worker.ask(lambda turn: turn.tell(lambda: done.append("newest")))
+    worker.ask(lambda job: job.on_page(lambda: done.append("newest")))
     assert worker.wait(10)
     assert "never" not in done
     assert done[-1] == "newest"
