@@ -196,6 +196,6 @@ def _depth(palm: Rig) -> PaperDifference:
         "0.15 and 0.30 mm, counted from the surface, in an epidermis of 0.081 mm.",
         f"on the rig thenar {surface[0]:.1f} and {surface[1]:.1f} K there, but {below[0]:.1f} and {below[1]:.1f} K "
         f"when depth is counted from the base of its {corneum * 1e3:g} mm stratum corneum.",
-        "On the palm 0.15 mm is still in the stratum corneum, where no receptor can be; which count the sources mean is "
+        "On the palm 0.15 mm is still in the stratum corneum, where no receptor can be; which count sources mean is "
         "not stated.",
     )

@@ -3,7 +3,8 @@
 import re
 from importlib.metadata import version
 
-from ..model.family import Family, Summary
+from ..model.family import Family
+from ..model.family_check import Summary
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter

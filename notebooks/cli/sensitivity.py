@@ -1,4 +1,4 @@
-"""``thermicon sensitivity``: which uncertain parameters move the prediction for a set most."""
+"""``thermicon sensitivity``: which uncertain parameters change the prediction for a set most."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
-from ..text.messages import fail, note, usage
+from ..text.messages import fail, note, progress_bar, usage
 from ..text.number_text import percent
-from ..text.progress import progress_bar
 from ..text.tables import show, table
 from .cues import read_set, warn_of_frames
 from .sweep import write_frame
@@ -24,11 +23,11 @@ HOW = {
     "reference area": "the area of the published thresholds; measure thresholds on your own display instead",
     "slope of sensation": "amplitude difference thresholds, at several amplitudes",
     "memory noise": "let people name a few icons from memory and count",
-    "gain control strength": "how much weaker a change is felt after one of the same direction",
-    "lapse rate": "errors on two icons that nobody can mistake",
+    "gain control strength": "how much weaker a change is felt after one in the same direction",
+    "lapse rate": "errors on two icons that are unmistakable",
     "contact resistance": "skin or interface thermistor under your display, then fit the rig to its log",
     "spread of thresholds between people": "thresholds of a dozen people on your own display",
-    "onset uncertainty": "how well people tell two onsets apart in time",
+    "onset uncertainty": "how well people distinguish two onsets in time",
 }
 """How to measure a parameter whose name does not say it."""
 
@@ -44,18 +43,18 @@ class Request:
 
 
 def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:
-    """Study the icons of a file on the rig: the table on stdout, the rest where it was asked for."""
+    """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, sensitivity
 
     if request.norm not in NORMS:
-        raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
+        raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     icons = read_set([file])
     if len(icons) < 2:
-        fail(f"{file}: a sensitivity needs at least two icons: one alone is never confused")
+        fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")
     warn_of_frames([file], icons, rig)
     with progress_bar("sensitivity") as progress:
         found = sensitivity(
@@ -83,7 +82,7 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
 
 
 def show_sensitivity(found: Sensitivity, title: str) -> None:
-    """Print one row for each parameter, the most important first, and what to measure first."""
+    """Print one row per parameter, the most important first, and what to measure first."""
     made = table(
         "parameter", "interval", "correct", "bits", "correct low–high", numbers=("correct", "bits", "correct low–high")
     )
@@ -103,7 +102,7 @@ def show_sensitivity(found: Sensitivity, title: str) -> None:
 
 
 def how(name: str) -> str:
-    """Say behind the name of a parameter what a lab would measure; nothing where the name says it.
+    """Describe how a lab would measure a parameter; nothing where the name says it.
 
     >>> how("memory noise (max)")
     ': let people name a few icons from memory and count'

@@ -38,7 +38,10 @@ QUICK: dict[str, tuple[str, str]] = {
     "repeats of a family 12 deep": (nested(12, f"({PAIR}, n in [1, 2, 3])", "hold for a; hold for b"), "E231"),
     "a wave of 1 µs for an hour": ("cue 1\nicon x { sine by 1 K every 0.001 ms for 60 min }", "E220"),
     "the largest sine": ("cue 1\nicon x { sine by 28 K every 1 min for 60 min }", ""),
-    "a hundred thousand members": (f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}", ""),
+    "100,000 members": (
+        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
+        "",
+    ),
     "a hundred statements of a hundred thousand": (
         f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; " + "hold for b; " * 100 + "}",
         "E231",

@@ -1,4 +1,4 @@
-"""What the two things of ``thermicon compare`` are, and which options belong to them."""
+"""The inputs of ``thermicon compare``: of which kind they are, and which options apply to them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Request:
 
 
 def kind_of(text: str, option: str) -> str:
-    """Return rig, icon, set or table: what a text on the command line names; a usage error where that is not clear.
+    """Return what an argument names, a rig, icon, set or table; a usage error if that is not clear.
 
     >>> [kind_of(text, "A") for text in ("thenar", "my.toml", "six-icons:double-dip", "my.cue", "log.csv")]
     ['rig', 'rig', 'icon', 'set', 'table']
@@ -33,23 +33,23 @@ def kind_of(text: str, option: str) -> str:
 
     suffix = Path(text).suffix.lower()
     file, colon, _ = text.rpartition(":")
-    found = {
+    matches = {
         "rig": suffix == ".toml" or text in rig_names(),
         "set": suffix == ".cue" or text in library_names(),
         "table": suffix in TABLES,
         "icon": bool(colon) and (Path(file).suffix.lower() == ".cue" or file in library_names()),
     }
-    kinds = [kind for kind, is_one in found.items() if is_one]
+    kinds = [kind for kind, is_match in matches.items() if is_match]
     if len(kinds) == 1:
         return kinds[0]
     if kinds:
         both = " and ".join(NAMES[kind] for kind in kinds)
         raise usage(f"{text} is the name of {both}; give the one you mean as a file", option)
     if Path(text).exists():
-        raise usage(f"{text}: its name does not tell what it is; {HOW}", option)
+        raise usage(f"{text}: its name does not show what it is; {HOW}", option)
     from thermicon.circuit.inputs import nearest
 
-    raise usage(f"{text} is nothing to compare; {nearest(text, (*rig_names(), *library_names()))} ({HOW})", option)
+    raise usage(f"{text} cannot be compared; {nearest(text, (*rig_names(), *library_names()))} ({HOW})", option)
 
 
 def kind_of_both(first: str, second: str) -> str:
@@ -58,7 +58,8 @@ def kind_of_both(first: str, second: str) -> str:
     if kinds[0] == kinds[1]:
         return kinds[0]
     raise usage(
-        f"{first} is {NAMES[kinds[0]]} and {second} is {NAMES[kinds[1]]}; both must be of one kind{_cure(set(kinds))}",
+        f"{first} is {NAMES[kinds[0]]} and {second} is {NAMES[kinds[1]]}; both must be of the same kind"
+        f"{_cure(set(kinds))}",
         "B",
     )
 
@@ -72,7 +73,7 @@ def _cure(kinds: set[str]) -> str:
 
 
 def check_request(kind: str, request: Request) -> None:
-    """Fail with a usage error for an option that has no place with things of this kind."""
+    """Fail with a usage error for an option that does not apply to this kind."""
     given = {
         "--file": request.file is not None,
         "--icon": request.icon is not None,
