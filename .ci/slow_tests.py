@@ -17,6 +17,7 @@ PACKAGES = ("icons", "circuit", "perception", "notebooks")
 ALWAYS = ("tests/perception/ranking", "tests/circuit/packing")
 """A cluster that loses a worker, and exported drives: what costs most when it breaks."""
 SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/pages", "tests/browser")
+SHOWN_IN_PAGES = ("docs/", "README.md", "notebooks/cli", "notebooks/text")
 MOST_ROOMS = 6
 """A change of more rooms than this, such as a renaming, gets `ALWAYS` alone: all slow tests together take an hour."""
 
@@ -27,6 +28,8 @@ def folders_of(changed: str) -> Iterator[str]:
     parts = path.parts[1:] if path.parts[0] == "tests" else path.parts
     if changed.startswith(SHOWN_IN_A_BROWSER):
         yield "tests/browser"
+    if changed.startswith(SHOWN_IN_PAGES):
+        yield "tests/test_readme.py"
     if parts[0] in PACKAGES and len(parts) > 1:
         room = PurePosixPath("tests", *parts[:-1])
         while not (ROOT / room).is_dir():  # data folders have no tests of that name; those of the package prove them

@@ -1,4 +1,4 @@
-"""The scripts of ``.ci``: which slow tests a change calls for, and the lowest versions that are installed."""
+"""The scripts of ``.ci``, what stays ordinary of the browser tests, and the paths that CONTRIBUTING names."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ slow_tests, lowest = script("slow_tests"), script("lowest")
         ("notebooks/workbench/canvas_parts/draw.js", {"tests/browser", "tests/notebooks/workbench"}),
         ("notebooks/01_first_icon.ipynb", {"tests/notebooks"}),
         ("tests/browser/test_canvas_page.py", {"tests/browser"}),
-        ("README.md", set()),
+        ("README.md", {"tests/test_readme.py"}),
+        ("LICENSE", set()),
         ("tests/conftest.py", set()),
     ],
 )
@@ -47,7 +48,7 @@ def test_a_changed_file_calls_for_the_tests_of_its_room(changed: str, folders: s
     assert set(slow_tests.folders_of(changed)) == folders
     selected = slow_tests.selection([changed])
     assert all(any(folder == room or folder.startswith(f"{room}/") for room in selected) for folder in folders)
-    assert all((ROOT / room).is_dir() for room in selected)
+    assert all((ROOT / room).exists() for room in selected)
 
 
 def test_some_slow_tests_run_after_any_change() -> None:
@@ -96,3 +97,11 @@ def test_lowest_pins_every_requirement_of_the_program_once() -> None:
 def test_a_requirement_without_a_bound_is_refused() -> None:
     with pytest.raises(ValueError, match="'numpy<3' is not of the form name>=version"):
         list(lowest.pins('[project]\ndependencies = ["numpy<3"]'))
+
+
+def test_contributing_names_folders_that_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = text.partition("| to change |")[2].partition("\n\n")[0]
+    named = re.findall(r"`([\w.]+/[\w./]*)`", table)
+    assert len(named) > 40
+    assert [name for name in named if not (ROOT / name).exists()] == []
