@@ -70,7 +70,9 @@ def masked(text: str) -> list[str]:
     return re.sub(r"[-−+]?\d+(\.\d+)?", "#", text).split()
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page", [README, *(pytest.param(page, marks=pytest.mark.slow) for page in PAGES[1:])], ids=lambda page: page.name
+)
 def test_a_page_shows_what_happens(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert masked(replay(text)) == masked(text)

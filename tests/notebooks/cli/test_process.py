@@ -67,9 +67,19 @@ def test_an_interrupt_is_told_wherever_it_comes(
     [
         (("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"), ("l.json", "fl/distance.png")),
         (("simulate", "two.cue", "-o", "t.csv", "--figure", "t.png"), ("t.csv", "t-cool-step.png", "t-warm-step.png")),
-        (("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png")),
-        (("sweep", "two.cue", "--vary", "contact.area_cm2=4:9:2", "-o", "-", "--figure", "s.png"), ("s.png",)),
-        (("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"), ("c.png",)),
+        pytest.param(
+            ("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png"), marks=pytest.mark.slow
+        ),
+        pytest.param(
+            ("sweep", "two.cue", "--vary", "contact.area_cm2=4:9:2", "-o", "-", "--figure", "s.png"),
+            ("s.png",),
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            ("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"),
+            ("c.png",),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tuple[str, ...], files: Any) -> None:

@@ -22,9 +22,9 @@ from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF, _c
 from thermicon.perception.validation.waves import GROUPS, LIBRARY, SHAPES, wave_name
 
 
-@pytest.fixture(scope="module")
-def report() -> ValidationReport:
-    return validate(people=12, draws=8)
+@pytest.fixture
+def report(validation_report: ValidationReport) -> ValidationReport:
+    return validation_report
 
 
 def test_every_target_and_row_is_there_for_every_variant(report: ValidationReport) -> None:
@@ -79,6 +79,7 @@ def test_published_numbers_come_from_the_records(report: ValidationReport) -> No
     assert after.judged[0].verdict.text.startswith("−")
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes(report: ValidationReport) -> None:
     first, second = (json.dumps(report_file(r), allow_nan=False) for r in (report, validate(people=12, draws=8)))
     assert first == second

@@ -9,6 +9,7 @@ import io
 import json
 import re
 import sys
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -130,7 +131,9 @@ class TestProtocol:
 class TestPsychopy:
     """Conditions, drives and player."""
 
-    def packed(self, device: str) -> dict[str, bytes]:
+    @staticmethod
+    @cache
+    def packed(device: str) -> dict[str, bytes]:
         form = load_format("psychopy")
         icons = [load_library("six-icons")[name] for name in ("warming-step", "double-dip")]
         return pack([prepare(icon, RIG, Device.load(device), form) for icon in icons], form)
