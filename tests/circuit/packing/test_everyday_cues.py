@@ -1,4 +1,4 @@
-"""Everyday cues on everything that is shipped: what is exported, what is refused and why, as docs/refusals.md shows it.
+"""Everyday cues on everything that is shipped: what is exported, what is refused and why, as docs/reference/refusals.md shows it.
 
 ``python tests/circuit/packing/test_everyday_cues.py`` writes the page anew (some minutes).
 """
@@ -21,7 +21,7 @@ from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
 from thermicon.icons import Icon, load_library, parse
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "refusals.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "refusals.md"
 SETS = ("six-icons", "cooling-step-skin", "wave-confusions", "wave-shapes", "wilson-ramps", "pulse-sequences")
 """The shipped sets of published icons; the search space is no set that anybody played."""
 STEPS = tuple(product(("skin", "display"), (-6, -3, 3, 6)))
