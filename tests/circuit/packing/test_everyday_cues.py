@@ -1,4 +1,4 @@
-"""Everyday cues on everything that is shipped: what is exported, what is refused and why, as docs/reference/refusals.md shows it.
+"""What is exported of everyday cues on everything shipped, what is refused and why: docs/reference/refusals.md.
 
 ``python tests/circuit/packing/test_everyday_cues.py`` writes the page anew (some minutes).
 """
