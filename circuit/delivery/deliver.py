@@ -125,6 +125,13 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         return None
     most = max(held.current_max_A, -held.current_min_A)
     peak = float(asked[np.argmax(np.abs(asked))])
+    if abs(peak) > (rig.driver.current_max_A if peak > 0 else -rig.driver.current_min_A) + 1e-9:
+        text = (
+            f"the rig's driver gives {signed(rig.driver.current_min_A)} … {signed(rig.driver.current_max_A)} A "
+            f"(driver.current_limit_A), the cue asks for {signed(peak, '.3g')} A; ask for less current, or raise the "
+            f"limit if driver and module can"
+        )
+        return Narrowed(text, most, best.outcome)
     low, high = device.interval("output range")
     through = f" ({signed(low)} … {signed(high)} A)"
     cure = f"use a device of {abs(peak):.3g} A or more"

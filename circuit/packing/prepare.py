@@ -14,6 +14,7 @@ from ..delivery.device import Device
 from ..delivery.formats import Format
 from ..delivery.spread import OpenLoopSpread, open_loop_spread
 from ..rig.rig import Rig
+from ..safety.checks import Check
 from ..safety.repeated import check_pause
 from ..solver.delivery_deviation import DeliveryDeviation
 from .refusal import Refusal, refusals_of
@@ -30,6 +31,10 @@ class Verdict(Protocol):
     @property
     def reason(self) -> str | None:
         """Why it is red, in one sentence."""
+
+    @property
+    def findings(self) -> Sequence[Check]:
+        """The limits that are exceeded, the hard ones first."""
 
     @property
     def cautions(self) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from ..delivery.setpoints import Setpoints
 from ..inputs import signed
 from ..rig.rig import Rig
+from ..safety.checks import more_and_cure
 from ..solver.delivery_deviation import DeliveryDeviation, loss_limit
 from ..solver.inverse import design
 from ..solver.simulate import duration_s
@@ -53,7 +54,7 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
     """
     found, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
-        found.append(Refusal("unsafe", verdict.reason or "the gate says red"))
+        found.append(Refusal("unsafe", (verdict.reason or "the gate says red") + more_and_cure(verdict.findings)))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         found.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))

@@ -18,15 +18,17 @@ from ..delivery.samples import Samples
 from ..delivery.setpoints import Setpoints
 from ..delivery.temperatures import follow_samples
 from ..delivery.thermode import display_of, lag_of
+from ..inputs import signed
 from ..rig.rigfile import RigError
 from ..safety.checks import Check, worst_of
 from ..safety.corners import corners_of
-from ..safety.demands import Demands
+from ..safety.demands import Demands, SingleFault
 from ..safety.ensemble import Ensemble
 from ..safety.gate import Gate, gate_set
 from ..safety.single import Single
-from ..safety.single_faults import Faulty
-from ..safety.thermode import Shown
+from ..safety.single_faults import BEYOND_K, Faulty
+from ..safety.tally import WATCHED
+from ..safety.thermode import Shown, Under
 from ..safety.thermode_gate import gate_shown
 from ..solver.drive import Drive
 
@@ -111,16 +113,16 @@ def _controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> 
     rig, shows = deliveries[0].rig, [(_held(one),) for one in deliveries]
     stuck = (_stuck_C(deliveries[0], False), _stuck_C(deliveries[0], True))
     verdicts = gate_shown(shows, rig, stuck_C=stuck, pause_s=pause_s, rates=False, module=True)
-    found = []
+    found, under = [], Under.of(rig)
     for one, verdict in zip(deliveries, verdicts, strict=True):
-        checks, faulty = _followed(one)
+        checks, faulty, unpowered_C = _followed(one)
         found.append(
             replace(
                 verdict,
                 scenarios=verdict.scenarios + len(corners_of(rig)),
                 checks=worst_of([checks, verdict.checks]),
                 once=worst_of([checks, verdict.once]),
-                demands=_demands(verdict, faulty),
+                demands=_demands(verdict, faulty, unpowered_C, _rest_s(under, one, unpowered_C)),
             )
         )
     return tuple(found)
@@ -132,32 +134,58 @@ def _held(delivery: DeliveredDrive) -> Shown:
     return Shown(HELD, 1.0 / samples.rate_Hz, samples.command)
 
 
-def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty]:
-    """Every rule for the rig's module that follows the set-points, in each corner; and its single faults as given."""
-    samples, rig, judged = samples_of(delivery), delivery.rig, []
+def _rest_s(under: Under, delivery: DeliveredDrive, unpowered_C: tuple[float, float]) -> float | None:
+    """How long the loop must hold the baseline after a start without power until the skin is there, in every corner."""
+    base = _held(delivery)
+    rest = Shown(HELD, base.step_s, np.full(2, base.display_C[0]))
+    times = [under.recovery_s(rest, under.steady(level)) for level in unpowered_C]
+    known = [time for time in times if time is not None]
+    return max(known) if len(known) == len(times) else None
+
+
+def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty, tuple[float, float]]:
+    """Every rule for the rig's module that follows the set-points, in each corner; its single faults as given; and
+    between which temperatures in °C the display stands without power.
+    """
+    samples, rig, judged, unpowered = samples_of(delivery), delivery.rig, [], []
     for corner in corners_of(rig):
         own = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
+        ensemble = Ensemble.on(rig, (own,), None)
+        values, _ = ensemble.hold(0.0, ensemble.at_rest(0.0), np.array([0.0, 1.0]))
+        unpowered.append(float(values[WATCHED.index("display_C"), 0, -1]))
         try:
             drive = follow_samples(own.rig, samples)
-            judged.append(Single.of(Ensemble.on(rig, (own,), None), drive, float(drive.current_A[0]), rig.limits))
+            judged.append(Single.of(ensemble, drive, float(drive.current_A[0]), rig.limits))
         except RigError:  # a corner whose module cannot hold the baseline shows less than is asked of it
             continue
     first = judged[0]
     faulty = Faulty(first.ensemble, first.drive, first.rest_A, first.start, rig.limits)
-    return worst_of(single.checks for single in judged), faulty
+    return worst_of(single.checks for single in judged), faulty, (min(unpowered), max(unpowered))
 
 
-def _demands(verdict: Gate, faulty: Faulty) -> Demands:
-    """What set-points demand, and what a loop that loses its sensor or has its poles swapped does to the module."""
+def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], rest_s: float | None) -> Demands:
+    """What set-points demand, and what a loop that loses its sensor or has its poles swapped does to the module.
+
+    The cut-off leaves room for the display without power: a player starts from there, and returns there after a stop.
+    """
     cut = verdict.demands.cut_off_display_C
-    cut_off, stuck = faulty.cut_off((cut.low + 1.0, cut.high - 1.0))
+    reach = (min(cut.low + BEYOND_K, unpowered_C[0]), max(cut.high - BEYOND_K, unpowered_C[1]))
+    cut_off, stuck = faulty.cut_off(reach)
+    held = "10 min or more" if rest_s is None else f"{rest_s:g} s"
+    start = SingleFault(
+        "first play on a display that was without power",
+        "green",
+        f"the display stands between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
+        f"holding the baseline for {held} before the first play",
+    )
     polarity, _ = faulty.polarity()
     lost = replace(stuck, fault="sensor lost or poles swapped: the loop runs to the driver's limit")
     return replace(
         verdict.demands,
         cut_off_display_C=cut_off,
         polarity_check=replace(polarity, needed=True),
-        faults=(*verdict.demands.faults[:1], lost),
+        rest_before_first_play_s=rest_s,
+        faults=(*verdict.demands.faults[:1], start, lost),
     )
 
 

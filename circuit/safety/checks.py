@@ -73,6 +73,32 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
     return next((str(finding) for finding in findings if finding.severity == "hard"), None)
 
 
+CURES = (
+    (("rate of skin temperature",), "a slower change"),
+    (("hot plate",), "a smaller or slower change, or a heat sink that takes more"),
+    (("thermal dose", "Henriques integral", "time of the display"), "a shorter hold, or a smaller change"),
+    (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
+)
+"""What keeps a quantity within its limit, by the beginning of its name."""
+
+
+def more_and_cure(findings: Sequence[Check]) -> str:
+    """What follows the reason of a refusal: every other hard limit that is exceeded, and what would cure all of them.
+
+    >>> more_and_cure([])
+    ''
+    """
+    hard = [finding for finding in findings if finding.severity == "hard"]
+    others = [
+        f"{one.quantity} {signed(one.value, '.4g')}{'' if one.unit == '1' else ' ' + one.unit} "
+        f"(limit {signed(one.limit, '.4g')})"
+        for one in hard[1:]
+    ]
+    more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
+    cures = [cure for names, cure in CURES if any(one.quantity.startswith(names) for one in hard)]
+    return f"{more}; ask for {' and '.join(cures)}" if cures else more
+
+
 def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
     """A sentence for each finding that is not hard."""
     return tuple(str(finding) for finding in findings if finding.severity != "hard")

@@ -30,6 +30,8 @@ AFTER_ROWS_S = np.concatenate([np.arange(100) * 0.01, 1.0 + np.arange(291) * 0.1
 MARGIN = 0.8
 LONGEST_REST_S = 600.0
 REACTIONS_S = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
+LIMITS_TRIED = 6
+"""Current limits between the driver's own and the peak of the drive."""
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""
 BEYOND_K = 1.0
@@ -160,8 +162,26 @@ class Faulty:
         cut = CutOff(round(low, 1), round(high, 1), slowest)
         prevented = f"a cut-off at {cut.low:g} and {cut.high:g} °C on the measured display, within {slowest:g} s"
         if slowest == 0.0:
-            prevented = "a lower current limit of the driver; no cut-off is quick enough at this one"
+            prevented = self._limit_instead(low, high)
         return cut, SingleFault("driver stuck at its limit", colour, worst, prevented)
+
+    def _limit_instead(self, low: float, high: float) -> str:
+        """What prevents harm where no cut-off is quick enough: a smaller current limit that still plays the drive."""
+        driver, peak = self.ensemble.rig.driver, float(np.abs(self.drive.current_A).max())
+        full = max(driver.current_max_A, -driver.current_min_A)
+        for most in np.linspace(full, peak, LIMITS_TRIED)[1:].tolist():
+            shares = (driver.current_min_A / full, driver.current_max_A / full)
+            if all(self._cut_in_time(share * most * self.ensemble.gain, low, high) for share in shares if share):
+                prevented = f"a current limit of {most:.2g} A in the driver's hardware"
+                return f"{prevented}; no cut-off is quick enough at {full:g} A"
+        return (
+            "a smaller or shorter drive: no cut-off is quick enough, and no current limit that still plays this one "
+            "is low enough"
+        )
+
+    def _cut_in_time(self, amps: Array, low: float, high: float) -> bool:
+        values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, self.ensemble.lanes)
+        return self._reaction_s(amps, values[WATCHED.index("display_C")], low, high) > 0
 
     def _reaction_s(self, amps: Array, display: Array, low: float, high: float) -> float:
         """The longest reaction to a cut-off that is safe under currents that take the display (lanes, rows) so."""

@@ -216,10 +216,19 @@ def _demands(
             "loop stuck at the end of its range",
             "red" if react < ENDING_S else "green",
             f"display at {_levels(stuck)}; a hard limit is passed after {react:.2g} s",
-            f"the device's own cut-off at {cut.low:g} and {cut.high:g} °C, within {cut.react_within_s:g} s",
+            _prevents_stuck(cut),
         ),
     )
     return Demands(watchdog, cut, None, 0.0, repeated.shortest_pause_s, None, faults)
+
+
+def _prevents_stuck(cut: CutOff) -> str:
+    if cut.react_within_s:
+        return f"the device's own cut-off at {cut.low:g} and {cut.high:g} °C, within {cut.react_within_s:g} s"
+    return (
+        f"the protection of the device's maker, which must keep the display within {cut.low:g} … {cut.high:g} °C; "
+        f"no cut-off that acts afterwards is quick enough"
+    )
 
 
 def _levels(held: Sequence[tuple[float, float, Tally]]) -> str:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 MOST_NAMES = 6
 QUICKEST_S = 0.02
-"""A cut-off that must react sooner than the gate looks for is wanted at once."""
+"""The gate does not look for reactions quicker than this: where none is safe, it states 0."""
 
 _CORNER = re.compile(r"(?P<name>.+) (?P<sign>[+−])[\d.]+ (%|K)")
 _AGAIN = re.compile(r"played again and again with \S+ s of pause")
@@ -73,6 +73,11 @@ def repeated_text(gates: Sequence[Named]) -> str:
     )
 
 
+def _cure_of_stuck(demands: Demands) -> str:
+    """What prevents harm where no cut-off is quick enough: the part of the sentence before the reason."""
+    return demands.faults[-1].prevented_by.partition("; no cut-off")[0].partition(": no cut-off")[0]
+
+
 def demands_text(gates: Sequence[Named]) -> str:
     """What hardware must do for all icons: of each demand the strictest."""
     every = [(name, gate.demands) for name, gate in gates]
@@ -84,8 +89,12 @@ def demands_text(gates: Sequence[Named]) -> str:
     if hangs:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
-    quick = f"within {within:g} s" if within >= QUICKEST_S else "at once"
-    parts.append(f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display {quick}")
+    cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display"
+    slow = [name for name, demands in every if demands.cut_off_display_C.react_within_s < QUICKEST_S]
+    parts.append(cut_off if slow else f"{cut_off} within {within:g} s")
+    if slow:
+        cures = dict.fromkeys(_cure_of_stuck(demands) for name, demands in every if name in slow)
+        parts.append(f"no cut-off is quick enough{_of(_names(slow), len(slow) < len(every))}: {'; '.join(cures)}")
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]

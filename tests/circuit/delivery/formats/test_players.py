@@ -168,6 +168,36 @@ class TestVolts:
             ni.player["play"](ni.path, ni.measured)
         assert ni.daq.out == [2.0, 0.0]  # 0.2 A through 0.1 A/V
 
+    @pytest.mark.parametrize("at_s", [100.2, 110.0, 132.0], ids=["test of the wires", "rest", "play"])
+    def test_an_interrupt_leaves_no_current(self, ni: Bench, at_s: float) -> None:
+        ni.cools()
+
+        def interrupt() -> None:
+            if ni.clock.now > at_s:
+                ni.clock.events.clear()
+                raise KeyboardInterrupt
+
+        ni.clock.events.append(interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            ni.player["play"](ni.path, ni.measured)
+        assert ni.daq.out[-1] == 0.0
+        with pytest.raises(RuntimeError, match="stopped before"):
+            ni.player["play"](ni.path)
+
+    @pytest.mark.parametrize("last", [float("nan"), None], ids=["no number", "no answer"])
+    def test_a_sensor_lost_at_the_end_of_the_test_is_no_pass(self, ni: Bench, last: float | None) -> None:
+        ni.cools()
+
+        def reading() -> float:
+            if ni.clock.now > 100.0 + ni.player["TEST_S"] - 1e-9:
+                return last if last is not None else 1 / 0
+            return ni.measured()
+
+        with pytest.raises(RuntimeError, match="the sensor is lost"):
+            ni.player["play"](ni.path, reading)
+        assert ni.daq.out == [2.0, *[0.0] * (len(ni.daq.out) - 1)]
+        assert len(ni.daq.out) > 1
+
     def test_right_wires_pass(self, ni: Bench) -> None:
         ni.cools()
         ni.player["play"](ni.path, ni.measured)
@@ -214,6 +244,20 @@ class TestThermode:
         tcs.player["prepare"](port, tcs.path)
         tcs.clock.events.append(lambda: setattr(tcs, "reading", 45.0 if b"L" in sent else 32.0))
         with pytest.raises(RuntimeError, match=r"the display is at 45\.\d\d degrees C, outside 20 to 40"):
+            tcs.player["play"](port, tcs.measured)
+        assert sent[-2:] == [b"L", b"A"]
+
+    def test_an_interrupt_aborts(self, tcs: Bench) -> None:
+        sent: list[bytes] = []
+        port = types.SimpleNamespace(write=sent.append)
+        tcs.player["prepare"](port, tcs.path)
+
+        def interrupt() -> None:
+            if b"L" in sent:
+                raise KeyboardInterrupt
+
+        tcs.clock.events.append(interrupt)
+        with pytest.raises(KeyboardInterrupt):
             tcs.player["play"](port, tcs.measured)
         assert sent[-2:] == [b"L", b"A"]
 
