@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..figures.differences import Aligned, align, differences, quantity, with_unit
-from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.messages import load_rig, note, usage
 from ..text.number_text import number, percent
@@ -42,6 +42,7 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
     check_request(kind, request)
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
+        check_separate([first, second], [figure])
     made = {"rig": _rigs, "icon": _icons, "set": _sets, "table": _tables}[kind](first, second, request)
     if figure is not None:
         from ..figures.compare_figure import compare_figure

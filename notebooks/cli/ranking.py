@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import note, progress_bar, usage
 from ..text.rank_text import show_ranking
 from .cache import kept
@@ -73,6 +73,7 @@ def rank_files(
         check_output(report_out, (".html", ".htm"), "a report")
         if report_out == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+    check_separate(files, [json_out, report_out])
     if figures is not None:
         if not figures.is_dir() and (figures.exists() or figures.suffix.lower() in PICTURES):
             hint = figures.with_suffix("") if figures.suffix else "figures"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..files.outputs import STDOUT, check_output, complete_or_absent
+from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES
 from ..text.messages import check_changes, load_rig, note, usage
 from .options import Changes, OneFile, RigName
@@ -87,6 +87,7 @@ def search_command(
         raise usage(f"{norm!r} is not one of max, rms, integral", "--norm")
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
+        check_separate([file], [output])
     from thermicon.perception import search
 
     from ..text.messages import progress_bar

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import fail, note, progress_bar, usage
 from ..text.number_text import percent
 from ..text.tables import show, table
@@ -52,6 +52,7 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
         check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
+    check_separate([file], [output, figure])
     icons = read_set([file])
     if len(icons) < 2:
         fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")

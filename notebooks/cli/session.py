@@ -123,7 +123,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     from thermicon.circuit import play_session
     from thermicon.circuit.safety.sessionplan import order_text
 
-    from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
+    from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
     from ..text.messages import progress_bar
     from .cues import read_set, warn_of_site
 
@@ -134,6 +134,8 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     ):
         if path is not None:
             check_output(path, suffixes, what)
+    read = [file] if request.order is None else [file, request.order]
+    check_separate(read, (request.json, request.figure, request.order_out))
     icons = read_set([file])
     plan = plan_of(icons, request)
     warn_of_site(file, icons, rig)

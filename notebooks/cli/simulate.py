@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import note
 from ..text.number_text import number, span
 from .cues import pick, read_set, warn_of_site
@@ -35,7 +35,7 @@ def simulate_file(
     whole = read_set([file])
     icons = pick(whole, icon)
     pictures = _figure_paths(figure, [each.name for each in icons])
-    _check(output, pictures)
+    _check(file, output, pictures)
     warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     _write(traces, output)
@@ -50,7 +50,7 @@ def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Pa
     from thermicon.circuit import read_drive, simulate_current
 
     pictures = [] if figure is None else [figure]
-    _check(output, pictures)
+    _check(drive, output, pictures)
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
     _write([trace], output)
@@ -77,7 +77,8 @@ def _figure_paths(figure: Path | None, names: Sequence[str]) -> list[Path]:
     return [figure.with_name(f"{figure.stem}-{name}{figure.suffix}") for name in names]
 
 
-def _check(output: Path | None, pictures: Sequence[Path]) -> None:
+def _check(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
+    check_separate([read], [output, *pictures])
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a trace")
     for picture in pictures:

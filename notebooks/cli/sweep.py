@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import Progress, fail, note, progress_bar, usage
 from ..text.number_text import span
 from .cues import pick, read_set, warn_of_site
@@ -197,6 +197,7 @@ def sweep_file(
     check_output(output, TRACE_SUFFIXES, "a sweep")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
+    check_separate([file], [output, figure])
     icons = pick(whole := read_set([file]), icon)
     warn_of_site(file, whole, rig)
     first, *others = varied

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_output, complete_or_absent
+from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_rig, note, usage
 from .cues import only, read_set, warn_of_site
 from .options import Changes, IconName, OneFile, RigName, Tail, check_tail
@@ -56,6 +56,7 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     from .simulate import headline
 
     check_output(output, NETLIST_SUFFIXES, "a netlist")
+    check_separate([file], [output])
     icons = read_set([file])
     played = only(icons, icon, file)
     warn_of_site(file, icons, rig)

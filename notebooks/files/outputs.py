@@ -45,6 +45,18 @@ def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
         raise OutputError(f"cannot write {path}: the file is there already and is read-only")
 
 
+def check_separate(inputs: Sequence[str | Path], outputs: Sequence[Path | None]) -> None:
+    """Fail where an output is a file that the command reads, or two outputs are the same file."""
+    seen = {Path(name).resolve(): "is read by this command" for name in inputs if Path(name).is_file()}
+    for path in outputs:
+        if path is None or path == STDOUT:
+            continue
+        place = path.resolve()
+        if place in seen:
+            raise OutputError(f"cannot write {path}: the file {seen[place]}; give another name")
+        seen[place] = "is another output of this command"
+
+
 def check_folder(path: Path) -> None:
     """Fail now where the folder ``path`` could neither be used nor be made."""
     if path.is_dir():

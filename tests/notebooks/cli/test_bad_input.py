@@ -181,3 +181,31 @@ def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...]
     assert said.exit_code == 2
     assert words in said.stderr + (said.stdout if not arguments else "")
     assert "Traceback" not in said.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "output"),
+    [
+        (("session", "FILE", "--random", "--repeats", 1, "--json"), None),
+        (("session", "FILE", "--random", "--repeats", 1, "--order-out"), None),
+        (("rank", "FILE", "--people", 2, "--json"), None),
+        (("search", "FILE", "-o"), None),
+        (("session", "FILE", "--random", "--repeats", 1, "--json", "both.png", "--figure"), "both.png"),
+    ],
+)
+def test_no_output_takes_the_place_of_an_input_or_of_another_output(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[object, ...], output: str | None
+) -> None:
+    before = two.read_text()
+    monkeypatch.chdir(two.parent)
+    said = cli(*(two if word == "FILE" else word for word in words), output or two)
+    refused(said, "another output" if output else "is read by this command", "give another name")
+    assert two.read_text() == before
+    assert list(two.parent.iterdir()) == [two]
+
+
+def test_a_drive_is_not_overwritten_by_its_trace(cli: Cli, tmp_path: Path) -> None:
+    drive = tmp_path / "drive.csv"
+    drive.write_text("time_s,current_A\n0,0.1\n1,0.1\n")
+    refused(cli("simulate", "--current", drive, "-o", drive), "is read by this command")
+    assert drive.read_text().startswith("time_s,current_A")
