@@ -7,7 +7,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import thermicon.icons
-from thermicon.icons import Frame, Hold, Icon, load_library, plot_icon
+from thermicon.icons import Context, Hold, Icon, load_library, plot_icon
 from thermicon.icons.pictures.draw import COOL, STAY, WARM
 
 
@@ -56,7 +56,7 @@ def test_cool_and_warm_differ_in_grey() -> None:
 def test_a_plot_draws_on_the_axes_it_is_given() -> None:
     ax = Figure().add_subplot()
     assert plot_icon(load_library("wave-shapes")["sine"], ax) is ax
-    assert Icon("x", (Hold(1),), Frame("current")).plot().get_ylabel() == "current (A)"
+    assert Icon("x", (Hold(1),), Context("current")).plot().get_ylabel() == "current (A)"
 
 
 def test_pictures_for_notebooks() -> None:

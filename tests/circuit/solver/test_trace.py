@@ -150,3 +150,9 @@ def test_a_finding_tells_the_extreme_and_the_crossing_apart() -> None:
     assert finding.since_s < finding.time_s
     assert finding.limit == pytest.approx(24.04, abs=0.01)
     assert "below the soft limit of 24.04 °C, 8 K from where it began, from" in str(finding)
+
+
+def test_a_trace_writes_itself_as_csv(trace: Trace, tmp_path: Path) -> None:
+    trace.to_csv(tmp_path / "one.csv")
+    write_trace(trace, tmp_path / "other.csv")
+    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()

@@ -141,3 +141,30 @@ def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFix
     show(made, "[b]plain[/b]")
     assert "[b]plain[/b]" in (said := capsys.readouterr().out)
     assert "[red]loud[/red]" in said
+
+
+def test_a_checkout_that_hides_the_installed_package_is_reported(tmp_path: Path) -> None:
+    """The metadata name a distribution in another folder than the one that is imported."""
+    from thermicon.notebooks import startup
+
+    assert startup.hidden_by("/a/notebooks", []) is None
+    installed = tmp_path / "site"
+    (installed / "thermicon/notebooks").mkdir(parents=True)
+    info = installed / "thermicon-9.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: thermicon\nVersion: 9\n", encoding="utf-8")
+    program = (
+        "import sys, importlib.metadata as m\n"
+        f"m.distributions = lambda **_: [m.PathDistribution(__import__('pathlib').Path({str(info)!r}))]\n"
+        "from thermicon.notebooks.startup import warn_if_hidden\nwarn_if_hidden()\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True)
+    (line,) = run.stderr.splitlines()
+    assert str(installed / "thermicon/notebooks") in line
+    assert "hides the installed" in line
+
+
+def test_the_installed_package_runs_without_a_warning() -> None:
+    from thermicon.notebooks import startup
+
+    assert startup.hidden_by(str(Path(startup.__file__).parent), startup.installed_folders()) is None

@@ -14,7 +14,7 @@ from nbclient import NotebookClient
 from thermicon.notebooks.cli.main import validation
 from thermicon.notebooks.cli.validation import draw_pictures, show_report, write_report
 from thermicon.notebooks.files.outputs import OutputError
-from thermicon.notebooks.pages.pages import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
+from thermicon.notebooks.pages.blocks import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
 from thermicon.notebooks.pages.validation_page import page, target_rows
 from thermicon.perception.validation.validate import ValidationReport, validate
 
