@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-BOUND = re.compile(r"(?P<name>[\w.-]+)(?:\[[\w,.-]+\])?>=(?P<version>\d[\w.]*)$")
+BOUND = re.compile(r"(?P<name>[\w.-]+)(?:\[[\w,.-]+\])?>=(?P<version>\d[\w.]*)(?:,<[\d.]+)?$")
 ONLY_FOR_TESTS = {"test"}
 
 
@@ -22,7 +22,7 @@ def pins(pyproject: str) -> Iterator[str]:
     Raises
     ------
     ValueError
-        A requirement has no lower bound of the form ``name>=version``.
+        A requirement has no lower bound of the form ``name>=version`` (an upper bound may follow).
 
     """
     project = tomllib.loads(pyproject)["project"]
