@@ -1,6 +1,6 @@
-"""Everyday cues on everything that is shipped: what is exported, what is refused and why, as docs/reference/refusals.md shows it.
+"""Everyday cues on shipped rigs and devices: what is exported, and what is refused and why.
 
-``python tests/circuit/packing/test_everyday_cues.py`` writes the page anew (some minutes).
+``python tests/circuit/packing/test_everyday_cues.py`` regenerates docs/reference/refusals.md (some minutes).
 """
 
 from __future__ import annotations
