@@ -1,4 +1,4 @@
-"""The tables of docs/explain/safety.md are those of the data files; ``python tests/test_safety_page.py`` prints them anew."""
+"""The tables of docs/explain/safety.md are those of the data files; as a script, this file prints them."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Every example of the catalogue of errors does what it promises. Run as a script, this file writes docs/reference/errors.md."""
+"""Every example of the catalogue of errors does what it promises; as a script, this file writes its page in docs/."""
 
 import re
 from pathlib import Path
