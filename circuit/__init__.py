@@ -1,141 +1,92 @@
-"""thermicon.circuit: corner points and a rig → drive current → a trace of temperatures and heat flow."""
+"""thermicon.circuit: corner points and a rig → drive current → a trace of temperatures and heat flow → exported drives.
+
+This is the front door, in the order of the flow; everything else is reached through its room, such as
+`thermicon.circuit.rig` or `thermicon.circuit.safety`.
+"""
 
 from .inputs import InputError
-from .records import Record, RecordError, Table, load_records
-from .rig.module import Peltier
-from .rig.datasheet import Datasheet, Extraction
-from .rig.modules import load_module, module_names
-from .rig.receptors import ReceptorDepths
-from .rig.skin import Layer, Skin
-from .rig.rules import Limits, Rule
 from .rig.rigfile import RigError
 from .rig.rig import Rig, rig_names
+from .rig.datasheet import Datasheet
+from .rig.rules import Limits
 from .solver.drive import Drive, DriveError, read_drive
-from .solver.steady import hold, steady_state
-from .solver.inverse import Design, design, design_many
+from .solver.steady import steady_state
+from .solver.inverse import design
 from .solver.static import check_static
 from .solver.trace import Outcome, Trace, write_trace
 from .solver.simulate import duration_s, simulate, simulate_all, simulate_current
-from .studies.depths import Depths, Likeness, probe_depths, resembles
-from .studies.meshstudy import Mesh, MeshStudy, mesh_study
-from .studies.nearest import Nearest, nearest_reachable
-from .solver.batch import TRACKINGS, Batch, simulate_many, simulate_stream, usual_tracking
-from .safety.exposure import cem43_min, henriques
-from .safety.checks import Check
-from .safety.limits import SafetyVerdict, judge_safety
-from .safety.corners import Corner, corners_of
-from .safety.scenarios import Futures, play_out
-from .safety.demands import CutOff, Demands, PolarityCheck, SingleFault
-from .safety.repeated import PauseError, Repeated
-from .safety.gate import Gate, gate, gate_set
+from .solver.batch import simulate_many, simulate_stream
+from .safety.limits import judge_safety
+from .safety.gate import Gate, gate
+from .safety.repeated import PauseError
 from .safety.sessionplan import SessionError, SessionPlan
-from .safety.session import Play, Session
+from .safety.session import Session
 from .safety.sessionplay import play_session
-from .safety.summary import Summary, summarise
-from .delivery.netlist import netlist
-from .delivery.devicefile import DeviceError
+from .safety.summary import summarise
+from .safety.exposure import cem43_min, henriques
 from .delivery.device import Device, device_names
-from .delivery.samples import Samples
-from .delivery.setpoints import Setpoints
-from .delivery.realise import Realised, realise
-from .solver.difference import Difference, difference
-from .delivery.events import Event, events_of
-from .packing.worstcase import worst_case, worst_cases
-from .packing.export import Prepared, Verdict, pack, prepare, prepare_set
+from .delivery.devicefile import DeviceError
+from .delivery.formats.form import FormatError
+from .delivery.delivered_drive import DeliveredDrive
+from .delivery.deliver import deliver
+from .delivery.netlist import netlist
+from .packing.prepare import Prepared, prepare
 from .packing.refusal import Refusal
+from .packing.pack import pack
+from .packing.export import Export, ExportError, export
+from .studies.depths import probe_depths, resembles
+from .studies.meshstudy import mesh_study
+from .studies.nearest import nearest_reachable
 
 __all__ = [
     "InputError",
-    "Record",
-    "RecordError",
-    "Table",
-    "load_records",
-    "Peltier",
-    "Datasheet",
-    "Extraction",
-    "load_module",
-    "module_names",
-    "ReceptorDepths",
-    "Layer",
-    "Skin",
-    "Limits",
-    "Rule",
     "RigError",
     "Rig",
     "rig_names",
+    "Datasheet",
+    "Limits",
     "Drive",
     "DriveError",
     "read_drive",
-    "hold",
     "steady_state",
-    "Design",
     "design",
-    "design_many",
     "check_static",
-    "Outcome",
     "Trace",
+    "Outcome",
     "write_trace",
     "duration_s",
     "simulate",
     "simulate_all",
     "simulate_current",
-    "Depths",
-    "Likeness",
-    "probe_depths",
-    "resembles",
-    "Mesh",
-    "MeshStudy",
-    "mesh_study",
-    "Nearest",
-    "nearest_reachable",
-    "TRACKINGS",
-    "Batch",
     "simulate_many",
     "simulate_stream",
-    "usual_tracking",
-    "cem43_min",
-    "henriques",
-    "Check",
-    "SafetyVerdict",
     "judge_safety",
-    "Corner",
-    "Futures",
-    "corners_of",
-    "play_out",
-    "CutOff",
-    "Demands",
-    "PolarityCheck",
-    "SingleFault",
-    "PauseError",
-    "Repeated",
-    "Gate",
     "gate",
-    "gate_set",
-    "SessionError",
+    "Gate",
+    "PauseError",
     "SessionPlan",
-    "Play",
+    "SessionError",
     "Session",
     "play_session",
-    "Summary",
     "summarise",
-    "netlist",
-    "DeviceError",
+    "cem43_min",
+    "henriques",
     "Device",
     "device_names",
-    "Samples",
-    "Setpoints",
-    "Realised",
-    "realise",
-    "Difference",
-    "difference",
-    "Event",
-    "events_of",
-    "worst_case",
-    "worst_cases",
+    "DeviceError",
+    "FormatError",
+    "DeliveredDrive",
+    "deliver",
+    "netlist",
     "Prepared",
-    "Refusal",
-    "Verdict",
-    "pack",
     "prepare",
-    "prepare_set",
+    "Refusal",
+    "pack",
+    "export",
+    "Export",
+    "ExportError",
+    "probe_depths",
+    "resembles",
+    "mesh_study",
+    "nearest_reachable",
 ]

@@ -123,7 +123,9 @@ def broken_links(text: str, page: Path) -> list[str]:
     return broken
 
 
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+@pytest.mark.parametrize(
+    "page", [README, *(pytest.param(page, marks=pytest.mark.slow) for page in PAGES[1:])], ids=NAMES
+)
 def test_a_page_shows_what_happens(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert masked(regenerated(text)) == masked(text)

@@ -1,4 +1,4 @@
-"""The tables of docs/explain/safety.md are those of the data files; as a script, this file prints them."""
+"""The tables of docs/explain/safety.md are those of the data files; run as a script, this file prints them anew."""
 
 import re
 from pathlib import Path

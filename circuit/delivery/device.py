@@ -59,12 +59,15 @@ class Device:
 
     @staticmethod
     def load(source: str | Path) -> Device:
-        """Return a shipped device by name, or a device from a `.toml` file; raises DeviceError with every fault."""
-        path = Path(source)
-        if path.suffix == ".toml" or path.exists():
+        """Return a shipped device by name, or a device from a `.toml` file; raises DeviceError with every fault.
+
+        A file with the name of a shipped device is read in its place; a folder of that name is not.
+        """
+        path, names = Path(source), device_names()
+        if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
             return _build(read_text(path, "device file", 1, DeviceError), str(path))
-        if str(source) not in device_names():
-            raise DeviceError(f"{source}: no such device; {nearest(str(source), device_names())}")
+        if str(source) not in names:
+            raise DeviceError(f"{source}: no such device; {nearest(str(source), names)}")
         return _shipped(str(source))
 
     def record(self, quantity: str) -> Record | None:

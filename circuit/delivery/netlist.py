@@ -14,8 +14,8 @@ from ..inputs import InputError
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.drive import Drive
-from ..solver.network import HOT, PROBES, Network, network_of
-from ..solver.steady import steady_state
+from ..solver.network import HOT, RECORDED, Network, network_of
+from ..solver.steady import state_under_current
 
 EDGE_S = 1e-6
 """Width of the flank that stands for a jump of a held current; less where rows are closer than four of these."""
@@ -26,8 +26,8 @@ LONGEST_STEP_S = 2.5e-3
 LEAST_PERFUSION_W_PER_K = 1e-12
 """Perfusion below this has no resistor: it would be larger than either program reads."""
 
-RECORDED = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in PROBES))
-"""What the control section has ngspice write beside the time: current, voltage at the module, and PROBES."""
+WRITTEN_BY_NGSPICE = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in RECORDED))
+"""What the control section has ngspice write beside the time: current, voltage at the module, and RECORDED."""
 
 
 def netlist(
@@ -44,7 +44,8 @@ def netlist(
 
     Its run starts from the steady state of `rest_A`, the current that has been held for ever (`Design.rest_A`); the
     drive's first current follows 1 µs later. None: from the steady state of the drive's first current. With
-    `out_file`, a control section (ngspice only) has `ngspice -b` write RECORDED there, a row for each time in s.
+    `out_file`, a control section (ngspice only) has `ngspice -b` write WRITTEN_BY_NGSPICE there,
+    one row for each time in s.
 
     >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
@@ -66,7 +67,7 @@ def netlist(
     ]
     if out_file is not None:
         lines += [".control", "set wr_singlescale", "set wr_vecnames", "set numdgt=15", "run"]
-        lines += [f"wrdata {_quoted(out_file)} {' '.join(RECORDED)}", "quit 0", ".endc"]
+        lines += [f"wrdata {_quoted(out_file)} {' '.join(WRITTEN_BY_NGSPICE)}", "quit 0", ".endc"]
     return "\n".join([*lines, ".end", ""])
 
 
@@ -97,8 +98,8 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
         "deep, blood": "deep tissue at the last layer's end, and the blood that perfuses",
     }
     probes = {
-        ", ".join(probe for probe in PROBES if probe.endswith("_C")): "temperatures, 1 V is 1 degC",
-        ", ".join(probe for probe in PROBES if not probe.endswith("_C")): "heat flow into the skin, 1 V is 1 W/m2",
+        ", ".join(probe for probe in RECORDED if probe.endswith("_C")): "temperatures, 1 V is 1 degC",
+        ", ".join(probe for probe in RECORDED if not probe.endswith("_C")): "heat flow into the skin, 1 V is 1 W/m2",
     }
     yield "*"
     yield "* Electrical nodes in V and A; thermal nodes: 1 V is 1 degC above a ground of 0 degC, 1 A is 1 W."
@@ -146,7 +147,7 @@ def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
     if own is None:
         yield f"Vsink sink 0 {sink.temperature_C!r}"
         return
-    rest_W = (sink.temperature_C - float(steady_state(net, start_A)[HOT])) / sink.resistance_K_per_W
+    rest_W = (sink.temperature_C - float(state_under_current(net, start_A)[HOT])) / sink.resistance_K_per_W
     yield f"Csink sink 0 {own.capacity_J_per_K!r}"
     yield f"Bmiss miss 0 V={sink.temperature_C!r}-V(sink)"
     integral = f"+{own.ki_W_per_Ks!r}*V(integral)" if own.ki_W_per_Ks else ""
@@ -196,7 +197,7 @@ def _layer_ends_m(rig: Rig) -> list[float]:
 
 def _probes(net: Network, names: list[str]) -> Iterator[str]:
     yield from _section("probes")
-    for row, probe in enumerate(PROBES):
+    for row, probe in enumerate(RECORDED):
         start = int(net.probe_start[row])
         terms = [f"{float(weight)!r}*V({names[start + k]})" for k, weight in enumerate(net.probe_weight[row]) if weight]
         yield f"B{probe} {probe} 0 V={'+'.join(terms).replace('+-', '-')}"

@@ -11,32 +11,32 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.inverse import baseline_C, target_at
 from ..solver.prescribed import modes_of
 from ..solver.simulate import rows_until
 from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .realised import Realised
 from .setpoints import Setpoints, closed, setpoints_of
 from .thermode import display_of
 
 
-def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:
+def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
     """Return a cue as a thermode delivers it; its clock begins with the start command.
 
     Raises DeviceError where the cue prescribes a current, or what the thermode cannot be told.
     """
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} is a thermode: it takes temperatures, and {icon.name} prescribes a current; use control "
             f"display or control skin, or a device driven by volts, amperes or duty"
         )
     base = baseline_C(icon, rig)
-    end = float(icon.lower(base).duration_s) + tail_s
+    end = float(icon.corners(base).duration_s) + tail_s
     setpoints = closed(device, _setpoints(icon, rig, device, base, end))
     end = max(end, float(setpoints.time_s[-1]))
     step, prompt = display_of(setpoints, device, lagged=False, end_s=end)
@@ -46,7 +46,7 @@ def realise_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
     )
     designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end, rate_Hz)
     rate = 1.0 / setpoints.tick_s
-    return Realised(
+    return DeliveredDrive(
         icon, rig, device, rate, rate, 0.0, setpoints, None, designed, trace, outcome, (), undelayed
     )  # fmt: skip
 
@@ -60,7 +60,7 @@ def traces_of_setpoints(
     _, prompt = display_of(setpoints, device, lagged=False, end_s=end_s)
     times: Array = np.arange(len(display), dtype=np.float64) * step
     ideal = target_at(icon, base, times)
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         course_s, course_C = display_for(icon, rig, device, base, min(end_s, setpoints.cue_s))
         ideal = np.interp(times, course_s, course_C)
     if setpoints.closing:
@@ -69,7 +69,7 @@ def traces_of_setpoints(
 
     def traced(display_C: Array) -> Trace:
         return trace_of_display(
-            rig, step, display_C, rows, icon=icon.name, control=icon.frame.control, target_C=target, outcome=None
+            rig, step, display_C, rows, icon=icon.name, control=icon.context.control, target_C=target, outcome=None
         )[0]
 
     return traced(ideal), traced(display), traced(prompt)
@@ -88,10 +88,10 @@ def display_for(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: floa
 
 
 def _setpoints(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: float) -> Setpoints:
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         times, levels = display_for(icon, rig, device, base_C, end_s)
         return setpoints_of(device, times, levels, curve=True)
-    corners = icon.lower(base_C)
+    corners = icon.corners(base_C)
     times, levels = np.array(corners.time_s), np.array(corners.value)
     if end_s > times[-1] + 1e-9:
         times, levels = np.append(times, end_s), np.append(levels, levels[-1])

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..inputs import signed
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.drive import Drive
 from ..solver.inverse import Design
 from ..solver.pwm import duty_of, switched

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..rig.skin import Array
+from ..arrays import Array
 from .device import Device
 from .devicefile import DeviceError
 

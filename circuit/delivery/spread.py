@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..rig.skin import Array
+from ..arrays import Array
 from ..safety.corners import corners_of
 from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.network import network_of
 from ..solver.pwm import steady_of
 from ..solver.simulate import rows_until
-from ..solver.steady import steady_state
-from .realised import Realised
+from ..solver.steady import state_under_current
+from .delivered_drive import DeliveredDrive
 from .samples import Samples
 
 ROWS_HZ = 10.0
@@ -42,31 +42,33 @@ class OpenLoopSpread:
         return {"baseline_C": list(self.baseline_C), "step_K": list(self.step_K)}
 
 
-def open_loop_spread(realised: Realised) -> OpenLoopSpread | None:
+def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
     """Return what the corners of the rig's uncertainty do to a drive; None where a loop follows set-points.
 
     A corner without a steady state, or one that runs away, is left to the gate.
 
     >>> from thermicon.circuit.delivery.device import Device
-    >>> from thermicon.circuit.delivery.realise import realise
+    >>> from thermicon.circuit.delivery.deliver import deliver
     >>> from thermicon.circuit.rig.rig import Rig
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
-    >>> spread = open_loop_spread(realise(icon, rig, Device.load("dac-16")))
+    >>> spread = open_loop_spread(deliver(icon, rig, Device.load("dac-16")))
     >>> spread is not None and spread.baseline_C[0] < 32.0 < spread.baseline_C[1]
     True
     """
-    played, device = realised.played, realised.device
+    played, device = delivery.played, delivery.device
     if device.driven_by in ("set-points", "temperatures") or not isinstance(played, Samples):
         return None
-    drive, lanes, starts, gains = realised.delivered, [], [], []
-    for corner in corners_of(realised.rig):
+    drive, lanes, starts, gains = delivery.delivered, [], [], []
+    for corner in corners_of(delivery.rig):
         try:
             if device.driven_by == "duty":
                 low, high = device.interval("output range")
                 start = steady_of(corner.rig, float(played.command[0]), min(-low, high) * (1.0 + corner.gain_relative))
             else:
-                start = steady_state(network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative))
+                start = state_under_current(
+                    network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative)
+                )
         except ArithmeticError:
             continue
         lanes.append(network_of(corner.rig))

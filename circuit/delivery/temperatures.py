@@ -13,25 +13,25 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import hold
+from ..solver.steady import steady_state
+from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .realised import Realised
 from .samples import Samples, led, rate_of
 
 
-def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> Realised:
+def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
     """Return a cue as a controller around the rig's module delivers it.
 
     Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
     """
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} takes temperatures, and {icon.name} prescribes a current; use control display or control "
             f"skin, or a device driven by volts, amperes or duty"
@@ -45,7 +45,7 @@ def realise_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     delivered = follow_samples(rig, samples)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
     trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig, rate_Hz=rate_Hz)
-    return Realised(
+    return DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome, ()
     )  # fmt: skip
 
@@ -56,7 +56,7 @@ def follow_samples(rig: Rig, samples: Samples) -> Drive:
     It ends with the set-points, in a row of the current that holds the rest.
     """
     levels = samples.command
-    rest, state = hold(rig, "display", float(levels[0]))
+    rest, state = steady_state(rig, "display", float(levels[0]))
     bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
@@ -99,8 +99,8 @@ def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float)
 
 def _course(icon: Icon, rig: Rig, end_s: float) -> tuple[Array, Array]:
     """Times in s and the display in °C of a design without any loop: the cue's corners, or what its skin needs."""
-    if icon.frame.control == "display":
-        corners = icon.lower(baseline_C(icon, rig))
+    if icon.context.control == "display":
+        corners = icon.corners(baseline_C(icon, rig))
         return np.array(corners.time_s), np.array(corners.value)
     plan: Design = design_ideal(icon, rig, end_s)
     model = simulate_current(plan.drive, rig, rate_Hz=rig.driver.update_Hz, start_C=plan.start_C)

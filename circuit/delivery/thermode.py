@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ..rig.skin import Array
+from ..arrays import Array
 from ..solver.displayed import part_of
 from ..solver.prescribed import shown
 from .device import Device

@@ -1,238 +1,153 @@
-"""Export: a cue realised, judged in the worst case, and packed into files; nothing here touches the disk."""
+"""Export in one call: icons, a rig, a device and a format give the bytes of files, or the reasons against it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol
+import shutil
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from thermicon.icons import Icon
 
 from ..delivery.device import Device
-from ..delivery.formats import Format, FormatError
-from ..delivery.formats.form import Played
-from ..delivery.prevent import must_prevent
-from ..delivery.realise import realise
-from ..delivery.realised import Realised
-from ..delivery.spread import OpenLoopSpread, open_loop_spread
+from ..delivery.formats import Format, load_format
+from ..inputs import InputError
 from ..rig.rig import Rig
-from ..safety.repeated import check_pause
-from ..solver.difference import Difference
-from .refusal import Refusal, refusals_of
-from .sidecar import sealed, sidecar, sidecar_text
-from .worstcase import worst_case, worst_cases
+from .pack import pack
+from .prepare import Prepared, prepare_set
+from .refusal import Refusal
 
 
-class Verdict(Protocol):
-    """What a gate of safety says of one realised cue."""
-
-    @property
-    def colour(self) -> str:
-        """Green, amber or red; red is never written."""
-
-    @property
-    def reason(self) -> str | None:
-        """Why it is red, in one sentence."""
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """What is amber, a sentence each."""
-
-    @property
-    def scenarios(self) -> int:
-        """In how many worlds and endings the cue was judged."""
-
-    def to_dict(self) -> dict[str, object]:
-        """What the sidecar holds."""
-
-    @property
-    def demanded(self) -> dict[str, object]:
-        """What the hardware must prevent, as the sidecar and the players hold it."""
-
-
-Gate = Callable[[Realised], Verdict]
-"""What judges one realised cue."""
+class ExportError(InputError):
+    """An export that was refused, or a folder that cannot take one; the text says why and what to change."""
 
 
 @dataclass(frozen=True, slots=True)
-class Prepared:
-    """One cue that is ready to be written, or to be refused."""
+class Export:
+    """The result of `export`: bytes by file name, or none where any icon was refused.
 
-    realised: Realised
-    verdict: Verdict
-    apart: Difference
-    refusals: tuple[Refusal, ...]
-    spread: OpenLoopSpread | None = None
+    `refused` has every cause against writing, with the name of its icon; a forced export has causes and files.
+    `prepared` holds what the device delivers of each icon, with its verdict.
+    """
+
+    rig_name: str
+    device_name: str
+    format_name: str
+    prepared: tuple[Prepared, ...]
+    refused: tuple[tuple[str, Refusal], ...]
+    files: Mapping[str, bytes] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        count = f"{len(self.prepared)} icon{'s' * (len(self.prepared) != 1)}"
+        size = sum(len(content) for content in self.files.values())
+        said = f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
+        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {said})"
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is to be known of the delivery, then what is amber; not again what it is refused for."""
-        narrowed = self.realised.narrowed
-        told = self.realised.told
-        if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
-            told = tuple(text for text in told if text != narrowed.text)
-        refused = [refusal.text for refusal in self.refusals]
-        return (*(text for text in told if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
+        """What to know of the drives before they are played, each with the name of its icon."""
+        return tuple(f"{one.delivery.icon.name}: {text}" for one in self.prepared for text in one.warnings)
 
 
-def prepare(
-    icon: Icon,
-    rig: Rig,
-    device: Device,
-    form: Format,
-    *,
-    gate: Gate | None = None,
-    tail_s: float = 0.0,
-    pause_s: float | None = None,
-) -> Prepared:
-    """Return a cue as the device delivers it, judged by the gate, by its target and by what is lost.
-
-    The gate is that of the worst case, with `pause_s` between plays (None: the recovery time), unless another is given.
-
-    Raises PauseError for a pause that cannot be, FormatError where the format is not for this device, DeviceError
-    where the device cannot play the cue, and RigError where the baseline cannot be held.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> from thermicon.icons import load_library
-    >>> icon, rig = load_library("six-icons")["warming-step"], Rig.load("thenar")
-    >>> ready = prepare(icon, rig, Device.load("dac-16"), load_format("csv"))
-    >>> ready.verdict.colour, ready.refusals
-    ('green', ())
-    """
-    form.check(device)
-    realised = realise(icon, rig, device, tail_s=tail_s)
-    return _judged(realised, worst_case(realised, pause_s) if gate is None else gate(realised))
-
-
-def prepare_set(
-    icons: Sequence[Icon],
-    rig: Rig,
-    device: Device,
-    form: Format,
+def export(
+    icons: Icon | Iterable[Icon],
+    rig: Rig | str,
+    device: Device | str | None = None,
+    format: Format | str = "csv",
     *,
     tail_s: float = 0.0,
     pause_s: float | None = None,
-    step: Callable[[int, int], None] | None = None,
-) -> tuple[Prepared, ...]:
-    """Return cues that may be played again and again in any order, as the device delivers them; as `prepare` does.
+    force: bool = False,
+    folder: str | Path | None = None,
+) -> Export:
+    """Prepare icons for a device, judge them for safety in the worst case, and return the files that play them.
 
-    Each counts in the worst sequence of all of them. `step` is called after each with how many are done.
+    Nothing is written unless `folder` is given, and nothing unsafe is ever packed or written.
 
-    >>> from thermicon.circuit.delivery.formats import load_format
+    Parameters
+    ----------
+    icons
+        One icon, or those of a set, which may later be played in any order.
+    rig
+        The rig, or the name or file of one.
+    device
+        The device that plays the drives, or the name or file of one; None: the usual device of the format.
+    format
+        The file format or its name, see `thermicon.circuit.delivery.formats`.
+    tail_s
+        Time in s that is played after the last corner of each icon.
+    pause_s
+        Pause in s between plays that the verdict assumes; None: the time that the rig needs to recover.
+    force
+        Whether to pack icons that miss their target or lose too much; their sidecars say so. Unsafe icons stay refused.
+    folder
+        A folder to write the files into; it must not exist or be empty, and gets all files or none.
+
+    Returns
+    -------
+    Export
+        The files as bytes by name. Without files where an icon was refused: then `refused` says why.
+
+    Raises
+    ------
+    ExportError
+        Where a folder is given and an icon is refused, or the folder is not empty or cannot be written.
+    InputError
+        Where the device or format cannot play an icon at all, or the rig cannot hold its baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
-    >>> icons, rig = list(load_library("six-icons"))[:2], Rig.load("thenar")
-    >>> ready = prepare_set(icons, rig, Device.load("dac-16"), load_format("csv"), pause_s=60.0)
-    >>> [one.verdict.safe for one in ready]
-    [True, True]
+    >>> export(load_library("six-icons")["warming-step"], "thenar", "dac-16")
+    Export(1 icon on thenar for dac-16 as csv: 2 files, 68.4 kB)
+
     """
-    check_pause(pause_s)
-    form.check(device)
-    realised = []
-    for done, icon in enumerate(icons, 1):
-        realised.append(realise(icon, rig, device, tail_s=tail_s))
-        if step is not None:
-            step(done, len(icons))
-    verdicts = worst_cases(realised, pause_s) if realised else ()
-    return tuple(_judged(one, verdict) for one, verdict in zip(realised, verdicts, strict=True))
+    form = load_format(format) if isinstance(format, str) else format
+    played = device if isinstance(device, Device) else Device.load(device or form.device)
+    on = rig if isinstance(rig, Rig) else Rig.load(rig)
+    chosen = [icons] if isinstance(icons, Icon) else list(icons)
+    if not chosen:
+        raise ExportError("there is no icon to export; give at least one")
+    goal = None if folder is None else _free(Path(folder))
+    ready = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s)
+    refused = tuple((one.delivery.icon.name, refusal) for one in ready for refusal in one.refusals)
+    barred = [(name, refusal) for name, refusal in refused if not (force and refusal.forcible)]
+    files = {} if barred else pack(ready, form)
+    if goal is not None:
+        if barred:
+            raise ExportError("\n".join(f"{name}: {refusal}" for name, refusal in barred))
+        _write(files, goal)
+    return Export(on.name, played.name, form.name, ready, refused, files)
 
 
-def _judged(realised: Realised, verdict: Verdict) -> Prepared:
-    apart = realised.apart
-    return Prepared(realised, verdict, apart, refusals_of(realised, verdict, apart), open_loop_spread(realised))
-
-
-def _bare(warning: str) -> str:
-    """A warning without the name of the device before it."""
-    return warning.partition(": ")[2] or warning
-
-
-def check_names(names: Sequence[str], form: Format) -> None:
-    """Raise FormatError that names both where two icons would get files of one name.
-
-    Names that differ only in capitals count as one, since some disks make no difference.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> check_names(["dip", "double-dip"], load_format("csv"))
-    """
-    taken: dict[str, str] = {}
-    for name in names:
-        stem = form.stem(name)
-        other = taken.setdefault(stem.casefold(), name)
-        if other is name:
-            continue
-        if form.stem(other) == stem:
-            raise FormatError(
-                f"{other} and {name}: the files of both would be called {stem} in the format {form.name}; rename one, "
-                f"or export them into two folders, one by one with --icon"
-            )
-        raise FormatError(
-            f"{other} and {name}: differ only in capitals, so that one's files would overwrite the other's on disks "
-            f"that make no difference; rename one, or export them into two folders, one by one with --icon"
+def _free(folder: Path) -> Path:
+    """The folder, if it is missing or empty; ExportError otherwise."""
+    try:
+        taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+    except OSError as problem:
+        raise ExportError(f"{folder}: cannot be read ({problem.strerror or problem}); choose another folder") from None
+    if taken:
+        raise ExportError(
+            f"{folder}: is not an empty folder; give one that is new or empty, or use the command thermicon export, "
+            f"which replaces an earlier export"
         )
+    return folder.absolute()
 
 
-def pack(
-    ready: Sequence[Prepared],
-    form: Format,
-    *,
-    felt: Mapping[str, Mapping[str, object]] | None = None,
-    losses: Mapping[str, Sequence[str]] | None = None,
-) -> dict[str, bytes]:
-    """Return file names and their bytes: a sidecar and a drive for each cue, then what belongs to the set.
-
-    `felt` and `losses` are what perception says, by the names of cues; a cue with refusals is written as forced.
-    Raises FormatError where two cues would get the same name, or one is unsafe.
-    """
-    check_names([one.realised.icon.name for one in ready], form)
-    drives = {}
-    for one in ready:
-        name = one.realised.icon.name
-        if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
-            raise FormatError(f"{name}: {unsafe[0]}")
-        drive = form.file_name(one.realised)
-        if drive.casefold() in form.set_files:
-            raise FormatError(
-                f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
-            )
+def _write(files: Mapping[str, bytes], goal: Path) -> None:
+    """Write into a new folder beside the goal and rename it, so that the goal has all files or none."""
+    try:
+        goal.parent.mkdir(parents=True, exist_ok=True)
+        draft = Path(tempfile.mkdtemp(prefix=f".{goal.name}.", dir=goal.parent))
         try:
-            drives[name] = drive, form.write(one.realised)
-        except FormatError as problem:
-            raise FormatError(f"{name}: {problem}") from None
-    shared: dict[str, bytes] = {}
-    if form.player is not None and ready:
-        names = [one.realised.icon.name for one in ready]
-        played = [_played(one, drives[name][0], form) for one, name in zip(ready, names, strict=True)]
-        shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
-    files: dict[str, bytes] = {}
-    for one in ready:
-        name = one.realised.icon.name
-        drive, content = drives[name]
-        over = [str(refusal) for refusal in one.refusals]
-        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        about = sidecar(
-            one.realised, form, one.apart, one.verdict.to_dict(), (felt or {}).get(name), over,
-            demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
-        )  # fmt: skip
-        files[beside(name, form)] = sidecar_text(sealed(about))
-        files[drive] = content
-    return {**files, **shared}
-
-
-def _played(one: Prepared, file: str, form: Format) -> Played:
-    """A drive with what the gate says of it, for the player of a set."""
-    known = one.verdict.to_dict()
-    recovery, shortest = (
-        float(value) if isinstance(value := known.get(key), (int, float)) else None
-        for key in ("recovery_s", "shortest_pause_s")
-    )
-    return Played(one.realised, file, beside(one.realised.icon.name, form), one.verdict.colour, recovery, shortest)
-
-
-def beside(name: str, form: Format) -> str:
-    """Name of the sidecar of an icon.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> beside("double-dip", load_format("c-array"))
-    'double_dip.json'
-    """
-    return f"{form.stem(name)}.json"
+            for name, content in files.items():
+                (draft / name).write_bytes(content)
+            draft.chmod(0o755)
+            if goal.exists():
+                goal.rmdir()  # raises where another program has put something into it meanwhile
+            draft.rename(goal)
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
+    except OSError as problem:
+        raise ExportError(f"{goal}: cannot be written ({problem.strerror or problem}); nothing was exported") from None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from ..delivery.setpoints import Setpoints
 from ..inputs import signed
 from ..rig.rig import Rig
-from ..solver.difference import Difference, loss_limit
+from ..solver.delivery_deviation import DeliveryDeviation, loss_limit
 from ..solver.inverse import design
 from ..solver.simulate import duration_s
 from ..solver.trace import Outcome
@@ -16,8 +16,8 @@ from ..solver.trace import Outcome
 if TYPE_CHECKING:
     from thermicon.icons import Icon
 
-    from ..delivery.realised import Realised
-    from .export import Verdict
+    from ..delivery.delivered_drive import DeliveredDrive
+    from .prepare import Verdict
 
 _SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
 
@@ -45,24 +45,24 @@ class Refusal:
         return f"{_SAID[self.kind]}: {self.text}"
 
 
-def refusals_of(realised: Realised, verdict: Verdict, apart: Difference) -> tuple[Refusal, ...]:
+def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
     """Return the causes that speak against exporting a cue, what cannot be forced first.
 
     A consequence is not listed beside its cause: what a device with too small a range misses or loses is told with the
     range, and nothing is said of losses where the drive is not safe anyway.
     """
-    found, narrowed = [], realised.narrowed
+    found, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
         found.append(Refusal("unsafe", verdict.reason or "the gate says red"))
-    lost = lost_text(apart)
-    if realised.outcome is not None and not realised.outcome.reached:
-        found.append(Refusal("unreachable", _out_of_reach(realised, realised.outcome)))
+    lost = lost_text(deviation)
+    if delivery.outcome is not None and not delivery.outcome.reached:
+        found.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
         lost = "" if narrowed else lost
     elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
         found.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
         lost = ""
     if lost and verdict.colour != "red":
-        found.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(realised, lost)))
+        found.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(delivery, lost)))
     return tuple(found)
 
 
@@ -76,7 +76,7 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
     >>> needed_A(load_library("cooling-step-skin")["cooling-step"], Rig.load("shani2021"))
     1.9
     """
-    if icon.frame.control == "current" or rig.controller is not None:
+    if icon.context.control == "current" or rig.controller is not None:
         return None
     most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
 
@@ -100,10 +100,10 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
     return round(FINELY_A * -(-high // FINELY_A), 2)
 
 
-def lost_text(apart: Difference) -> str:
+def lost_text(deviation: DeliveryDeviation) -> str:
     """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
     limit = loss_limit("receptor difference")
-    lost = [one for one in apart.places if "receptor" in one.place and one.rms_K > limit]
+    lost = [one for one in deviation.places if "receptor" in one.place and one.rms_K > limit]
     if not lost:
         return ""
     first, *others = sorted(lost, key=lambda one: -one.rms_K)
@@ -113,38 +113,38 @@ def lost_text(apart: Difference) -> str:
     )
 
 
-def _out_of_reach(realised: Realised, outcome: Outcome) -> str:
+def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
     """The rig's own shortfall, with what it would take."""
     text = outcome.reason or "the target is missed"
-    if realised.drives is None:  # a thermode, which has neither driver nor module
+    if delivery.drives is None:  # a thermode, which has neither driver nor module
         return f"{text}; ask for a slower or smaller change, or use a thermode that can"
-    rig, driver = realised.rig, realised.rig.driver
+    rig, driver = delivery.rig, delivery.rig.driver
     held = [name for name, _ in outcome.limits]
     if not held or rig.controller is not None:
         return f"{text}; ask for a slower or smaller change"
     if held == ["compliance voltage"]:
         return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or ask for a slower change"
-    needed = needed_A(realised.icon, rig)
+    needed = needed_A(delivery.icon, rig)
     if needed is None:
         return f"{text}; no current of this module reaches it: ask for a slower or smaller change"
     narrow = ""
-    if realised.narrowed:
-        narrow = f" and {realised.device.name} plays at most {realised.narrowed.most_A:g} A"
+    if delivery.narrowed:
+        narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
     return (
         f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: ask for a "
         f"slower or smaller change, or raise the limit if driver and module can"
     )
 
 
-def _lossy(realised: Realised, lost: str) -> str:
+def _lossy(delivery: DeliveredDrive, lost: str) -> str:
     """What is lost, why, and what would lose less."""
-    device, played = realised.device, realised.played
+    device, played = delivery.device, delivery.played
     if isinstance(played, Setpoints):
         why = f"its set-points have steps of {played.step_K:g} K"
-    elif realised.warnings:
-        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in realised.warnings)
-    elif realised.rate_Hz < 0.9 * realised.requested_Hz:
-        why = f"it plays {realised.rate_Hz:.3g} of the {realised.requested_Hz:g} updates a second"
+    elif delivery.device_warnings:
+        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in delivery.device_warnings)
+    elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
+        why = f"it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
     else:
         unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
         why = f"its steps are {signed(played.scale.step, '.3g')}{unit}"

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
 
+from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.device import Device
 from ..delivery.formats.form import Format, events_in
-from ..delivery.realised import Realised
 from ..delivery.samples import Samples
 from ..delivery.setpoints import Setpoints
 from ..delivery.spread import OpenLoopSpread
@@ -17,7 +17,7 @@ from ..delivery.thermode import lag_of
 from ..program import own_version, this_program
 from ..records import Record
 from ..safety.summary import summarise
-from ..solver.difference import Difference, loss_table
+from ..solver.delivery_deviation import DeliveryDeviation, loss_table
 from .digests import digest, digest_of_content, plain
 
 NO_CLEARANCE = (
@@ -27,9 +27,9 @@ NO_CLEARANCE = (
 
 
 def sidecar(
-    realised: Realised,
+    delivery: DeliveredDrive,
     form: Format,
-    apart: Difference,
+    deviation: DeliveryDeviation,
     safety: Mapping[str, object],
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
@@ -46,23 +46,23 @@ def sidecar(
     belong to it, named here by their digests. `spread` is what a module that was not measured may do
     under an open loop.
     """
-    icon, rig, outcome, device = realised.icon, realised.rig, realised.outcome, _device(realised.device)
-    text, told = str(icon), [*rig.warnings, *realised.told]
-    if not realised.device.played:
-        told.append(f"{realised.device.name}: no such device was ever driven by thermicon")
+    icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
+    text, told = str(icon), [*rig.warnings, *delivery.warnings]
+    if not delivery.device.played:
+        told.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
     return {
         "thermicon": own_version(),
         "program": this_program(),
         "what_it_is_not": NO_CLEARANCE,
         "format": {
             **{"name": form.name, "source": form.source, "how_to_play": form.how},
-            **(form.facts(realised) if form.facts else {}),
+            **(form.facts(delivery) if form.facts else {}),
         },
-        "file": form.file_name(realised),
+        "file": form.file_name(delivery),
         "drive_sha256": digest(drive),
         "set_files": {name: digest(content) for name, content in set_files.items()},
-        "columns": [asdict(column) for column in form.columns(realised)],
-        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "columns": [asdict(column) for column in form.columns(delivery)],
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
         "rig_sha256": digest(rig.document.encode("utf-8")),
         "rig": {
             "name": rig.name,
@@ -72,13 +72,13 @@ def sidecar(
         },
         "device_sha256": digest_of_content(device),
         "device": device,
-        "update_rate_Hz": {"requested": realised.requested_Hz, "realised": realised.rate_Hz},
-        "played": _played(realised),
-        "events": [_event(event, icon.frame.control) for event in events_in(realised)],
+        "update_rate_Hz": {"requested": delivery.requested_Hz, "realised": delivery.rate_Hz},
+        "played": _played(delivery),
+        "events": [_event(event, icon.context.control) for event in events_in(delivery)],
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
-        "predicted": _predicted(realised),
-        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in apart.places},
+        "predicted": _predicted(delivery),
+        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in deviation.places},
         "open_loop_spread": None if spread is None else spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
@@ -115,8 +115,8 @@ def _event(event: Any, control: str) -> dict[str, object]:
     return {"name": event.name, "time_s": event.time_s, unit: event.level}
 
 
-def _played(realised: Realised) -> dict[str, object]:
-    played = realised.played
+def _played(delivery: DeliveredDrive) -> dict[str, object]:
+    played = delivery.played
     if isinstance(played, Setpoints):
         return {
             "segments": len(played.segments),
@@ -126,22 +126,22 @@ def _played(realised: Realised) -> dict[str, object]:
             "least_level_C": float(played.level_C.min()),
             "greatest_level_C": float(played.level_C.max()),
             "icon_begins_at_s": 0.0,
-            "duration_s": realised.file_s,
+            "duration_s": delivery.file_s,
             "cue_ends_at_s": played.cue_s,
-            "lag_s": lag_of(realised.device),
+            "lag_s": lag_of(delivery.device),
             "clock": (
                 "times count from the start command; the display follows with the lag, which is a delay and not "
                 "counted as a miss or a loss"
             ),
         }
-    return _samples(played, realised.lead_s)
+    return _samples(played, delivery.lead_s)
 
 
-def _predicted(realised: Realised) -> dict[str, object]:
-    found: dict[str, object] = dict(summarise(realised.trace).to_dict())
-    if not isinstance(realised.played, Setpoints):
+def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
+    found: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    if not isinstance(delivery.played, Setpoints):
         return found
-    return {**found, "duration_s": realised.file_s}
+    return {**found, "duration_s": delivery.file_s}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:

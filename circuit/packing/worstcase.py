@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..delivery.realised import Realised
+from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.samples import Samples
 from ..delivery.setpoints import Setpoints
 from ..delivery.temperatures import follow_samples
@@ -39,53 +39,53 @@ SETTLED_LAGS = 12.0
 """After so many lags a display has arrived within 1e-5 of its last step."""
 
 
-def worst_case(realised: Realised, pause_s: float | None = None) -> Gate:
+def worst_case(delivery: DeliveredDrive, pause_s: float | None = None) -> Gate:
     """Check what a device delivers against every rule of safety, once and again and again with a pause.
 
     See `gate`. Raises PauseError for a pause that cannot be.
 
-    >>> from thermicon.circuit import Device, Rig, realise
+    >>> from thermicon.circuit import Device, Rig, deliver
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
-    >>> worst_case(realise(icon, rig, Device.load("dac-12")))
+    >>> worst_case(deliver(icon, rig, Device.load("dac-12")))
     Gate(green: 22 rules in 195 scenarios on thenar)
-    >>> worst_case(realise(icon, rig, Device.load("qst-tcs2")))
+    >>> worst_case(deliver(icon, rig, Device.load("qst-tcs2")))
     Gate(green: 21 rules in 20 scenarios on thenar)
     """
-    return worst_cases([realised], pause_s)[0]
+    return worst_cases([delivery], pause_s)[0]
 
 
-def worst_cases(realised: Sequence[Realised], pause_s: float | None = None) -> tuple[Gate, ...]:
+def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = None) -> tuple[Gate, ...]:
     """Check what one device delivers of several cues on one rig, which may be played again and again in any order."""
-    device, rig = realised[0].device, realised[0].rig
+    device, rig = deliveries[0].device, deliveries[0].rig
     if device.driven_by == "set-points":
         stuck = device.interval("set-point range")
-        return gate_shown([ways_of(one) for one in realised], rig, stuck_C=stuck, pause_s=pause_s)
+        return gate_shown([ways_of(one) for one in deliveries], rig, stuck_C=stuck, pause_s=pause_s)
     if device.driven_by == "temperatures":
-        return _controlled(realised, pause_s)
+        return _controlled(deliveries, pause_s)
     if device.driven_by == "duty":
-        return _bridged(realised, pause_s)
+        return _bridged(deliveries, pause_s)
     assert device.driven_by in ("volts", "amperes"), f"no gate for a device driven by {device.driven_by}"
-    drives = [(one.delivered, float(one.delivered.current_A[0])) for one in realised]
+    drives = [(one.delivered, float(one.delivered.current_A[0])) for one in deliveries]
     return gate_set(drives, rig, pause_s=pause_s)
 
 
-def _bridged(realised: Sequence[Realised], pause_s: float | None) -> tuple[Gate, ...]:
+def _bridged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
     """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
-    device, rig = realised[0].device, realised[0].rig
+    device, rig = deliveries[0].device, deliveries[0].rig
     low, high = device.interval("output range")
     peak, averaged = min(-low, high), device.most("carrier frequency") >= RIPPLES_BELOW_HZ
     drives = []
-    for one in realised:
+    for one in deliveries:
         samples = samples_of(one)
         means = Drive(samples.time_s, samples.command * peak, held=True)
         drives.append((means if averaged else one.delivered, float(samples.command[0]) * peak))
     return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
 
 
-def ways_of(realised: Realised) -> tuple[Shown, ...]:
+def ways_of(delivery: DeliveredDrive) -> tuple[Shown, ...]:
     """The display of a thermode in each way in which it may follow its set-points, at its own tick."""
-    played, device = realised.played, realised.device
+    played, device = delivery.played, delivery.device
     assert isinstance(played, Setpoints)
     found = [Shown(AT_ONCE, *display_of(played, device, lagged=False))]
     if lag_of(device) > 0:
@@ -96,23 +96,23 @@ def ways_of(realised: Realised) -> tuple[Shown, ...]:
     return tuple(found)
 
 
-def samples_of(realised: Realised) -> Samples:
+def samples_of(delivery: DeliveredDrive) -> Samples:
     """The samples of a drive whose device plays samples."""
-    assert isinstance(realised.played, Samples)
-    return realised.played
+    assert isinstance(delivery.played, Samples)
+    return delivery.played
 
 
-def _controlled(realised: Sequence[Realised], pause_s: float | None) -> tuple[Gate, ...]:
+def _controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
     """A controller around the rig's module: the display at its set-points, and the module that follows in each corner.
 
     No module jumps as a set-point does, so rates are those of the module; a display that is exactly at its set-points
     bounds the temperatures of repetition.
     """
-    rig, shows = realised[0].rig, [(_held(one),) for one in realised]
-    stuck = (_stuck_C(realised[0], False), _stuck_C(realised[0], True))
+    rig, shows = deliveries[0].rig, [(_held(one),) for one in deliveries]
+    stuck = (_stuck_C(deliveries[0], False), _stuck_C(deliveries[0], True))
     verdicts = gate_shown(shows, rig, stuck_C=stuck, pause_s=pause_s, rates=False, module=True)
     found = []
-    for one, verdict in zip(realised, verdicts, strict=True):
+    for one, verdict in zip(deliveries, verdicts, strict=True):
         checks, faulty = _followed(one)
         found.append(
             replace(
@@ -126,15 +126,15 @@ def _controlled(realised: Sequence[Realised], pause_s: float | None) -> tuple[Ga
     return tuple(found)
 
 
-def _held(realised: Realised) -> Shown:
+def _held(delivery: DeliveredDrive) -> Shown:
     """A display that is exactly where the controller is told to hold it, from one update to the next."""
-    samples = samples_of(realised)
+    samples = samples_of(delivery)
     return Shown(HELD, 1.0 / samples.rate_Hz, samples.command)
 
 
-def _followed(realised: Realised) -> tuple[tuple[Check, ...], Faulty]:
+def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty]:
     """Every rule for the rig's module that follows the set-points, in each corner; and its single faults as given."""
-    samples, rig, judged = samples_of(realised), realised.rig, []
+    samples, rig, judged = samples_of(delivery), delivery.rig, []
     for corner in corners_of(rig):
         own = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
         try:
@@ -161,6 +161,6 @@ def _demands(verdict: Gate, faulty: Faulty) -> Demands:
     )
 
 
-def _stuck_C(realised: Realised, warm: bool) -> float:
-    low, high = realised.device.interval("set-point range")
+def _stuck_C(delivery: DeliveredDrive, warm: bool) -> float:
+    low, high = delivery.device.interval("set-point range")
     return high if warm else low

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from ..inputs import nearest, read_text
-from .about import about
 from .module import Peltier
 from .modules import ModuleOrigin, module_names, module_of, unlike_before
 from .parts import (
@@ -25,13 +24,14 @@ from .parts import (
     Thermode,
     Uncertainty,
 )
-from .probefile import probes_of
-from .receptors import HORNY_LAYER, ReceptorDepths
+from .probes import probes_of
+from .rig_summary import rig_summary
+from .rig_text import toml_text
 from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from .rules import Limits
-from .settings import put_all, read_settings
-from .skin import Column, Layer, Skin, column_of
-from .uncertainty import surer, uncertainty_of
+from .settings import flattened, put_all, read_settings
+from .skin import STRATUM_CORNEUM, Column, Layer, ReceptorDepths, Skin, column_of
+from .uncertainty import tightened, uncertainty_of
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
@@ -102,14 +102,49 @@ class Rig:
 
     @staticmethod
     def load(source: str | Path) -> Rig:
-        """Return a shipped rig by name, or a rig from a `.toml` file; raises RigError with every fault."""
-        path = Path(source)
-        if path.suffix == ".toml" or path.exists():
+        """Return a shipped rig by name, or a rig from a `.toml` file.
+
+        A file with the name of a shipped rig is read in its place; a folder of that name is not.
+
+        Raises
+        ------
+        RigError
+            With every fault of the file on a line of its own, or the nearest name where there is no such rig.
+
+        """
+        path, names = Path(source), rig_names()
+        if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
             text = read_text(path, "rig file", 1, RigError)
             return _build(parse_toml(text, str(path)), str(path))
-        if str(source) not in rig_names():
-            raise RigError(f"{source}: no such rig; {nearest(str(source), rig_names())}")
+        if str(source) not in names:
+            raise RigError(f"{source}: no such rig; {nearest(str(source), names)}")
         return _shipped(str(source))
+
+    def save(self, path: str | Path) -> None:
+        """Write the rig as a rig file, which `Rig.load` reads as an equal rig; an existing file is replaced.
+
+        Parameters
+        ----------
+        path
+            A file whose name ends in `.toml`.
+
+        Raises
+        ------
+        RigError
+            For another ending, a path that cannot be written, and a rig that no rig file may describe, such as a
+            corner of the uncertainty beyond the limits of the file.
+
+        """
+        where = Path(path)
+        if where.suffix != ".toml":
+            raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
+        text = toml_text(json.loads(self.document))
+        if _build(parse_toml(text, str(where)), str(where)) != self:
+            raise RigError(f"{where}: rig {self.name} does not read back as it is; it was not saved")
+        try:
+            where.write_text(text, encoding="utf-8")
+        except OSError as problem:
+            raise RigError(f"{where}: cannot be written ({problem.strerror or problem})") from None
 
     def _pump_for(self, what: str) -> HeatPump:
         if self.pump is None:
@@ -178,7 +213,7 @@ class Rig:
             )
         if loosened := self.limits.loosened:
             found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
-        if claims := surer(self.uncertainty):
+        if claims := tightened(self.uncertainty):
             found.append(
                 f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {self.uncertainty.reason}"
             )
@@ -214,14 +249,30 @@ class Rig:
         >>> print(Rig.load("thenar").about().splitlines()[2])
           rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
         """
-        return about(self)
+        return rig_summary(self)
 
     def with_(self, **changes: object) -> Rig:
-        """Return a new rig with dotted keys of the rig file changed; a layer is named by its place or its name.
+        """Return a new rig with keys of the rig file changed, in the units of the file.
 
-        Keys are those of the rig file, in its units: `rig.with_(**{"skin.layer.0.thickness_mm": 0.2})`.
+        Parameters
+        ----------
+        **changes
+            Dotted keys, or tables as dictionaries, of which only the given keys change. A layer or probe is named by
+            its place or its name.
+
+        Raises
+        ------
+        RigError
+            For an unknown key, with the nearest one, and for a value that cannot be.
+
+        Examples
+        --------
+        >>> rig = Rig.load("thenar")
+        >>> rig.with_(**{"skin.layer.dermis.thickness_mm": 1.2}, contact={"area_cm2": 4}).changes
+        ('skin.layer.dermis.thickness_mm=1.2', 'contact.area_cm2=4')
+
         """
-        document = json.loads(self.document)
+        document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)
         said = {text.partition("=")[0]: text for text in self.changes}
         said.update({key: f"{key}={value}" for key, value in changes.items()})
@@ -301,12 +352,12 @@ def _assemble(table: RigTable, document: str) -> Rig:
         )
         for layer in skin.layer
     )
-    if skin.depth_from == HORNY_LAYER and layers[0].name != HORNY_LAYER:
+    if skin.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
         raise ValueError(
-            f'skin.depth_from = "{HORNY_LAYER}": needs a first layer of that name, not "{layers[0].name}"; '
+            f'skin.depth_from = "{STRATUM_CORNEUM}": needs a first layer of that name, not "{layers[0].name}"; '
             f'rename the layer or use "surface"'
         )
-    above = skin.layer[0].thickness_mm if skin.depth_from == HORNY_LAYER else 0.0
+    above = skin.layer[0].thickness_mm if skin.depth_from == STRATUM_CORNEUM else 0.0
     body = Skin(
         skin.site,
         skin.rest_C,

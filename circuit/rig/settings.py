@@ -30,6 +30,21 @@ def read_settings(settings: Iterable[str]) -> dict[str, object]:
     return changes
 
 
+def flattened(changes: Mapping[str, object], prefix: str = "") -> dict[str, object]:
+    """Return changes with dotted keys in the place of nested dictionaries.
+
+    >>> flattened({"module": {"resistance_ohm": 2.0}, "contact.area_cm2": 4})
+    {'module.resistance_ohm': 2.0, 'contact.area_cm2': 4}
+    """
+    flat: dict[str, object] = {}
+    for key, value in changes.items():
+        if isinstance(value, dict):
+            flat.update(flattened(value, f"{prefix}{key}."))
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
 def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
     """Set dotted keys in the document; a module that changes drops its source and the way it was given before.
 

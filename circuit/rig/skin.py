@@ -7,11 +7,11 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
-from .receptors import HORNY_LAYER, ReceptorDepths
+from ..arrays import Array
 
-Array = npt.NDArray[np.float64]
+STRATUM_CORNEUM = "stratum corneum"
+"""Name of the layer from whose base receptor depths may be counted; it must be a skin's first."""
 
 FIRST_CELL_M = 25e-6
 CELL_GROWTH = 0.10
@@ -20,6 +20,41 @@ CELL_GROWTH = 0.10
 Chosen with `meshstudy` over two cues, six drives and four skins, not fitted to one: within 5 mK of a converged mesh at
 receptor depth on a 6 °C, 3 °C/s cue, and within 20 mK on 20 s drives that swing the display by 30 to 50 °C.
 """
+
+
+@dataclass(frozen=True, slots=True)
+class ReceptorDepths:
+    """Where the receptors lie in mm, counted in both ways that papers use.
+
+    `cold_mm`, `warm_mm` from the surface; `cold_below_corneum_mm`, `warm_below_corneum_mm` from the base of the stratum
+    corneum, negative inside it, None where the skin does not begin with that layer.
+
+    >>> print(ReceptorDepths.counted(0.15, 0.30, corneum_mm=0.17))
+    cold 0.15 mm, warm 0.3 mm below the surface; cold 0.02 mm above, warm 0.13 mm below the base of the stratum corneum
+    """
+
+    cold_mm: float
+    warm_mm: float
+    cold_below_corneum_mm: float | None
+    warm_below_corneum_mm: float | None
+
+    @staticmethod
+    def counted(cold_mm: float, warm_mm: float, corneum_mm: float | None) -> ReceptorDepths:
+        """Return both conventions from depths below the surface and the thickness of the stratum corneum, in mm."""
+        cold, warm = round(cold_mm, 9), round(warm_mm, 9)
+        if corneum_mm is None:
+            return ReceptorDepths(cold, warm, None, None)
+        return ReceptorDepths(cold, warm, round(cold - corneum_mm, 9), round(warm - corneum_mm, 9))
+
+    def __str__(self) -> str:
+        said = f"cold {self.cold_mm:.3g} mm, warm {self.warm_mm:.3g} mm below the surface"
+        if self.cold_below_corneum_mm is None or self.warm_below_corneum_mm is None:
+            return said
+        cold, warm = (
+            f"{name} {abs(depth):.3g} mm {'above' if depth < 0 else 'below'}"
+            for name, depth in (("cold", self.cold_below_corneum_mm), ("warm", self.warm_below_corneum_mm))
+        )
+        return f"{said}; {cold}, {warm} the base of the {STRATUM_CORNEUM}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +89,8 @@ class Skin:
 
     def __post_init__(self) -> None:
         thickness, above, below = self.thickness_m, 0.0, ""
-        if self.depth_from == HORNY_LAYER:
-            above, below = self.layers[0].thickness_m, f" below the {HORNY_LAYER}"
+        if self.depth_from == STRATUM_CORNEUM:
+            above, below = self.layers[0].thickness_m, f" below the {STRATUM_CORNEUM}"
         for name, depth in (("cold_receptor", self.cold_receptor_m), ("warm_receptor", self.warm_receptor_m)):
             if not 0 < depth < thickness - 1e-9:
                 raise ValueError(
@@ -75,8 +110,8 @@ class Skin:
     def receptor_depths(self) -> ReceptorDepths:
         """Depths of the receptors in mm, from the surface and from the base of the stratum corneum."""
         first = self.layers[0]
-        horny = first.thickness_m * 1e3 if first.name == HORNY_LAYER else None
-        return ReceptorDepths.counted(self.cold_receptor_m * 1e3, self.warm_receptor_m * 1e3, horny)
+        corneum = first.thickness_m * 1e3 if first.name == STRATUM_CORNEUM else None
+        return ReceptorDepths.counted(self.cold_receptor_m * 1e3, self.warm_receptor_m * 1e3, corneum)
 
     def resistance_to_m2K_per_W(self, depth_m: float) -> float:
         """Thermal resistance from the face down to a depth, in m²·K/W."""

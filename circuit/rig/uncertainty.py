@@ -14,15 +14,16 @@ from ..records import Table, load_records
 from .parts import Uncertainty
 from .rules import SHORTEST_REASON, is_reason
 
-_WORDS = {
-    "contact_resistance_relative": ("contact resistance", 100.0, "%"),
-    "ambient_K": ("ambient", 1.0, "K"),
-    "gain_relative": ("gain", 100.0, "%"),
-    "heat_sink_K": ("heat sink", 1.0, "K"),
-    "seebeck_relative": ("Seebeck coefficient", 100.0, "%"),
-    "conductance_relative": ("thermal conductance", 100.0, "%"),
-    "plates_relative": ("plates", 100.0, "%"),
+WORDS = {
+    "contact_resistance_relative": ("contact resistance", "contact", 100.0, "%"),
+    "ambient_K": ("ambient", "ambient", 1.0, "K"),
+    "gain_relative": ("gain", "gain", 100.0, "%"),
+    "heat_sink_K": ("heat sink", "heat sink", 1.0, "K"),
+    "seebeck_relative": ("Seebeck coefficient", "Seebeck", 100.0, "%"),
+    "conductance_relative": ("thermal conductance", "conductance", 100.0, "%"),
+    "plates_relative": ("plates", "plates", 100.0, "%"),
 }
+"""What is uncertain: its name, a short name for lists, the factor to the unit that people read, and that unit."""
 
 
 @cache
@@ -61,15 +62,15 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
     return found
 
 
-def surer(one: Uncertainty) -> tuple[str, ...]:
+def tightened(one: Uncertainty) -> tuple[str, ...]:
     """A few words for each uncertainty that is smaller than the shipped one.
 
-    >>> surer(uncertainty_of({"gain_relative": 0.02}))
+    >>> tightened(uncertainty_of({"gain_relative": 0.02}))
     ('gain ±2 % instead of ±10 %',)
     """
     return tuple(
         f"{words} ±{scale * getattr(one, key):g} {unit} instead of ±{scale * _shipped()[key]:g} {unit}"
-        for key, (words, scale, unit) in _WORDS.items()
+        for key, (words, _, scale, unit) in WORDS.items()
         if getattr(one, key) < _shipped()[key]
     )
 
@@ -80,7 +81,7 @@ def stated(one: Uncertainty) -> str:
     >>> stated(uncertainty_of({}))[:60]
     'contact resistance ±30 %, ambient ±3 K, gain ±10 %, heat sin'
     """
-    return ", ".join(f"{words} ±{scale * getattr(one, key):g} {unit}" for key, (words, scale, unit) in _WORDS.items())
+    return ", ".join(f"{words} ±{scale * getattr(one, key):g} {unit}" for key, (words, _, scale, unit) in WORDS.items())
 
 
 @cache

@@ -15,16 +15,7 @@ from functools import lru_cache
 from ..inputs import signed
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
-
-_WORDS = {
-    "contact_relative": ("contact", 100.0, "%"),
-    "ambient_K": ("ambient", 1.0, "K"),
-    "gain_relative": ("gain", 100.0, "%"),
-    "heat_sink_K": ("heat sink", 1.0, "K"),
-    "seebeck_relative": ("Seebeck", 100.0, "%"),
-    "conductance_relative": ("conductance", 100.0, "%"),
-    "plates_relative": ("plates", 100.0, "%"),
-}
+from ..rig.uncertainty import WORDS
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +25,7 @@ class Corner:
     The gain of the current source is not part of `rig`: it scales the current.
     """
 
-    contact_relative: float
+    contact_resistance_relative: float
     ambient_K: float
     gain_relative: float
     heat_sink_K: float
@@ -44,9 +35,9 @@ class Corner:
     rig: Rig
 
     def __str__(self) -> str:
-        parts = ((getattr(self, field), *words) for field, words in _WORDS.items())
-        told = [f"{name} {signed(scale * value, '+g')} {unit}" for value, name, scale, unit in parts if value]
-        return ", ".join(told) or "the rig as given"
+        parts = ((getattr(self, key), name, scale, unit) for key, (_, name, scale, unit) in WORDS.items())
+        moved = [f"{name} {signed(scale * value, '+g')} {unit}" for value, name, scale, unit in parts if value]
+        return ", ".join(moved) or "the rig as given"
 
     @property
     def nominal(self) -> bool:
@@ -96,7 +87,7 @@ def surroundings(rig: Rig) -> tuple[tuple[float, float], ...]:
 def _there(corner: Corner) -> Rig:
     return perturbed(
         corner.rig,
-        contact_resistance_relative=corner.contact_relative,
+        contact_resistance_relative=corner.contact_resistance_relative,
         ambient_K=corner.ambient_K,
         heat_sink_K=corner.heat_sink_K,
         seebeck_relative=corner.seebeck_relative,

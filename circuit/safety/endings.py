@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
-from ..solver.poweroff import unpowered
-from ..solver.steady import steady_state
+from ..solver.network import unpowered
+from ..solver.steady import state_under_current
 from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally
 
@@ -59,7 +59,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
     found = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
     for lane, network in enumerate(ensemble.networks):
-        state = steady_state(network, 0.0)
+        state = state_under_current(network, 0.0)
         found[:, lane] = [network.read(state, name) for name in WATCHED]
     return found
 

@@ -11,15 +11,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from ..solver.batch_inputs import Bank, Index, Intervals, State, cut, run_on
+from ..solver.batch_inputs import Bank, Intervals, State, cut, run_on
 from ..solver.constant_current import ConstantCurrent
 from ..solver.drive import Drive, DriveError
 from ..solver.network import Network, network_of
 from ..solver.pwm import steady_of
-from ..solver.steady import check_sink, steady_state
+from ..solver.steady import check_sink, state_under_current
 from .corners import Corner, corners_of
 from .tally import HOTTEST_C, WATCHED
 
@@ -89,7 +89,7 @@ class Ensemble:
         try:
             if self.bridge_A is not None:
                 return steady_of(corner.rig, rest_A / self.bridge_A, self.bridge_A * gain)
-            return steady_state(network, rest_A * gain)
+            return state_under_current(network, rest_A * gain)
         except ArithmeticError as problem:
             if corner.nominal:
                 raise RigError(f"rig {corner.rig.name}: {problem}; begin the drive with a smaller current") from None

@@ -12,9 +12,9 @@ from importlib import resources
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..records import load_records
 from ..rig.module import ZERO_C_IN_K
-from ..rig.skin import Array
 
 LEVEL_K = 1e-5
 """Rows closer than this are taken as level, where a difference of primitives would be rounding noise."""

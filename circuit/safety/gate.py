@@ -11,7 +11,7 @@ from ..inputs import signed
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.uncertainty import stated, surer
+from ..rig.uncertainty import stated, tightened
 from ..solver.drive import Drive
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
 from .demands import Demands
@@ -107,7 +107,7 @@ class Gate:
             "what_it_is_not": WHAT_IT_IS_NOT,
             "reason": self.reason,
             "limits": self.limits.to_dict(),
-            "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(surer(self.uncertainty))},
+            "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(tightened(self.uncertainty))},
             "scenarios": self.scenarios,
             "ending_s": ENDING_S,
             "skin_after_ending_C": dict(self.after_C),
@@ -269,7 +269,7 @@ def _lines(one: Gate) -> Iterator[str]:
         yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
     if one.limits.loosened:
         yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
-    if claims := surer(unsure):
+    if claims := tightened(unsure):
         yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
     for fault in one.demands.faults:
         yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.trace import Trace
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
 from .tally import WATCHED, Tally
@@ -22,6 +22,10 @@ class SafetyVerdict:
     """All limits that a trace passes; `colour` is green, amber (soft limits only) or red."""
 
     findings: tuple[Check, ...]
+
+    def __repr__(self) -> str:
+        passed = ", ".join(f"{check.quantity} {check.value:.4g} {check.unit}" for check in self.findings)
+        return f"SafetyVerdict({self.colour}{f': {passed}' if passed else ''})"
 
     @property
     def colour(self) -> str:

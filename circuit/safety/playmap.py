@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from ..rig.skin import Array
+from ..arrays import Array
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 

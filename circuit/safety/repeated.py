@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+import numpy.typing as npt
 
+from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.batch_inputs import State
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason
 from .endings import ENDINGS, follow_endings
@@ -170,10 +171,20 @@ def recovery_s(ensemble: Ensemble, rest_A: float, start: State, ended: State) ->
     began, _ = ensemble.hold(rest_A, start, np.array([0.0, 1e-3]))
     which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
     away = np.abs(values[which] - began[which][:, :, :1]).max(axis=(0, 1)) > RECOVERED_K
-    if away[-1] or not np.isfinite(values[which]).all():
+    back_s = back_after_s(away) if np.isfinite(values[which]).all() else None
+    return None if back_s is None else round(back_s, 1)
+
+
+def back_after_s(away: npt.NDArray[np.bool_]) -> float | None:
+    """Time in s of the row of ROWS_S from which on nothing is away any more; None where something still is at the end.
+
+    >>> back_after_s(ROWS_S < 0.25)
+    0.3...
+    """
+    if away[-1]:
         return None
-    last = np.flatnonzero(away)
-    return 0.0 if not len(last) else round(float(ROWS_S[last[-1] + 1]), 1)
+    late = np.flatnonzero(away)
+    return float(ROWS_S[late[-1] + 1]) if len(late) else 0.0
 
 
 def skin_C(ensemble: Ensemble, state: State) -> Array:

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from ..rig.skin import Array
-from ..solver.batch_inputs import Index, State
+from ..arrays import Array, Index
+from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .ensemble import Ensemble, row_of
 from .playmap import MOST_STEPS, NEAR_K, PlayMap, least_bound

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.drive import Drive, DriveError
 from .corners import Corner
 from .endings import ENDING_S, ENDINGS, ROWS_S, without_power

@@ -10,8 +10,8 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, gains_of, target_at
@@ -135,7 +135,7 @@ def _tracked(
 
 def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float, Array]:
     """Display temperature in °C at rest, and at the end of every update of an icon."""
-    control, base = icon.frame.control, baseline_C(icon, rig)
+    control, base = icon.context.control, baseline_C(icon, rig)
     if control == "current":
         raise SessionError(
             f"{icon.name} prescribes the current, so there is no display temperature to track; use tracking replay"

@@ -9,10 +9,10 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..inputs import nearest
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.simulate import simulate_current
 from ..solver.trace import Trace
 from .checks import findings_of

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import Check, worst_of

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..inputs import signed
 from ..rig.rules import Limits, Rule
-from ..rig.skin import Array
-from ..solver.batch_inputs import Index, Intervals, State, run_on
+from ..solver.batch_inputs import Intervals, State, run_on
 from ..solver.drive import Drive
 from .checks import colour_of, findings_of
 from .demands import CutOff, PolarityCheck, SingleFault

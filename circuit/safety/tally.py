@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits, Rule
-from ..rig.skin import Array
 from .checks import LEVEL, Check
 from .exposure import cem43_min, henriques
 

@@ -13,15 +13,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from ..solver.prescribed import FELT, SkinModes, modes_of
 from .corners import Corner
 from .endings import ENDING_S, LATER_S
 from .playmap import PlayMap, least_bound
-from .repeated import RECOVERED_K
+from .repeated import RECOVERED_K, back_after_s
 from .repeated import ROWS_S as RECOVERY_ROWS_S
 from .tally import WATCHED, Tally
 
@@ -157,10 +157,8 @@ class Under:
         skin = self.hold(last, ended, RECOVERY_ROWS_S)[0]
         began = self.hold(first, self.steady(first), np.array([0.0]))[0]
         away = (np.abs(skin - began).max(axis=0) > RECOVERED_K) | (abs(last - first) > RECOVERED_K)
-        if away[-1]:
-            return None
-        late = np.flatnonzero(away)
-        return round(shown.settling_s + (float(RECOVERY_ROWS_S[late[-1] + 1]) if len(late) else 0.0), 1)
+        back_s = back_after_s(away)
+        return None if back_s is None else round(shown.settling_s + back_s, 1)
 
 
 def watched(felt: Sequence[Array]) -> Array:

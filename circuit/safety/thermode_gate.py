@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..arrays import Array
 from ..inputs import signed
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.skin import Array
 from .checks import Check, colour_of, findings_of, worst_of
 from .demands import CutOff, Demands, SingleFault
 from .endings import ENDING_S

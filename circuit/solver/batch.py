@@ -10,15 +10,15 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from .batch_inputs import Bank, Index, cut, run_follow, run_forward, run_regulate
+from .batch_inputs import Bank, cut, run_follow, run_forward, run_regulate
 from .displayed_batch import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from .network import network_of
 from .simulate import rows_until, simulate
-from .steady import hold, steady_state
+from .steady import state_under_current, steady_state
 
 TRACKINGS = ("replay", "display", "ideal")
 """What each rig is played: the nominal current open loop, the nominal display trajectory, or its own solution."""
@@ -33,6 +33,10 @@ class Batch:
     time_s: Array
     probes: tuple[str, ...]
     values: Array
+
+    def __repr__(self) -> str:
+        _, rigs, icons, rows = self.values.shape
+        return f"Batch({icons} icons on {rigs} rigs, {rows} rows, {self.time_s[-1]:g} s: {', '.join(self.probes)})"
 
     def __getitem__(self, probe: str) -> Array:
         """Values of one probe, (rigs, icons, rows)."""
@@ -51,7 +55,7 @@ class Batch:
 
 def usual_tracking(icon: Icon) -> str:
     """Tracking that suits what a cue prescribes: `display` for display control, else `replay`."""
-    return "display" if icon.frame.control == "display" else "replay"
+    return "display" if icon.context.control == "display" else "replay"
 
 
 def simulate_many(
@@ -89,7 +93,7 @@ def simulate_many(
     stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
-        groups.setdefault((icon.frame.control, tracking or usual_tracking(icon)), []).append(place)
+        groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
     for (control, way), places in groups.items():
         cues = [icons[place] for place in places]
         if control == "current":
@@ -146,7 +150,7 @@ class _Stage:
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
         plan = design(icon, self.nominal, self.end_s)
-        states = [steady_state(network_of(rig), plan.rest_A) for rig in self.rigs]
+        states = [state_under_current(network_of(rig), plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
         bank = Bank.of([network_of(rig) for rig in self.rigs])
@@ -157,7 +161,7 @@ class _Stage:
         plans = design_many(icons, self.nominal, self.end_s)
         currents = np.array([plan.drive.current_A[:-1] for plan in plans])
         states = {
-            (r, amperes): steady_state(network_of(rig), amperes)
+            (r, amperes): state_under_current(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
             for amperes in {plan.rest_A for plan in plans}
         }
@@ -174,7 +178,7 @@ class _Stage:
             bases = [float(display[0]) for display in shown]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        held = {(r, base): hold(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        held = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
         lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
         states = [state for _, state in lanes]
         if self.nominal.controller is None:

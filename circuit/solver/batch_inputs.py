@@ -8,14 +8,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
+from ..arrays import Array, Index
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from .cores import cores
-from .network import PROBES, Network, network_of
-
-Index = npt.NDArray[np.int64]
+from .network import RECORDED, Network, network_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +98,7 @@ def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Interva
 
 
 def run_forward(
-    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = PROBES,
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None,
 ) -> Array:  # fmt: skip
     """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3).
@@ -133,13 +130,13 @@ class State:
 
 
 def run_on(
-    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = PROBES,
+    bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None,
 ) -> tuple[Array, State]:  # fmt: skip
     """`run_forward` from states that may be in the middle of something; returns also the states at the end."""
     from . import kernel, kernel_batch
 
-    which = [PROBES.index(probe) for probe in probes]
+    which = [RECORDED.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
     weights = np.ascontiguousarray(bank.probe_weight[:, which])
     if extra is not None:

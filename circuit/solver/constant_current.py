@@ -12,13 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
-from ..rig.skin import Array
-from .batch_inputs import Index
-from .network import COLD, HOT, PROBES, SKIN, Network
+from .network import COLD, HOT, RECORDED, SKIN, Network
 
-READ = PROBES[:5]
-"""What can be read: the temperatures of PROBES."""
+READ = RECORDED[:5]
+"""What can be read: the temperatures of RECORDED."""
 
 FARTHEST = 60.0
 """Exponents are cut here: e^60 times a millikelvin is hotter than anything."""
@@ -29,7 +28,7 @@ class ConstantCurrent:
     """Modes of r rigs with n skin lumps each, under a constant current each.
 
     `rate_per_s` (r, n + 2), `to_modes` and `from_modes` (r, n + 2, n + 2), `rest_C` (r, n + 2): where all rates are
-    positive, the steady state. `reading` (r, probes, n + 2) reads PROBES[:5] off the modes, `level_C` (r, probes) is
+    positive, the steady state. `reading` (r, probes, n + 2) reads RECORDED[:5] off the modes, `level_C` (r, probes) is
     what they read at rest.
     """
 

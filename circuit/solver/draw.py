@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from typing import TYPE_CHECKING
 
-from ..rig.skin import Array
+from ..arrays import Array
 from .trace import Trace
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ import numpy as np
 
 from thermicon.icons.model.cleaning import clean_line
 
+from ..arrays import Array
 from ..inputs import InputError, quoted, read_text
-from ..rig.skin import Array
 
 COLUMNS = ("time_s", "current_A")
 MOST_MB, LONGEST_CELL = 200, 60

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.parts import Probe
 from ..rig.rig import Rig
-from ..rig.skin import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class LateralColumn:
     """The second column per unit area, face first: `conductance_W_per_m2K` (n + 1,) from the display down to deep.
 
     `across_W_per_m2K` (n,) joins each lump to its neighbour in the first column; `place_m2K_per_W` (n + 2,) is the
@@ -41,12 +41,12 @@ class Beside:
         return np.concatenate([[display_C], np.linalg.solve(matrix, source), [self.deep_C]])
 
 
-def beside_of(rig: Rig, probe: Probe) -> Beside:
+def lateral_column(rig: Rig, probe: Probe) -> LateralColumn:
     """Return the second column under a probe on insulated skin."""
     column = rig.column
     resistance = column.resistance_m2K_per_W.copy()
     resistance[0] += probe.insulation_m2K_per_W
-    return Beside(
+    return LateralColumn(
         column.capacity_J_per_m2K,
         1 / resistance,
         column.perfusion_W_per_m2K,
@@ -76,12 +76,12 @@ def insulated_C(rig: Rig, probe: Probe, time_s: Array, display_C: Array, lumps_C
     """
     from . import kernel_probes
 
-    column = beside_of(rig, probe)
+    column = lateral_column(rig, probe)
     at = probe.insulation_m2K_per_W + rig.skin.resistance_to_m2K_per_W(probe.depth_m)
     upper = min(max(int(np.searchsorted(column.place_m2K_per_W, at * (1 + 1e-12))) - 1, 0), len(lumps_C))
     low, high = column.place_m2K_per_W[upper : upper + 2]
     out = np.empty(len(time_s))
-    kernel_probes.beside(
+    kernel_probes.step_lateral_column(
         time_s, display_C, np.ascontiguousarray(lumps_C), column.capacity_J_per_m2K, column.conductance_W_per_m2K,
         column.perfusion_W_per_m2K, column.across_W_per_m2K, column.deep_C,
         column.steady_C(float(display_C[0]), lumps_C[:, 0]), upper, min((at - low) / (high - low), 1.0), out,

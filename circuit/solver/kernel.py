@@ -1,7 +1,12 @@
 """Compiled stepping: the circuit forward in time, and the current that makes it follow a target.
 
-Every step is the trapezoidal rule in its midpoint form: an implicit half step with the step's mean current, doubled.
-Skin lumps are eliminated from the deep end up, so that only the two plates depend on the current.
+Every step of length δ is the trapezoidal rule in its midpoint form: an implicit step of δ/2 with the step's mean
+current gives the state in the middle, x_mid, and x_new = 2·x_mid − x_old. The skin is a chain of lumps,
+
+    C_i·dT_i/dt = g_i·(T_{i−1} − T_i) + g_{i+1}·(T_{i+1} − T_i) + w_i·(T_deep − T_i),
+
+a tridiagonal system that does not depend on the current and is factored once for each step length. What remains are
+two equations for the plates, which do depend on it (`advance`).
 """
 
 # mypy: disable-error-code="no-untyped-def,misc"
@@ -15,6 +20,24 @@ import numpy as np
 from ..compiled import kernel
 from ..rig.module import ZERO_C_IN_K
 from . import plate
+from .network import COLD, HOT, SKIN
+from .plate import (
+    ALPHA,
+    COLD_J_PER_K,
+    COMPLIANCE_V,
+    CONDUCTANCE,
+    DEEP_C,
+    HIGHEST_A,
+    HOT_J_PER_K,
+    LOWEST_A,
+    RESISTANCE,
+    SINK_C,
+    SINK_J_PER_K,
+    SINK_KI,
+    SINK_KP,
+    SINK_POWER_W,
+    SINK_W_PER_K,
+)
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 greatest_cooling = compiled(plate.greatest_cooling_A)
@@ -22,10 +45,24 @@ current_for_heat = compiled(plate.current_for_heat_A)
 
 LONGEST_STEP_S = 0.01
 SHORTEST_STEP_S = 0.25e-3
-CLOSE_A = 1e-10
-KEEP, LINK, BACK, SLOPE, WEIGHT = range(5)
 JUMP_A = 0.02
 """After a jump of the current, and at the start, steps begin at the shortest and grow with the time since."""
+
+CLOSE_A = 1e-10
+"""Tolerance of the search for a current."""
+
+KEEP, LINK, BACK, SLOPE, WEIGHT = range(5)
+"""Rows of a factored half of the skin, see `factor`."""
+
+COLD_SHARE, MEET, HOT_STORE, COLD_STORE, SINK_SHARE = range(5)
+"""Factors of a step that belong to no single lump: weight of the cold plate in the first lump, factor where the halves
+meet, C/(δ/2) of both plates in W/K, and weight of the hot plate in the heat sink (0 where the sink is ideal)."""
+
+TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
+"""State of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
+
+FREE, MOST_CURRENT, LEAST_CURRENT, VOLTAGE, MODULE = range(5)
+"""What limits a current: nothing, the driver's highest or lowest current, its voltage, the module's best cooling."""
 
 
 @compiled
@@ -33,14 +70,14 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
     """Factor the skin for implicit steps of length `half`; temperatures are above the deep node's.
 
     The upper half (n // 2 lumps) is eliminated downwards and the lower half upwards: two short chains instead of a
-    long one. The lower half stands in reverse, so that both run with one index. A lump is KEEP of itself, LINK of the
-    neighbour before it in its chain, BACK of the one after it and, in the upper half, SLOPE of the cold plate; WEIGHT
-    gives the first lump from all. `whole` gets what is not of one lump: the cold plate's share in the first lump, the
-    factor where the halves meet, and hot plate, cold plate and heat sink over the step.
+    long one. The lower half is stored in reverse, so that one index runs through both. After the implicit step a lump
+    is KEEP · its old value + LINK · the lump before it in its chain + BACK · the lump after it and, in the upper half,
+    + SLOPE · the cold plate; the sum of WEIGHT · old value gives the first lump without the cold plate's part. `whole`
+    gets the factors from COLD_SHARE to SINK_SHARE.
     """
     middle = n // 2
     share = 0.0
-    for i in range(n - 1, -1, -1):
+    for i in range(n - 1, -1, -1):  # T_i = keep·T_i,old + link·T_{i+1} + share·T_{i−1}, from the deep end up
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i + 1] * share)
         share = g[i] * inverse
         row, j = (upper, i) if i < middle else (lower, n - 1 - i)
@@ -50,22 +87,22 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
         row, j = (upper, i) if i < middle else (lower, n - 1 - i)
         row[WEIGHT, j] = product * row[KEEP, j]
         product *= row[LINK, j]
-    whole[0] = share
+    whole[COLD_SHARE] = share
     share, product = 0.0, 1.0
-    for i in range(middle):
+    for i in range(middle):  # the upper half again, this time from the cold plate down
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i] * share)
         share = g[i + 1] * inverse
         product *= g[i] * inverse
         upper[KEEP, i], upper[LINK, i] = cap[i] / half * inverse, g[i] * inverse
         upper[BACK, i], upper[SLOPE, i] = share, product
-    whole[1] = 1.0 / (1.0 - lower[BACK, n - middle - 1] * share)
-    whole[2], whole[3] = p[3] / half, p[4] / half
-    whole[4] = p[6] / (p[11] / half + p[6]) if p[11] > 0.0 else 0.0
+    whole[MEET] = 1.0 / (1.0 - lower[BACK, n - middle - 1] * share)
+    whole[HOT_STORE], whole[COLD_STORE] = p[HOT_J_PER_K] / half, p[COLD_J_PER_K] / half
+    whole[SINK_SHARE] = p[SINK_W_PER_K] / (p[SINK_J_PER_K] / half + p[SINK_W_PER_K]) if p[SINK_J_PER_K] > 0.0 else 0.0
 
 
 @kernel(nogil=True, fastmath={"contract", "reassoc"})
 def weighed(n, upper, lower, x):
-    """Weighted sum of the lumps: the part of the first lump, after an implicit step, that the cold plate has not."""
+    """First lump after an implicit step, less the cold plate's part: the sum of weight · lump."""
     total = 0.0
     for j in range(n // 2):
         total += upper[WEIGHT, j] * x[j + 2]
@@ -76,44 +113,52 @@ def weighed(n, upper, lower, x):
 
 @compiled
 def settle(hot, p, sink):
-    """Start the heat sink at its set-point: temperature °C, integral K·s, power W now and at rest."""
-    sink[0], sink[1] = p[5], 0.0
-    sink[2] = sink[3] = -p[6] * (hot - p[5]) if p[11] > 0.0 else 0.0
+    """Start the heat sink at its set-point, with the power that holds it there."""
+    sink[TEMPERATURE], sink[INTEGRAL] = p[SINK_C], 0.0
+    sink[POWER] = sink[REST_POWER] = -p[SINK_W_PER_K] * (hot - p[SINK_C]) if p[SINK_J_PER_K] > 0.0 else 0.0
 
 
 @compiled
 def regulate_sink(step, p, sink):
-    """Power of a hot plate's own controller for the next step; the integral waits at limits."""
-    error = p[5] - sink[0]
-    power = sink[3] + p[12] * error + p[13] * sink[1]
-    sink[2] = min(max(power, -p[14]), p[14])
-    if power == sink[2] or power * error < 0.0:
-        sink[1] += error * step
+    """Power of the heat sink's own controller for the next step: P = P_rest + kp·e + ki·∫e dt within its limits.
+
+    The integral is not advanced while the power is at a limit and the error would push it further (anti-windup).
+    """
+    error = p[SINK_C] - sink[TEMPERATURE]
+    power = sink[REST_POWER] + p[SINK_KP] * error + p[SINK_KI] * sink[INTEGRAL]
+    sink[POWER] = min(max(power, -p[SINK_POWER_W]), p[SINK_POWER_W])
+    if power == sink[POWER] or power * error < 0.0:
+        sink[INTEGRAL] += error * step
 
 
 @compiled
 def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, whole, y, z, first):
     """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
 
-    `x` is the state as `load` lays it out, `top` and `low` its lumps; `y`, `z` are scratch. `first` is `weighed` of the
-    lumps; what it is for the next step comes back, summed on the way.
+    `x` is the state as `load` stores it, `top` and `low` are views of its lumps, `y` and `z` scratch. `first` is
+    `weighed` of the lumps; the function returns `weighed` of the new lumps, summed on the way. The plates obey
+
+        C_h·dT_h/dt = αI·T_h + I²R/2 + (T_c − T_h)/Θ + (T_s − T_h)/R_s,
+        C_c·dT_c/dt = −αI·T_c + I²R/2 + (T_h − T_c)/Θ + g_0·(T_1 − T_c),
+
+    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system.
     """
-    middle, share = n // 2, whole[4]  # the heat sink's share in its own implicit step: 0 where it is ideal
+    middle, share = n // 2, whole[SINK_SHARE]  # the heat sink's share in its own implicit step: 0 where it is ideal
     if share > 0.0:
         regulate_sink(step, p, sink)
-    hot0, cold0, kelvin = x[0], x[1], ZERO_C_IN_K + p[7]
-    pump, joule = p[0] * current, 0.5 * p[1] * squared
-    hot_store, cold_store, out = whole[2], whole[3], p[6] * (1.0 - share)
-    a11, a22 = hot_store + out + p[2] - pump, cold_store + p[2] + pump + g0 * (1.0 - whole[0])
-    b1 = hot_store * hot0 + out * (sink[0] - p[7]) + share * sink[2] + pump * kelvin + joule
+    hot0, cold0, kelvin, leak = x[HOT], x[COLD], ZERO_C_IN_K + p[DEEP_C], p[CONDUCTANCE]
+    pump, joule = p[ALPHA] * current, 0.5 * p[RESISTANCE] * squared
+    hot_store, cold_store, out = whole[HOT_STORE], whole[COLD_STORE], p[SINK_W_PER_K] * (1.0 - share)
+    a11, a22 = hot_store + out + leak - pump, cold_store + leak + pump + g0 * (1.0 - whole[COLD_SHARE])
+    b1 = hot_store * hot0 + out * (sink[TEMPERATURE] - p[DEEP_C]) + share * sink[POWER] + pump * kelvin + joule
     b2 = cold_store * cold0 - pump * kelvin + joule + g0 * first
-    inverse = 1.0 / (a11 * a22 - p[2] * p[2])
-    hot, cold = (b1 * a22 + p[2] * b2) * inverse, (a11 * b2 + p[2] * b1) * inverse
-    x[0], x[1] = 2.0 * hot - hot0, 2.0 * cold - cold0
+    inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ
+    hot, cold = (b1 * a22 + leak * b2) * inverse, (a11 * b2 + leak * b1) * inverse
+    x[HOT], x[COLD] = 2.0 * hot - hot0, 2.0 * cold - cold0
     if share > 0.0:
-        sink[0] += 2.0 * share * (sink[2] / p[6] + hot + p[7] - sink[0])
+        sink[TEMPERATURE] += 2.0 * share * (sink[POWER] / p[SINK_W_PER_K] + hot + p[DEEP_C] - sink[TEMPERATURE])
     above, below = 0.0, 0.0
-    for j in range(middle):
+    for j in range(middle):  # forward elimination of both halves, towards their meeting
         above = upper[LINK, j] * above + upper[KEEP, j] * top[j]
         below = lower[LINK, j] * below + lower[KEEP, j] * low[j]
         y[j], z[j] = above, below
@@ -121,7 +166,7 @@ def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, w
         below = lower[LINK, middle] * below + lower[KEEP, middle] * low[middle]
     above = above + upper[SLOPE, middle - 1] * cold if middle > 0 else cold
     last = n - middle - 1  # where the halves meet: the last of the lower half
-    above = below = (below + lower[BACK, last] * above) * whole[1]
+    above = below = (below + lower[BACK, last] * above) * whole[MEET]
     moved = 2.0 * below - low[last]
     low[last] = moved
     sum_top, sum_low, j = 0.0, lower[WEIGHT, last] * moved, last - 1
@@ -130,7 +175,7 @@ def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, w
         moved = 2.0 * above - top[middle - 1]
         top[middle - 1] = moved
         sum_top = upper[WEIGHT, middle - 1] * moved
-    for j in range(last - 1, -1, -1):
+    for j in range(last - 1, -1, -1):  # back substitution, away from the meeting
         above = y[j] + upper[SLOPE, j] * cold + upper[BACK, j] * above
         below = z[j] + lower[BACK, j] * below
         moved, other = 2.0 * above - top[j], 2.0 * below - low[j]
@@ -142,15 +187,15 @@ def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, w
 
 @compiled
 def place_of(k, n):
-    """Where state k (hot plate, cold plate, lumps from the surface down, deep node) stands in what `load` lays out."""
+    """Index that `load` gives to state k (hot plate, cold plate, lumps from the surface down, deep node)."""
     return k if k < 2 + n // 2 or k > n + 1 else n // 2 + n + 3 - k
 
 
 @compiled
 def load(n, state, p, x):
-    """Lay a lane's state (°C) out above the deep temperature: plates, upper half, lower half in reverse, deep node."""
+    """Store a lane's state (°C) as K above the deep node: plates, upper half, lower half in reverse, deep node."""
     for k in range(n + 3):
-        x[place_of(k, n)] = state[k] - p[7]
+        x[place_of(k, n)] = state[k] - p[DEEP_C]
 
 
 @compiled
@@ -160,9 +205,9 @@ def forward(
 ):  # fmt: skip
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
-    `start_A`, `end_A` (interval, cue): current at both ends of an interval; `row_of` (interval + 1,): row to write at
-    an edge, or −1; `state` (lane, n + 3); `out` (probe, lane, row). `final` (lane, n + 3) gets the state at the end;
-    `sinks` (lane, 4) has each lane's heat sink as in `settle`, or NaN to start it at its set-point, and gets the last.
+    `start_A`, `end_A` (interval, cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to
+    write at an edge, or −1; `state` (lane, n + 3) the start in °C; `out` (probe, lane, row) and `final` (lane, n + 3)
+    are filled. `sinks` (lane, 4) holds each lane's heat sink (NaN: start at its set-point), and is left as it ends.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -173,12 +218,12 @@ def forward(
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
         load(n, state[lane], p, x)
-        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
+        top, low = x[SKIN : SKIN + n // 2], x[SKIN + n // 2 : SKIN + n]
         for q in range(probes):
-            offset[q] = (weights[r, q, 0] + weights[r, q, 1] + weights[r, q, 2]) * p[7]
+            offset[q] = (weights[r, q, 0] + weights[r, q, 1] + weights[r, q, 2]) * p[DEEP_C]
             for j in range(3):
                 at[q, j] = place_of(places[r, q] + j, n)
-        if math.isnan(sinks[lane, 0]):
+        if math.isnan(sinks[lane, TEMPERATURE]):
             settle(state[lane, 0], p, sink)
         else:
             sink[:] = sinks[lane]
@@ -205,7 +250,7 @@ def forward(
                     factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
                     factored, first = step, weighed(n, upper, lower, x)
                 mean, square = begin, begin * begin
-                if begin != last:
+                if begin != last:  # means of I and I² over a step in which I is linear
                     a, b = begin + (last - begin) * (done / length), begin + (last - begin) * ((done + step) / length)
                     mean, square = 0.5 * (a + b), (a * a + a * b + b * b) / 3.0
                 first = advance(n, mean, square, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first)
@@ -214,42 +259,43 @@ def forward(
             before = last
         sinks[lane] = sink
         for k in range(n + 3):
-            final[lane, k] = x[place_of(k, n)] + p[7]
+            final[lane, k] = x[place_of(k, n)] + p[DEEP_C]
 
 
 @compiled
 def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
     """Current for the next period and the code of what limits it, from one implicit step over the period.
 
-    After that step the first lump is z0 + elim0 · (cold plate), which makes the target one of the cold plate, and the
-    cold plate's balance one equation for the current. The smallest of all limits is taken.
+    After that step the first lump is z0 + elim0 · (cold plate), so that a target of the skin becomes one of the cold
+    plate, and the cold plate's balance an equation for the current alone (`plate.current_for_heat_A`).
     """
-    alpha, ohm, leak = p[0], p[1], p[2]
+    alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
+    hot_store, cold_store, out = p[HOT_J_PER_K] / period, p[COLD_J_PER_K] / period, p[SINK_W_PER_K]
     aim = target
     if skin_control:
         aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
-    heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[4] / period * (aim - cold)
-    base, total = p[3] / period * hot + p[6] * sink + leak * aim, p[3] / period + p[6] + leak
+    heat = g0 * (z0 + (elim0 - 1.0) * aim) - cold_store * (aim - cold)
+    base, total = hot_store * hot + out * sink + leak * aim, hot_store + out + leak
     return limited(current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9, guess, CLOSE_A), hot, cold, sink, p)
 
 
 @compiled
 def limited(amperes, hot, cold, sink, p):
-    """The current that the driver and the module allow, and the code of what held it back (0: nothing)."""
-    alpha, ohm, leak, code = p[0], p[1], p[2], 0
-    if amperes > p[9]:
-        amperes, code = p[9], 1
-    if amperes < p[8]:
-        amperes, code = p[8], 2
-    seebeck = alpha * (hot - cold)
-    if amperes > (p[10] - seebeck) / ohm:
-        amperes, code = (p[10] - seebeck) / ohm, 3
-    if amperes < (-p[10] - seebeck) / ohm:
-        amperes, code = (-p[10] - seebeck) / ohm, 3
-    if amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # below half of αTc/R the optimum is never near
-        most = greatest_cooling(cold, p[6] * sink + leak * cold, p[6] + leak, alpha, ohm, leak)
+    """The current that driver and module allow, and the code of the last limit that reduced it."""
+    alpha, ohm, leak, code = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], FREE
+    if amperes > p[HIGHEST_A]:
+        amperes, code = p[HIGHEST_A], MOST_CURRENT
+    if amperes < p[LOWEST_A]:
+        amperes, code = p[LOWEST_A], LEAST_CURRENT
+    seebeck = alpha * (hot - cold)  # voltage at the module: α(T_h − T_c) + I·R
+    if amperes > (p[COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    if amperes < (-p[COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (-p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    if amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # the best cooling is never below half of αT_c/R
+        most = greatest_cooling(cold, p[SINK_W_PER_K] * sink + leak * cold, p[SINK_W_PER_K] + leak, alpha, ohm, leak)
         if amperes > most:
-            amperes, code = most, 4
+            amperes, code = most, MODULE
     return amperes, code
 
 
@@ -274,10 +320,9 @@ def follow(
 ):
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
-    `target` (cue, period); `state` (lane, n + 3) starts steady; `current`, `reached`, `why`
-    (lane, period) get the current A, the controlled temperature °C at the end and the limit that held it back.
-    The current comes from a damped prediction (one implicit step over the period); the state moves by
-    the accurate rule.
+    `target` (cue, period) in °C; `state` (lane, n + 3) is a steady state; `current`, `reached` and `why` (lane, period)
+    get the current A, the controlled temperature °C at the period's end, and the code of what limited the current. The
+    current comes from a damped prediction (one implicit step over the period); the state moves by the accurate rule.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -289,21 +334,22 @@ def follow(
         r, c = rig_of[lane], cue_of[lane]
         n, p, share = count[r], plates[r], face_share[r]
         load(n, state[lane], p, x)
-        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
+        top, low = x[SKIN : SKIN + n // 2], x[SKIN + n // 2 : SKIN + n]
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
         factor(n, period, cap[r], g[r], perf[r], p, upper_p, lower_p, whole_p)
-        elim, amperes, first = whole_p[0], 0.0, weighed(n, upper, lower, x)
+        elim, amperes, first = whole_p[COLD_SHARE], 0.0, weighed(n, upper, lower, x)
         settle(state[lane, 0], p, sink)
         for k in range(target.shape[1]):
-            z0 = weighed(n, upper_p, lower_p, x) + p[7] * (1.0 - elim)
-            hot, cold = x[0] + p[7], x[1] + p[7]
+            z0 = weighed(n, upper_p, lower_p, x) + p[DEEP_C] * (1.0 - elim)
+            hot, cold = x[HOT] + p[DEEP_C], x[COLD] + p[DEEP_C]
             amperes, code = wanted(
-                target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[0], amperes, p
+                target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[TEMPERATURE], amperes, p
             )
             for _ in range(pieces):
                 first = advance(
                     n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
                 )
             current[lane, k] = amperes
-            reached[lane, k] = (share * x[1] + (1.0 - share) * x[place_of(2, n)] if skin_control else x[1]) + p[7]
+            controlled = share * x[COLD] + (1.0 - share) * x[place_of(SKIN, n)] if skin_control else x[COLD]
+            reached[lane, k] = controlled + p[DEEP_C]
             why[lane, k] = code

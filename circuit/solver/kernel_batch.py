@@ -1,6 +1,8 @@
 """The stepping of `kernel` for many lanes at once: blocks of LANES runs side by side in the processor's vectors.
 
-The arithmetic is that of `kernel`; the innermost loops run over lanes, and a block shares its step lengths.
+The equations and the trapezoidal rule are those of `kernel`; the order of the arithmetic is not. Temperatures are in
+°C, the skin is eliminated from the deep end up in one chain, the innermost loops run over the lanes of a block, and all
+lanes of a block take the same steps.
 """
 
 # mypy: disable-error-code="no-untyped-def,misc"
@@ -15,23 +17,46 @@ from ..rig.module import ZERO_C_IN_K
 from .kernel import (
     JUMP_A,
     LONGEST_STEP_S,
+    POWER,
     SHORTEST_STEP_S,
+    TEMPERATURE,
     compiled,
     regulate_sink,
     settle,
     wanted,
 )
+from .network import COLD, HOT, SKIN
+from .plate import (
+    ALPHA,
+    COLD_J_PER_K,
+    CONDUCTANCE,
+    DEEP_C,
+    HOT_J_PER_K,
+    RESISTANCE,
+    SINK_J_PER_K,
+    SINK_W_PER_K,
+)
 
 LANES = 32
 """Runs in a block: enough to fill the vectors, few enough for the first-level cache."""
+
+KEEP, GAIN, LINK, ELIM = range(4)
+"""Rows of the factored skin, see `factor`."""
+
+SHARE = 4
+"""Weight of the hot plate in its heat sink's implicit step, behind the four numbers of `kernel.settle`."""
 
 THIRD = 1.0 / 3.0
 
 
 @compiled
 def factor(n, half, cap, g, perf, deep, m):
-    """Eliminate the skin for an implicit step of length `half`; arrays (lumps, lane), `m` as `sweep` reads it."""
-    keep, gain, inv, elim = m[0], m[1], m[2], m[3]
+    """Factor the skin for an implicit step of length `half`; arrays are (lumps, lane), `m` is (4, lumps + 1, lane).
+
+    After that step lump i is z_i + ELIM_i · (the state above it), where z_i = KEEP_i · its old value + GAIN_i (the part
+    of blood) + LINK_i · z_{i+1}.
+    """
+    keep, gain, inv, elim = m[KEEP], m[GAIN], m[LINK], m[ELIM]
     for lane in range(LANES):
         inv[n, lane] = 0.0
         elim[n, lane] = 0.0
@@ -47,7 +72,7 @@ def factor(n, half, cap, g, perf, deep, m):
 
 @compiled
 def sweep(n, keep, gain, inv, x, z):
-    """Fill z (lumps + 1, lane): a lump after the implicit step is z + elim · (the state above it)."""
+    """Fill z (lumps + 1, lane) from the deep end up, as `factor` defines it; z beyond the last lump is 0."""
     for i in range(n - 1, -1, -1):
         for lane in range(LANES):
             z[i, lane] = keep[i, lane] * x[i + 2, lane] + gain[i, lane] + inv[i, lane] * z[i + 1, lane]
@@ -55,19 +80,19 @@ def sweep(n, keep, gain, inv, x, z):
 
 @compiled
 def foresee(n, m, weight, constant):
-    """`kernel.foresee` for a block: weight (lumps, lane), constant (lane,)."""
+    """Fill weight (lumps, lane) and constant (lane,): z of the first lump as a weighted sum of the old lumps."""
     for lane in range(LANES):
         product, total = 1.0, 0.0
         for i in range(n):
-            weight[i, lane] = product * m[0, i, lane]
-            total += product * m[1, i, lane]
-            product *= m[2, i, lane]
+            weight[i, lane] = product * m[KEEP, i, lane]
+            total += product * m[GAIN, i, lane]
+            product *= m[LINK, i, lane]
         constant[lane] = total
 
 
 @compiled
 def weighed(n, weight, constant, x, z0):
-    """Fill z0 (lane,) with constant + Σ weight · lump."""
+    """Fill z0 (lane,), the first lump less the cold plate's part: constant + Σ weight · lump."""
     for lane in range(LANES):
         z0[lane] = constant[lane]
     for i in range(n):
@@ -77,32 +102,33 @@ def weighed(n, weight, constant, x, z0):
 
 @compiled
 def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
-    """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state from the hot plate to the deep node.
+    """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state in °C, hot plate to deep node.
 
-    `p` (parameter, lane) and `rig` (lane, parameter) are Network.plates twice; `sink` (lane, 5) is each lane's heat
-    sink as in `kernel.settle`, and its share in an implicit step.
+    `p` (parameter, lane) and `rig` (lane, parameter) both hold `Network.plates`; `sink` (lane, 5) is each lane's heat
+    sink as in `kernel.settle`, then SHARE. The equations of the plates are those of `kernel.advance`.
     """
     half = 0.5 * step
-    sweep(n, m[0], m[1], m[2], x, z)
-    elim = m[3]
+    sweep(n, m[KEEP], m[GAIN], m[LINK], x, z)
+    elim = m[ELIM]
     for lane in range(LANES):
-        if p[11, lane] > 0.0:
+        if p[SINK_J_PER_K, lane] > 0.0:
             regulate_sink(step, rig[lane], sink[lane])
-            sink[lane, 4] = p[6, lane] / (p[11, lane] / half + p[6, lane])
+            sink[lane, SHARE] = p[SINK_W_PER_K, lane] / (p[SINK_J_PER_K, lane] / half + p[SINK_W_PER_K, lane])
     for lane in range(LANES):
-        hot0, cold0 = x[0, lane], x[1, lane]
-        pump, joule = p[0, lane] * current[lane], 0.5 * p[1, lane] * squared[lane]
-        hot_store, cold_store = p[3, lane] / half, p[4, lane] / half
-        share = sink[lane, 4]
-        out = p[6, lane] * (1.0 - share)
-        a11 = hot_store + out + p[2, lane] - pump
-        a22 = cold_store + p[2, lane] + pump + g0[lane] * (1.0 - elim[0, lane])
-        b1 = hot_store * hot0 + out * sink[lane, 0] + share * sink[lane, 2] + pump * ZERO_C_IN_K + joule
+        hot0, cold0, leak = x[HOT, lane], x[COLD, lane], p[CONDUCTANCE, lane]
+        pump, joule = p[ALPHA, lane] * current[lane], 0.5 * p[RESISTANCE, lane] * squared[lane]
+        hot_store, cold_store = p[HOT_J_PER_K, lane] / half, p[COLD_J_PER_K, lane] / half
+        share = sink[lane, SHARE]
+        out = p[SINK_W_PER_K, lane] * (1.0 - share)
+        a11 = hot_store + out + leak - pump
+        a22 = cold_store + leak + pump + g0[lane] * (1.0 - elim[0, lane])
+        b1 = hot_store * hot0 + out * sink[lane, TEMPERATURE] + share * sink[lane, POWER] + pump * ZERO_C_IN_K + joule
         b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0[lane] * z[0, lane]
-        determinant = 1.0 / (a11 * a22 - p[2, lane] * p[2, lane])
-        hot, cold = (b1 * a22 + p[2, lane] * b2) * determinant, (a11 * b2 + p[2, lane] * b1) * determinant
-        x[0, lane], x[1, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
-        sink[lane, 0] += 2.0 * share * (sink[lane, 2] / p[6, lane] + hot - sink[lane, 0])
+        determinant = 1.0 / (a11 * a22 - leak * leak)
+        hot, cold = (b1 * a22 + leak * b2) * determinant, (a11 * b2 + leak * b1) * determinant
+        x[HOT, lane], x[COLD, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
+        sink_C = sink[lane, POWER] / p[SINK_W_PER_K, lane] + hot
+        sink[lane, TEMPERATURE] += 2.0 * share * (sink_C - sink[lane, TEMPERATURE])
         above[lane] = cold
     for i in range(n):
         for lane in range(LANES):
@@ -113,9 +139,10 @@ def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
 
 @compiled
 def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink):
-    """Load a block's rigs and states side by side; returns the most lumps. Short columns are padded at the deep end.
+    """Load a block's rigs and states side by side; returns the largest number of lumps.
 
-    The deep node joins the perfusion of the last lump (both are at one temperature), so padding is cut off by g = 0.
+    Shorter columns are padded at the deep end. The conductance to the deep node is added to the last lump's perfusion
+    (blood and deep node have one temperature), so that g = 0 cuts the padding off.
     """
     n = 0
     for lane in range(LANES):
@@ -125,15 +152,16 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
         own = count[r]
         for k in range(p.shape[0]):
             p[k, lane] = rig[lane, k] = bank_plates[r, k]
-        x[0, lane], x[1, lane], x[n + 2, lane] = state[block[lane], 0], state[block[lane], 1], bank_plates[r, 7]
-        settle(x[0, lane], rig[lane], sink[lane])
-        sink[lane, 4] = 0.0
+        x[HOT, lane], x[COLD, lane] = state[block[lane], HOT], state[block[lane], COLD]
+        x[n + 2, lane] = bank_plates[r, DEEP_C]
+        settle(x[HOT, lane], rig[lane], sink[lane])
+        sink[lane, SHARE] = 0.0
         for i in range(n + 1):
             inside = i < own
             cap[i, lane] = bank_cap[r, i] if inside else 1.0
             perf[i, lane] = bank_perf[r, i] if inside else 1.0
             g[i, lane] = bank_g[r, i] if inside else 0.0
-            x[i + 2, lane] = state[block[lane], i + 2] if inside else bank_plates[r, 7]
+            x[i + 2, lane] = state[block[lane], i + 2] if inside else bank_plates[r, DEEP_C]
         perf[own - 1, lane] += bank_g[r, own]
     return n
 
@@ -143,7 +171,7 @@ def forward(
     blocks, rig_of, cue_of, edges, start_A, end_A, row_of, count, bank_plates, bank_cap, bank_g, bank_perf, places,
     weights, state, sinks, out, final,
 ):  # fmt: skip
-    """`kernel.forward` for blocks (blocks, LANES) of lanes; a lane may stand in for padding more than once."""
+    """`kernel.forward` for blocks (blocks, LANES) of lanes; the last block is padded by repeating a lane."""
     most = bank_cap.shape[1] + 1
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
     x, z, m = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
@@ -157,7 +185,7 @@ def forward(
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         for lane in range(LANES):
-            if not math.isnan(sinks[block[lane], 0]):
+            if not math.isnan(sinks[block[lane], TEMPERATURE]):
                 for j in range(4):
                     sink[lane, j] = sinks[block[lane], j]
         for q in range(probes):
@@ -165,7 +193,7 @@ def forward(
             for lane in range(LANES):
                 at[q, lane] = places[rig_of[block[lane]], q]
                 same[q] &= at[q, lane] == at[q, 0]
-                for j in range(3):  # a probe near the deep node has no third state: its weight is 0, its place any
+                for j in range(3):  # a third state below the deep node has weight 0
                     weight[q, j, lane] = weights[rig_of[block[lane]], q, j]
         factored, since = -1.0, 0.0
         for k in range(edges.size):
@@ -208,7 +236,7 @@ def forward(
                     a, e = first + rise * early, first + rise * late
                     current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
                 if abs(step - factored) > 1e-12:
-                    factor(n, 0.5 * step, cap, g, perf, p[7], m)
+                    factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
                     factored = step
                 advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
                 done += step
@@ -218,7 +246,7 @@ def forward(
                 sinks[block[lane], j] = sink[lane, j]
             for i in range(count[rig_of[block[lane]]] + 2):
                 final[block[lane], i] = x[i, lane]
-            final[block[lane], count[rig_of[block[lane]]] + 2] = p[7, lane]
+            final[block[lane], count[rig_of[block[lane]]] + 2] = p[DEEP_C, lane]
 
 
 @compiled
@@ -239,16 +267,16 @@ def follow(
     for b in range(blocks.shape[0]):
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
-        factor(n, 0.5 * step, cap, g, perf, p[7], m)
-        factor(n, period, cap, g, perf, p[7], mp)
+        factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
+        factor(n, period, cap, g, perf, p[DEEP_C], mp)
         foresee(n, mp, weight, constant)
         for k in range(target.shape[1]):
             weighed(n, weight, constant, x, z0)
             for lane in range(LANES):
-                share, elim = face_share[rig_of[block[lane]]], mp[3, 0, lane]
+                share, elim = face_share[rig_of[block[lane]]], mp[ELIM, 0, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
-                    x[0, lane], x[1, lane], sink[lane, 0], current[lane], rig[lane],
+                    x[HOT, lane], x[COLD, lane], sink[lane, TEMPERATURE], current[lane], rig[lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code
@@ -256,4 +284,4 @@ def follow(
                 advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
             for lane in range(LANES):
                 share = face_share[rig_of[block[lane]]] if skin_control else 1.0
-                reached[block[lane], k] = share * x[1, lane] + (1.0 - share) * x[2, lane]
+                reached[block[lane], k] = share * x[COLD, lane] + (1.0 - share) * x[SKIN, lane]

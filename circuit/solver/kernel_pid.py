@@ -8,7 +8,9 @@ import math
 
 import numpy as np
 
-from .kernel import LONGEST_STEP_S, advance, compiled, factor, limited, load, settle, weighed
+from .kernel import FREE, LONGEST_STEP_S, TEMPERATURE, advance, compiled, factor, limited, load, settle, weighed
+from .network import COLD, HOT, SKIN
+from .plate import DEEP_C
 
 
 @compiled
@@ -17,9 +19,11 @@ def regulate(
 ):
     """Find the held current of every period as the controller of each rig gives it.
 
-    `setpoint` (cue, period) is what the display shall be at a period's start; `gains` (rig, 4) thermistor lag s,
-    A/K, A/(K·s), A·s/K; `bias` (lane,) the current A that holds the start. `state`, `current`, `reached` and `why` are
-    those of `kernel.follow`. The integral waits while the current is at a limit and the error would push it further.
+    At the start of a period I = I_bias + kp·e + ki·∫e dt + kd·dT_felt/dt, with e = T_felt − set-point and T_felt the
+    display as the thermistor feels it: dT_felt/dt = (T_display − T_felt)/lag. `setpoint` (cue, period) is in °C,
+    `gains` (rig, 4) are lag s, kp A/K, ki A/(K·s), kd A·s/K, `bias` (lane,) is the current A that holds the start.
+    `state`, `current`, `reached` and `why` are those of `kernel.follow`. The integral is not advanced while the current
+    is at a limit and the error would push it further (anti-windup).
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -30,24 +34,24 @@ def regulate(
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
         load(n, state[lane], p, x)
-        top, low = x[2 : 2 + n // 2], x[2 + n // 2 : 2 + n]
+        top, low = x[SKIN : SKIN + n // 2], x[SKIN + n // 2 : SKIN + n]
         lag, kp, ki, kd = gains[r, 0], gains[r, 1], gains[r, 2], gains[r, 3]
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
         settle(state[lane, 0], p, sink)
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
-        mean = (1.0 - decay) * lag / step  # of the old display temperature, for one linear within the step
-        felt, before, total, first = x[1] + p[7], x[1] + p[7], 0.0, weighed(n, upper, lower, x)
+        mean = (1.0 - decay) * lag / step  # mean weight over a step in which the display is linear
+        felt, before, total, first = x[COLD] + p[DEEP_C], x[COLD] + p[DEEP_C], 0.0, weighed(n, upper, lower, x)
         for k in range(setpoint.shape[1]):
             error = felt - setpoint[c, k]
-            asked = bias[lane] + kp * error + ki * total + kd * (felt - before) / period
-            amperes, code = limited(asked, x[0] + p[7], x[1] + p[7], sink[0], p)
+            demanded = bias[lane] + kp * error + ki * total + kd * (felt - before) / period
+            amperes, code = limited(demanded, x[HOT] + p[DEEP_C], x[COLD] + p[DEEP_C], sink[TEMPERATURE], p)
             before = felt
             for _ in range(pieces):
-                display = x[1] + p[7]
+                display = x[COLD] + p[DEEP_C]
                 first = advance(
                     n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
                 )
-                felt = decay * felt + (mean - decay) * display + (1.0 - mean) * (x[1] + p[7])
-            if code == 0 or (asked - amperes) * error < 0.0:
+                felt = decay * felt + (mean - decay) * display + (1.0 - mean) * (x[COLD] + p[DEEP_C])
+            if code == FREE or (demanded - amperes) * error < 0.0:
                 total += error * period
-            current[lane, k], reached[lane, k], why[lane, k] = amperes, x[1] + p[7], code
+            current[lane, k], reached[lane, k], why[lane, k] = amperes, x[COLD] + p[DEEP_C], code

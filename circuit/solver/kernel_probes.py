@@ -22,7 +22,7 @@ def lagged(time_s, value, lag_s, out):
 
 
 @kernel(nogil=True)
-def beside(time_s, display, lumps, cap, g, perf, across, deep, state, upper, share, out):
+def step_lateral_column(time_s, display, lumps, cap, g, perf, across, deep, state, upper, share, out):
     """Step a passive column of n lumps by the trapezoidal rule, and fill `out` (rows,) with one reading of it.
 
     `display` (rows,) and `lumps` (n, rows), the other column's, are taken as linear between rows. `cap`, `perf`,

@@ -6,16 +6,18 @@ State vector: hot plate, cold plate (the display), skin lumps from the surface d
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array, Column
+from ..rig.skin import Column
+from .plate import DEEP_C, PLATE_NUMBERS, SINK_C, SINK_POWER_W
 
-PROBES = (
+RECORDED = (
     "hot_plate_C",
     "display_C",
     "skin_C",
@@ -30,9 +32,6 @@ PROBES = (
 Weights = tuple[int, tuple[float, float, float]]
 """A reading: the first of three neighbouring states, and the weight of each."""
 
-PLATES, DEEP = 15, 7
-"""How many numbers describe the plates for the kernel, and the place of the deep temperature among them."""
-
 HOT, COLD, SKIN = 0, 1, 2
 """Places of hot plate, cold plate and first skin lump in the state vector."""
 
@@ -42,9 +41,8 @@ class Network:
     """A rig as lumps; n skin lumps, arrays read-only.
 
     `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
-    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for PROBES; `plates` (15,) for the kernel:
-    α, R, 1/Θ, hot and cold plate J/K, sink °C, 1/R_sink, deep °C, least and most current A, compliance voltage V,
-    then the heat sink's own controller: capacity J/K (0: ideal), W/K, W/(K·s), greatest power W.
+    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED; `plates` (15,) for the kernel,
+    in the order that `plate` names.
     """
 
     capacity_J_per_K: Array
@@ -63,7 +61,7 @@ class Network:
     @property
     def deep_C(self) -> float:
         """Temperature of the deep node and of blood in °C."""
-        return float(self.plates[7])
+        return float(self.plates[DEEP_C])
 
     @property
     def face_share(self) -> float:
@@ -72,8 +70,8 @@ class Network:
         return float(weight[COLD - start]) if start <= COLD else 0.0
 
     def read(self, state_C: Array, probe: str) -> float:
-        """Value of one of PROBES at a state (n + 3,) in °C."""
-        row = PROBES.index(probe)
+        """Value of one of RECORDED at a state (n + 3,) in °C."""
+        row = RECORDED.index(probe)
         start = int(self.probe_start[row])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
 
@@ -87,8 +85,8 @@ def network_of(rig: Rig) -> Network:
 @lru_cache(maxsize=512)
 def skin_network_of(rig: Rig) -> Network:
     """Return the lumps of a rig's skin under its display; what its plates are is not known (NaN)."""
-    plates = np.full(PLATES, np.nan)
-    plates[DEEP] = rig.deep_C
+    plates = np.full(PLATE_NUMBERS, np.nan)
+    plates[DEEP_C] = rig.deep_C
     return _network(rig, rig.column, plates)
 
 
@@ -116,6 +114,13 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
         ]
     )
     return _network(rig, column, plates)
+
+
+def unpowered(network: Network, sink_C: float) -> Network:
+    """Return a network whose controlled heat sink is at a temperature in °C and has lost its power."""
+    plates = network.plates.copy()
+    plates[SINK_C], plates[SINK_POWER_W] = sink_C, 0.0
+    return replace(network, plates=plates)
 
 
 def _network(rig: Rig, column: Column, plates: Array) -> Network:

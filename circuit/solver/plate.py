@@ -1,8 +1,9 @@
-"""What current moves a given heat: scalar functions of the module between its plates.
+"""The two plates of the module as numbers, and the current that moves a given heat between them.
 
-Plain Python that the compiled kernel takes over as it stands (so no function calls another); the steady state uses it
-uncompiled. The hot plate enters through `base` (W), the heat that reaches it without current, and `total` (W/K), its
-conductance to everything: base = C_h/δ·T_h + sink/R_s + cold/Θ and total = C_h/δ + 1/R_s + 1/Θ, with C_h/δ = 0 at rest.
+The functions are plain Python, which the kernels compile as they are (so none of them calls another) and the steady
+state runs uncompiled. The hot plate enters through `base` (W), the heat that reaches it without current, and `total`
+(W/K), its conductance to everything around it: base = C_h/δ·T_h + T_s/R_s + T_c/Θ and total = C_h/δ + 1/R_s + 1/Θ,
+where δ is the time step (C_h/δ = 0 at rest) and T_s the temperature of the heat sink.
 """
 
 from __future__ import annotations
@@ -11,15 +12,31 @@ import math
 
 from ..rig.module import ZERO_C_IN_K
 
+ALPHA, RESISTANCE, CONDUCTANCE, HOT_J_PER_K, COLD_J_PER_K, SINK_C, SINK_W_PER_K, DEEP_C = range(8)
+"""Places in `Network.plates` of the module's α V/K, R Ω and 1/Θ W/K, of both heat capacities, of the heat sink's
+temperature and 1/R_s, and of the temperature of deep tissue and blood."""
+
+LOWEST_A, HIGHEST_A, COMPLIANCE_V = range(8, 11)
+"""Places of the driver's limits."""
+
+SINK_J_PER_K, SINK_KP, SINK_KI, SINK_POWER_W = range(11, 15)
+"""Places of a heat sink's own controller: heat capacity (0: the sink is ideal), W/K, W/(K·s), greatest power."""
+
+PLATE_NUMBERS = 15
+
 
 def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:
-    """Hot-plate temperature in °C at a current in A."""
+    """Hot-plate temperature in °C at a current in A: T_h = (base + αI·273.15 K + I²R/2) / (total − αI)."""
     heat = base + alpha * current * ZERO_C_IN_K + 0.5 * ohm * current * current
     return heat / (total - alpha * current)
 
 
 def greatest_cooling_A(cold: float, base: float, total: float, alpha: float, ohm: float, leak: float) -> float:
-    """Current in A of greatest heat absorbed: about αTc/R, lower through the heat sink; beyond it, it heats."""
+    """Current in A at which the most heat is absorbed; more current than that heats.
+
+    It is below αT_c/R, since the hot plate warms with the current: fixed-point iteration of
+    I = (αT_c − (α·T_h + I·R)/Θ / (total − αI)) / R, temperatures in kelvin.
+    """
     absolute = cold + ZERO_C_IN_K
     current = alpha * absolute / ohm
     for _ in range(30):
@@ -44,9 +61,10 @@ def current_for_heat_A(
     guess: float,
     close: float,
 ) -> float:
-    """Low-current root in A of heat absorbed = `heat` (W); `greatest` where the module cannot absorb that much.
+    """Smaller current in A that absorbs `heat` (W); `greatest` where the module cannot absorb that much.
 
-    The search starts at `guess` (A) and ends when it moves by less than `close` (A).
+    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, with T_h from the previous iterate. The iteration
+    starts at `guess` (A) and ends when it moves by less than `close` (A).
     """
     half = alpha * (cold + ZERO_C_IN_K)
     current = guess

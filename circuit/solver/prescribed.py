@@ -13,12 +13,12 @@ from functools import lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from ..arrays import Array
 from ..rig.rig import Rig
-from ..rig.skin import Array
-from .network import COLD, HOT, PROBES, SKIN, Network, skin_network_of
+from .network import COLD, HOT, RECORDED, SKIN, Network, skin_network_of
 
-FELT = PROBES[PROBES.index("display_C") :]
-"""What a run under a prescribed display records: PROBES without the hot plate, which no thermode shows."""
+FELT = RECORDED[RECORDED.index("display_C") :]
+"""What a run under a prescribed display records: RECORDED without the hot plate, which no thermode shows."""
 
 Index = npt.NDArray[np.int64]
 
@@ -158,7 +158,7 @@ def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, A
     root = np.sqrt(capacity)
     rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
     shape = vectors / root[:, np.newaxis]  # lumps = shape @ modes
-    felt = [PROBES.index(probe) for probe in FELT]
+    felt = [RECORDED.index(probe) for probe in FELT]
     rows = list(zip(network.probe_start[felt], network.probe_weight[felt], strict=True))
     rows += [] if readings is None else list(zip(*readings, strict=True))
     weights = np.zeros((len(rows), len(capacity) + 3))

@@ -10,11 +10,10 @@ import math
 
 import numpy as np
 
+from ..arrays import Array, Index
 from ..rig.parts import Probe
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from .batch_inputs import Index
 from .insulated import insulated_C
 from .network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
 

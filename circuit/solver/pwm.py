@@ -10,16 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from .drive import Drive
 from .network import network_of
-from .steady import steady_state
-
-RESISTANCE = 1
-"""Place of the module's resistance among `Network.plates`."""
-
+from .plate import RESISTANCE
+from .steady import state_under_current
 
 SIMULATED_CARRIER_HZ = 500.0
 """Fastest switching that is simulated: at 500 Hz and 1.5 A the display already ripples by under 10 mK, and a faster
@@ -74,7 +71,7 @@ def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
     """
     network = network_of(rig)
     if duty == 0:
-        return steady_state(network, 0.0)
+        return state_under_current(network, 0.0)
     plates = network.plates.copy()
     plates[RESISTANCE] /= abs(duty)
-    return steady_state(replace(network, plates=plates), duty * peak_A)
+    return state_under_current(replace(network, plates=plates), duty * peak_A)

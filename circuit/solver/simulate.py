@@ -8,17 +8,17 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
-from .batch_inputs import FEWEST, Index, bank_of, cut, run_forward
+from .batch_inputs import FEWEST, bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
-from .network import PROBES, network_of
+from .network import RECORDED, network_of
 from .probes import between, divided, joined, readings_of, sensed
-from .steady import check_sink, hold, steady_state
+from .steady import check_sink, state_under_current, steady_state
 from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
@@ -60,11 +60,11 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 
 def duration_s(icon: Icon, rig: Rig) -> float:
     """Time in s from a cue's start to its last corner; under current control it hangs on the rig's holding current."""
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
-        return float(icon.lower(hold(rig, "display", baseline_C(icon, rig))[0]).duration_s)
-    return float(icon.lower(baseline_C(icon, rig)).duration_s)
+        return float(icon.corners(steady_state(rig, "display", baseline_C(icon, rig))[0]).duration_s)
+    return float(icon.corners(baseline_C(icon, rig)).duration_s)
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
@@ -75,7 +75,7 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     6
     """
     module = rig.thermode is None and rig.controller is None
-    alike = not rig.probes and module and all(icon.frame.control != "current" for icon in icons)
+    alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
         return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
@@ -85,14 +85,14 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     states = bank.states([plan.start_C for plan in plans])
     recorded = run_forward(bank, np.zeros_like(lanes), lanes, intervals, states)
     return tuple(
-        _trace(rig, plan.drive, rows, icon.name, _target(icon, rig, rows), icon.frame.control, plan.outcome,
+        _trace(rig, plan.drive, rows, icon.name, _target(icon, rig, rows), icon.context.control, plan.outcome,
                recorded[:, lane], ())
         for lane, (icon, plan) in enumerate(zip(icons, plans, strict=True))
     )  # fmt: skip
 
 
 def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         return np.full(len(rows), np.nan)
     return target_at(icon, baseline_C(icon, rig), rows)
 
@@ -127,7 +127,7 @@ def _play(
     if rig.thermode is not None:
         return play_display(icon, rig, rows, rate_Hz, readings)
     plan = design(icon, rig, end)
-    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.frame.control,
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.context.control,
                 plan.outcome, readings)  # fmt: skip
 
 
@@ -136,7 +136,7 @@ def _replay(
 ) -> tuple[Trace, Array]:
     first = float(drive.current_A[0])
     try:
-        state = steady_state(network_of(rig), first) if start_C is None else start_C
+        state = state_under_current(network_of(rig), first) if start_C is None else start_C
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     check_sink(rig, state)
@@ -154,7 +154,7 @@ def _run(
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
     own = readings_of(rig)
     recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
-    probes, others = recorded[: len(PROBES), ::parts], recorded[len(PROBES) :]
+    probes, others = recorded[: len(RECORDED), ::parts], recorded[len(RECORDED) :]
     listed = 0 if own is None else len(own[0])
     trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
     return trace, others[listed:, ::parts]
@@ -164,18 +164,18 @@ def _trace(
     rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
     probes: Array, own: tuple[tuple[str, Array], ...],
 ) -> Trace:  # fmt: skip
-    """The trace of recorded PROBES (probes, rows); RigError where they are not physical."""
-    temperatures = probes[: PROBES.index("heat_flow_skin_W_per_m2")]
+    """The trace of recorded RECORDED (probes, rows); RigError where they are not physical."""
+    temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
     possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
     if not possible.all():
         at = int(np.argmin(possible))
-        where = PROBES[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
+        where = RECORDED[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
         raise RigError(
             f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
             f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
         )
     current = drive.at(rows)
-    values = dict(zip(PROBES, (np.ascontiguousarray(probe) for probe in probes), strict=True))
+    values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
     voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
     limits = (rig.driver.current_min_A, rig.driver.current_max_A)
     return Trace(

@@ -15,7 +15,7 @@ from .displayed import refuse_current
 from .inverse import baseline_C
 from .network import COLD, HOT, network_of
 from .prescribed import modes_of
-from .steady import hold, holding_current_A, steady_state
+from .steady import holding_current_A, state_under_current, steady_state
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
@@ -29,16 +29,16 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     ()
     """
-    control = icon.frame.control
+    control = icon.context.control
     if rig.thermode is not None:
         return _on_thermode(icon, rig, rig.thermode)
     try:
-        start_A, _ = hold(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
+        start_A, _ = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     except RigError as problem:
         return (f"icon {icon.name}: {problem}",)
     driver, found = rig.driver, []
     if control == "current":
-        corners = icon.lower(start_A)
+        corners = icon.corners(start_A)
         for level in (corners.lowest, corners.highest):
             if not driver.current_min_A <= level <= driver.current_max_A:
                 found.append(
@@ -46,7 +46,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
                     f"{driver.current_max_A:g} A; change the cue or driver.current_limit_A"
                 )
         return tuple(found)
-    corners = icon.lower(baseline_C(icon, rig))
+    corners = icon.corners(baseline_C(icon, rig))
     low, high = _holdable(rig, control)
     for level in (corners.lowest, corners.highest):
         if not low - 1e-9 <= level <= high + 1e-9:
@@ -61,12 +61,12 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
 
 def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
     """As `check_static`: its range and its ramp rate; a skin level is judged by the display that holds it for ever."""
-    control, modes, base = icon.frame.control, modes_of(rig), baseline_C(icon, rig)
+    control, modes, base = icon.context.control, modes_of(rig), baseline_C(icon, rig)
     try:
         refuse_current(icon, f"rig {rig.name}")
     except RigError as problem:
         return (f"icon {icon.name}: {problem}",)
-    corners, found = icon.lower(base), []
+    corners, found = icon.corners(base), []
     for level in dict.fromkeys((base, corners.lowest, corners.highest)):
         needed = modes.display_holding_skin_C(level) if control == "skin" else level
         if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:
@@ -93,10 +93,10 @@ def _holdable(rig: Rig, control: str) -> tuple[float, float]:
     probe = "skin_C" if control == "skin" else "display_C"
 
     def level(current: float) -> float:
-        return network.read(steady_state(network, current), probe)
+        return network.read(state_under_current(network, current), probe)
 
     def volts(current: float) -> float:
-        state = steady_state(network, current)
+        state = state_under_current(network, current)
         return rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
 
     coldest = _coldest(level, min(driver.current_max_A, rig.module.seebeck_V_per_K * 320 / rig.module.resistance_ohm))
@@ -118,7 +118,7 @@ def _coldest(level: Callable[[float], float], most: float) -> float:
 
 def _exists(rig: Rig, current: float) -> bool:
     try:
-        steady_state(network_of(rig), current)
+        state_under_current(network_of(rig), current)
     except ArithmeticError:
         return False
     return True
@@ -155,7 +155,7 @@ def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
 def _steepest(rig: Rig, level_C: float, cooling: bool) -> float:
     """Steepest fall or rise in K/s of a display at rest at a level, at the driver's limits."""
     module, driver, network = rig.module, rig.driver, network_of(rig)
-    state = steady_state(network, holding_current_A(network, "display", level_C))
+    state = state_under_current(network, holding_current_A(network, "display", level_C))
     hot, cold = float(state[HOT]), float(state[COLD])
     from_skin = float(network.conductance_W_per_K[0]) * float(state[COLD + 1] - state[COLD])
     seebeck = module.seebeck_V_per_K * (hot - cold)

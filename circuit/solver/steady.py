@@ -6,12 +6,24 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
 from .network import COLD, HOT, SKIN, Network, network_of
-from .plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
+from .plate import (
+    ALPHA,
+    CONDUCTANCE,
+    RESISTANCE,
+    SINK_C,
+    SINK_W_PER_K,
+    current_for_heat_A,
+    greatest_cooling_A,
+    hot_plate_C,
+)
+
+PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)
+"""Places of the plate numbers that decide a steady state."""
 
 
 @lru_cache(maxsize=512)
@@ -29,12 +41,12 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
-def steady_state(network: Network, current_A: float) -> Array:
+def state_under_current(network: Network, current_A: float) -> Array:
     """Return the state (n + 3,) in °C that a current held for ever leads to.
 
     Raises ArithmeticError when there is none (the module would heat without end).
     """
-    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
     skin = float(network.conductance_W_per_K[0])
     zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
@@ -59,7 +71,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
 
     Where the module cannot cool that far, the result is the current of greatest cooling; its steady state tells.
     """
-    alpha, ohm, leak, _, _, sink, out = (float(value) for value in network.plates[:7])
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
     cold = level_C
     if control == "skin":
@@ -85,10 +97,10 @@ def check_sink(rig: Rig, state_C: Array) -> None:
         )
 
 
-def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
+def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """Return (current A, state °C) that hold `skin` or `display` at a baseline; raises RigError when none can.
 
-    >>> current, state = hold(Rig.load("thenar"), "skin", 32.0)
+    >>> current, state = steady_state(Rig.load("thenar"), "skin", 32.0)
     >>> round(current, 2)
     0.08
     """
@@ -97,7 +109,7 @@ def hold(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     what = f"rig {rig.name}: a baseline of {level_C:g} °C on the {control} cannot be held"
     current = holding_current_A(network, control, level_C)
     try:
-        state = steady_state(network, current)
+        state = state_under_current(network, current)
     except ArithmeticError as problem:
         raise RigError(f"{what}: {problem}") from None
     reached = network.read(state, probe)

@@ -9,16 +9,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arrays import Array
+from ..inputs import require_pyarrow
 from ..rig.rules import Limits
-from ..rig.skin import Array
-from .network import PROBES
+from .network import RECORDED
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *PROBES)
+COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
+
+CSV_FORMAT = "%.9g"
 
 CLOSE_K = 0.1
 BRIEF_K = 0.25
@@ -44,6 +47,13 @@ class Outcome:
     limits: tuple[tuple[str, float], ...]
     slowest_step_s: float | None = None
     late_s: tuple[float, ...] = ()
+
+    def __repr__(self) -> str:
+        word = "reached" if self.reached else "NOT reached"
+        return (
+            f"Outcome({word}: largest miss {self.largest_miss_K:+.3g} K at {self.largest_miss_s:.2f} s, "
+            f"rms {self.rms_miss_K:.3g} K)"
+        )
 
     @property
     def reason(self) -> str | None:
@@ -145,6 +155,10 @@ class Trace:
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
+    def to_csv(self, path: str | Path) -> None:
+        """Write the columns of `to_frame` as a CSV file; numbers have nine digits, NaN is an empty cell."""
+        self.to_frame().to_csv(path, index=False, float_format=CSV_FORMAT)
+
     def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
         """Draw target, display, skin and receptor temperatures against time, and probes if asked; returns the Axes."""
         from .draw import plot_temperatures
@@ -153,15 +167,30 @@ class Trace:
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
-    """Write traces one after the other as `.csv` or `.parquet`; NaN becomes an empty cell."""
+    """Write traces to one table, one after the other; NaN becomes an empty cell.
+
+    Parameters
+    ----------
+    traces
+        One trace or several.
+    path
+        Name of the file; it is written as Parquet if it ends in ``.parquet``, else as CSV.
+
+    Raises
+    ------
+    InputError
+        Parquet is requested and pyarrow, which writes it, is not installed.
+
+    """
     import pandas as pd
 
     frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
     table = pd.concat(frames, ignore_index=True)
     if str(path).endswith(".parquet"):
+        require_pyarrow(path)
         table.to_parquet(path, index=False)
     else:
-        table.to_csv(path, index=False, float_format="%.9g")
+        table.to_csv(path, index=False, float_format=CSV_FORMAT)
 
 
 def judge(

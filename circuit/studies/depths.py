@@ -9,9 +9,9 @@ import numpy as np
 
 from thermicon.icons import Icon
 
+from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..rig.skin import Array
 from ..solver.drive import Drive
 from ..solver.network import flow_weights, places_of, stacked, temperature_weights
 from ..solver.probes import lump_rows

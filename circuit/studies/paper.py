@@ -16,12 +16,12 @@ import numpy as np
 
 from thermicon.icons import Icon, load_library
 
+from ..arrays import Array
 from ..records import Table, load_records
 from ..rig.rig import Rig
-from ..rig.skin import Array
 from ..solver.network import network_of
 from ..solver.simulate import simulate
-from ..solver.steady import steady_state
+from ..solver.steady import state_under_current
 from ..solver.trace import Trace
 from .depths import Likeness, probe_depths, resembles
 
@@ -65,7 +65,7 @@ def coldest_display_C(rig: Rig) -> float:
     4.6
     """
     network = network_of(rig)
-    return network.read(steady_state(network, rig.driver.current_max_A), "display_C")
+    return network.read(state_under_current(network, rig.driver.current_max_A), "display_C")
 
 
 def _rig(rig: Rig | None) -> Rig:

@@ -1,4 +1,4 @@
-"""Realised against designed as a figure: skin, drive current, and what is left between them at skin and receptors."""
+"""Delivered against designed as a figure: skin, drive current, and what is left between them at skin and receptors."""
 
 from __future__ import annotations
 
@@ -10,37 +10,37 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Prepared, Realised
+    from thermicon.circuit import DeliveredDrive, Prepared
 
-    from ..files.exporting import Ready
+    from ..files.exporting import PreparedExport
 
 PLACES = (("skin", "skin_C", INK, "-"), ("cold receptor", "cold_receptor_C", COOL, "-."),
           ("warm receptor", "warm_receptor_C", WARM, "--"))  # fmt: skip
 
 
-def export_figure(ready: Ready, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
+def export_figure(ready: PreparedExport, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
     """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import load_library
-    >>> from thermicon.notebooks.files.exporting import ready_of
+    >>> from thermicon.notebooks.files.exporting import prepare_icon
     >>> icon = load_library("six-icons")["cooling-step"]
-    >>> export_figure(ready_of(icon, Rig.load("thenar"))).get_suptitle()
+    >>> export_figure(prepare_icon(icon, Rig.load("thenar"))).get_suptitle()
     'cooling-step on dac-16, safety green'
     """
     from matplotlib.figure import Figure
 
     one = ready.prepared[place]
     figure = Figure(figsize=size, layout="constrained")
-    realised = one.realised
+    delivery = one.delivery
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1.0, 1.0])
-    designed, delivered = realised.designed_trace, realised.trace
+    designed, delivered = delivery.designed_trace, delivery.trace
     time_s = delivered.time_s
     axes[0].plot(time_s, designed.skin_C, color=TARGET, lw=6.0, solid_capstyle="butt", label="skin, designed")
     axes[0].plot(time_s, delivered.skin_C, color=INK, lw=1.4, label="skin, delivered")
     axes[0].plot(time_s, delivered.display_C, color=GREY, lw=1.1, ls=(0, (6, 2)), label="display, delivered")
     axes[0].set_ylabel("temperature (°C)")
-    _drive_panel(axes[1], realised)
+    _drive_panel(axes[1], delivery)
     for name, column, colour, style in PLACES:
         apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
         axes[2].plot(time_s, apart, color=colour, lw=1.2, ls=style, label=name)
@@ -56,9 +56,9 @@ def export_figure(ready: Ready, place: int = 0, size: tuple[float, float] = (8.0
     return figure
 
 
-def _drive_panel(ax: Axes, realised: Realised) -> None:
+def _drive_panel(ax: Axes, delivery: DeliveredDrive) -> None:
     """What the device puts out: current, or the set-points of a thermode and the display behind them."""
-    designed, delivered = realised.designed_trace, realised.trace
+    designed, delivered = delivery.designed_trace, delivery.trace
     time_s, label, style = delivered.time_s, "current", "steps-post"
     wide, thin = designed.current_A, delivered.current_A
     if not delivered.has_current:
@@ -70,4 +70,4 @@ def _drive_panel(ax: Axes, realised: Realised) -> None:
 
 def title_of(one: Prepared) -> str:
     """Which icon on which device, and the colour of the gate."""
-    return f"{one.realised.icon.name} on {one.realised.device.name}, safety {one.verdict.colour}"
+    return f"{one.delivery.icon.name} on {one.delivery.device.name}, safety {one.verdict.colour}"

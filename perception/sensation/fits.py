@@ -10,14 +10,14 @@ import itertools
 from dataclasses import replace
 from functools import lru_cache
 
-from thermicon.circuit import Rig, hold
+from thermicon.circuit import Rig, steady_state
 from thermicon.circuit.records import Record, Table
 from thermicon.circuit.solver.network import network_of
 
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer, Receptor
 from ..observer.variants import drive_unit, receptor_column, source_of
-from .bench import Bench, Stimuli, ramp
+from .bench import Bench, Stimulus, ramp
 from .receptors import receptor_drive
 
 RIG = "thenar"
@@ -30,7 +30,7 @@ def neutral_flux(known: Table, channel: Channel) -> Record:
     zone = known.one("complete adaptation")
     rig = Rig.load(RIG)
     network, column = network_of(rig), receptor_column("heat flow", channel)
-    low, high = (network.read(hold(rig, "skin", level)[1], column) for level in zone.interval)
+    low, high = (network.read(steady_state(rig, "skin", level)[1], column) for level in zone.interval)
     return Record(
         quantity="neutral heat flow",
         unit="W/m²",
@@ -113,7 +113,7 @@ def with_unit_drives(known: Table, observer: Observer) -> Observer:
     return replace(observer, cold=made[0], warm=made[1])
 
 
-def peak_drive(played: Stimuli, channel: Channel, observer: Observer, *, fixed: bool = False) -> float:
+def peak_drive(played: Stimulus, channel: Channel, observer: Observer, *, fixed: bool = False) -> float:
     """Largest drive of the first stimulus; unless `fixed`, with a threshold drive that is this very drive.
 
     Gain control starts at a multiple of the threshold drive, so that the two are found together.
@@ -135,6 +135,6 @@ def _with(observer: Observer, channel: Channel, receptor: Receptor) -> Observer:
 
 
 @lru_cache(maxsize=64)
-def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimuli:
+def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimulus:
     end = round(size_K / rate_K_per_s + hold_s, 2)
     return Bench(Rig.load(rig)).play([ramp(channel, size_K, rate_K_per_s)], end)

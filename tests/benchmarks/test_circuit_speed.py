@@ -16,7 +16,7 @@ from thermicon.circuit import Drive, Rig, netlist, simulate, simulate_current
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.steady import hold, steady_state
+from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import load_library
 
 pytestmark = pytest.mark.benchmark
@@ -97,7 +97,7 @@ def test_one_cue(name: str, tool: Tool, tmp_path: Path, benchmark: BenchmarkFixt
     cue = float(benchmark.stats.stats.min)
     bank, one = Bank.of([network_of(rig)]), np.zeros(1, dtype=np.int64)
     intervals = cut(ROWS, CORNERS.time_s, CORNERS.current_A[None], held=False)
-    start = bank.states([steady_state(network_of(rig), 0.1)])
+    start = bank.states([state_under_current(network_of(rig), 0.1)])
     kernel = best_of(lambda: run_forward(bank, one, one, intervals, start.copy()), 30)
     print(f"\n{name}: the compiled run alone {kernel * 1e3:.2f} ms: {process / kernel:.0f} times an ngspice process")
     benchmark.extra_info.update(nodes=len(network_of(rig).capacity_J_per_K) + 3, ratio=process / cue)
@@ -114,7 +114,7 @@ def test_a_batch_of_64_with_a_rig_per_lane(name: str, tool: Tool, tmp_path: Path
     scale = 1 + np.arange(64) / 640
     intervals = cut(ROWS, CORNERS.time_s, CORNERS.current_A * scale[:, None], held=False)
     lanes = np.arange(64)
-    start = bank.states([steady_state(network_of(rig), 0.1 * by) for rig, by in zip(rigs, scale, strict=True)])
+    start = bank.states([state_under_current(network_of(rig), 0.1 * by) for rig, by in zip(rigs, scale, strict=True)])
     benchmark(lambda: run_forward(bank, lanes, lanes, intervals, start.copy(), PROBES))
     cue = float(benchmark.stats.stats.min) / 64
     process = ngspice_run(tool("ngspice"), tmp_path, [plain(netlist(RIGS[name], CORNERS))])
@@ -134,9 +134,9 @@ def test_inverse_beside_forward(control: str, benchmark: BenchmarkFixture) -> No
     rig = RIGS["thenar"]
     cue = next(iter(load_library("cooling-step-skin" if control == "skin" else "six-icons")))
     bank, lanes = Bank.of([network_of(rig)] * 64), np.arange(64)
-    _, state = hold(rig, control, 32.0)
+    _, state = steady_state(rig, control, 32.0)
     start = bank.states([state] * 64)
-    corners = cue.lower(32.0)
+    corners = cue.corners(32.0)
     target = np.interp(ROWS[1:], corners.time_s, corners.value)[None]
     plan = design(cue, rig, 30.0)
     intervals = cut(ROWS, plan.drive.time_s, plan.drive.current_A[None], held=True)

@@ -18,8 +18,8 @@ class GreenVerdict:
 
     colour, reason, cautions, scenarios = "green", None, (), 1
 
-    def __init__(self, realised: object) -> None:
-        self.realised = realised
+    def __init__(self, delivery: object) -> None:
+        self.delivery = delivery
 
     notes: tuple[str, ...] = ()
     demanded = MADE_UP

@@ -1,4 +1,4 @@
-"""thermicon.circuit.delivery.formats: a realised drive → the bytes of a file; one writer a module, loaded on demand."""
+"""thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; one writer per module, loaded lazily."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import re
 
 from thermicon.icons.model.cleaning import clean_line
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .c_player import PLAYER, c_float, player_files
 from .form import (
     PLAYS_SAMPLES,
@@ -26,16 +26,16 @@ LEAST_EXACT = 1e-4
 """A period in whole nanoseconds may play this much too fast or slow; beyond, the icon is another."""
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The array."""
-    scale = samples_of(realised).scale
-    step = CENTI_K if realised.device.driven_by == "temperatures" else scale.step
+    scale = samples_of(delivery).scale
+    step = CENTI_K if delivery.device.driven_by == "temperatures" else scale.step
     return (Column("wave", "", f"codes; times {step:.9g} plus {scale.offset:.9g} {scale.unit}"),)
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the header; raises FormatError for codes that 16 bits cannot hold."""
-    samples, device = samples_of(realised), realised.device
+    samples, device = samples_of(delivery), delivery.device
     scale = samples.scale
     if device.driven_by == "temperatures" and abs(scale.step / CENTI_K - round(scale.step / CENTI_K)) > 1e-9:
         raise FormatError(
@@ -44,7 +44,7 @@ def write(realised: Realised) -> bytes:
         )
     if scale.lowest < SMALLEST or scale.highest > LARGEST:
         raise FormatError(f"c-array holds int16_t; {device.name} has codes of {scale.lowest} … {scale.highest}")
-    name, codes, period = identifier(realised.icon.name), samples.codes.tolist(), period_ns(samples.rate_Hz)
+    name, codes, period = identifier(delivery.icon.name), samples.codes.tolist(), period_ns(samples.rate_Hz)
     if len(codes) > MOST_CODES:
         raise FormatError(f"c-array counts at most {MOST_CODES:,} codes; there are {len(codes):,}")
     times = round(scale.step / CENTI_K) if device.driven_by == "temperatures" else 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib import resources
 
+from ..delivered_drive import DeliveredDrive
 from ..prevent import MustPrevent
-from ..realised import Realised
 from .form import Played
 
 PLAYER = "thermicon_player.h"
@@ -16,7 +16,7 @@ OUTPUT_UNITS = {"volts": "volts", "amperes": "amperes", "duty": "duty, -1 ... 1"
 
 def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     """Return the player for drives of one device, with the numbers that the hardware must keep to."""
-    first = drives[0].realised
+    first = drives[0].delivery
     numbers = {
         "CLOSED_LOOP": str(int(first.device.driven_by == "temperatures")),
         "WATCHDOG_S": c_float(must.watchdog_s),
@@ -44,11 +44,11 @@ def filled(template: str, values: Mapping[str, str]) -> bytes:
     return text.encode("ascii")
 
 
-def command_for(realised: Realised, current_A: float) -> float:
+def command_for(delivery: DeliveredDrive, current_A: float) -> float:
     """The command of a device for a test current in A, in what it puts out: V, A or mean duty."""
-    device = realised.device
+    device = delivery.device
     if device.driven_by == "volts":
-        return current_A / realised.rig.driver.transconductance_A_per_V
+        return current_A / delivery.rig.driver.transconductance_A_per_V
     if device.driven_by == "duty":
         low, high = device.interval("output range")
         return min(1.0, current_A / min(-low, high))

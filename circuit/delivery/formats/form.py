@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from ...inputs import InputError
 from ...solver.inverse import baseline_C
-from ...solver.steady import hold
+from ...solver.steady import steady_state
+from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..events import Event, events_of
 from ..prevent import MustPrevent
-from ..realised import Realised
 from ..samples import Samples
 from ..setpoints import Setpoints
 
@@ -48,7 +48,7 @@ class Played:
     `recovery_s` and `shortest_pause_s` in s are None where the gate found none.
     """
 
-    realised: Realised
+    delivery: DeliveredDrive
     file: str
     sidecar: str
     safety: str = ""
@@ -80,21 +80,21 @@ class Format:
     device: str
     source: str
     how: str
-    write: Callable[[Realised], bytes]
-    columns: Callable[[Realised], tuple[Column, ...]]
+    write: Callable[[DeliveredDrive], bytes]
+    columns: Callable[[DeliveredDrive], tuple[Column, ...]]
     stem: Callable[[str], str] = str
-    suffix_by: Callable[[Realised], str] | None = None
-    facts: Callable[[Realised], dict[str, object]] | None = None
+    suffix_by: Callable[[DeliveredDrive], str] | None = None
+    facts: Callable[[DeliveredDrive], dict[str, object]] | None = None
     player: Callable[[Sequence[Played], MustPrevent], dict[str, bytes]] | None = None
     set_files: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
 
-    def file_name(self, realised: Realised) -> str:
+    def file_name(self, delivery: DeliveredDrive) -> str:
         """Name of the file of a drive."""
-        suffix = self.suffix if self.suffix_by is None else self.suffix_by(realised)
-        return check_name(self.stem(realised.icon.name) + suffix)
+        suffix = self.suffix if self.suffix_by is None else self.suffix_by(delivery)
+        return check_name(self.stem(delivery.icon.name) + suffix)
 
     def check(self, device: Device) -> None:
         """Raise FormatError where a device plays something else than this format holds."""
@@ -121,32 +121,32 @@ def check_name(name: str) -> str:
     return name
 
 
-def samples_of(realised: Realised) -> Samples:
+def samples_of(delivery: DeliveredDrive) -> Samples:
     """The samples of a drive whose device plays samples."""
-    assert isinstance(realised.played, Samples)
-    return realised.played
+    assert isinstance(delivery.played, Samples)
+    return delivery.played
 
 
-def setpoints_in(realised: Realised) -> Setpoints:
+def setpoints_in(delivery: DeliveredDrive) -> Setpoints:
     """The set-points of a drive whose device follows set-points."""
-    assert isinstance(realised.played, Setpoints)
-    return realised.played
+    assert isinstance(delivery.played, Setpoints)
+    return delivery.played
 
 
-def events_in(realised: Realised) -> tuple[Event, ...]:
+def events_in(delivery: DeliveredDrive) -> tuple[Event, ...]:
     """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
-    icon, rig = realised.icon, realised.rig
+    icon, rig = delivery.icon, delivery.rig
     base = baseline_C(icon, rig)
-    start = hold(rig, "display", base)[0] if icon.frame.control == "current" else base
-    return events_of(icon.lower(start), 0.0 if isinstance(realised.played, Setpoints) else realised.lead_s)
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
+    return events_of(icon.corners(start), 0.0 if isinstance(delivery.played, Setpoints) else delivery.lead_s)
 
 
-def command_column(realised: Realised) -> Column:
+def command_column(delivery: DeliveredDrive) -> Column:
     """The column of commands of a device that plays samples."""
     name, meaning = {
         "volts": ("command_V", "voltage that the device puts out"),
         "amperes": ("command_A", "current that the device puts out"),
         "temperatures": ("display_C", "set-point that the controller gets for the display"),
         "duty": ("duty", "share of a cycle that the bridge is on; negative: reversed"),
-    }[realised.device.driven_by]
-    return Column(name, realised.device.unit, f"{meaning}, held until the next row")
+    }[delivery.device.driven_by]
+    return Column(name, delivery.device.unit, f"{meaning}, held until the next row")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .form import Column, Format, FormatError, samples_of
 
 FULL = 32767
@@ -10,18 +10,18 @@ DECIMALS, MOST_OFF = 6, 1e-4
 """Decimals of the header's numbers, and the share by which these may change the sample rate."""
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The list of codes."""
     return (Column("Data", "", f"code; {FULL} is the high level in V, −{FULL} the low level"),)
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the file; its filter is off, since the drive is a staircase."""
-    samples = samples_of(realised)
+    samples = samples_of(delivery)
     scale = samples.scale
     if scale.highest != FULL or scale.lowest != -FULL:
         raise FormatError(
-            f"keysight-arb needs codes of ±{FULL} (16 bits, symmetric); {realised.device.name} has "
+            f"keysight-arb needs codes of ±{FULL} (16 bits, symmetric); {delivery.device.name} has "
             f"{scale.lowest} … {scale.highest}"
         )
     low, high = (scale.offset + scale.step * code for code in (-FULL, FULL))

@@ -6,8 +6,8 @@ import csv
 import io
 from collections.abc import Sequence
 
+from ..delivered_drive import DeliveredDrive
 from ..prevent import MustPrevent
-from ..realised import Realised
 from . import csv_table, setpoint_csv, tcs2_serial
 from .c_player import command_for, filled
 from .form import Column, Format, Played, events_in, samples_of
@@ -28,19 +28,19 @@ MARKED = ("ramp start", "target reached", "return start", "baseline reached")
 as `ramp_start_2_s`."""
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Columns of the drive file."""
-    return _drive(realised).columns(realised)
+    return _drive(delivery).columns(delivery)
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the drive file of one icon: a table, or the commands of a thermode."""
-    return _drive(realised).write(realised)
+    return _drive(delivery).write(delivery)
 
 
 def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     """Return conditions file and player for drives of one device, with what the hardware must prevent."""
-    marks = [_marks(each.realised) for each in drives]
+    marks = [_marks(each.delivery) for each in drives]
     most = max(len(times) for each in marks for times in each.values())
     later = [_column(name, k) for k in range(most) for name in MARKED]
     used = {column for each in marks for name, times in each.items() for column in _columns(name, len(times))}
@@ -49,7 +49,7 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
     for one, times_by_name in zip(drives, marks, strict=True):
-        row = {"icon": one.realised.icon.name, "drive_file": one.file, "sidecar_file": one.sidecar}
+        row = {"icon": one.delivery.icon.name, "drive_file": one.file, "sidecar_file": one.sidecar}
         row |= {"safety": one.safety}
         row |= {
             name: f"{value:.9g}"
@@ -59,12 +59,12 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
         for name, times in times_by_name.items():
             row |= {column: f"{time:.9g}" for column, time in zip(_columns(name, len(times)), times, strict=True)}
         rows.writerow(row)
-    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives[0].realised, must)}
+    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives[0].delivery, must)}
 
 
-def _player(realised: Realised, must: MustPrevent) -> bytes:
+def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
     """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
-    driven_by, device = realised.device.driven_by, realised.device
+    driven_by, device = delivery.device.driven_by, delivery.device
     on, parts = "on an NI analogue output", ["guard", "polarity", "ni"]
     off, off_V = "_off", "0.0"
     if driven_by == "set-points":
@@ -73,7 +73,7 @@ def _player(realised: Realised, must: MustPrevent) -> bytes:
         on, parts = "on a temperature controller", ["guard", "send"]
     elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
         on = "as set-points of a temperature controller on an NI analogue output"
-        off_V = repr(float(volts_of(device, samples_of(realised).command[:1])[0]))
+        off_V = repr(float(volts_of(device, samples_of(delivery).command[:1])[0]))
     polarity = must.test_polarity and driven_by == "volts"
     values = {
         "ON": on,
@@ -83,7 +83,7 @@ def _player(realised: Realised, must: MustPrevent) -> bytes:
         "REST_S": repr(must.rest_s),
         "PAUSE_S": repr(must.pause_s),
         "TEST_POLARITY": str(polarity),
-        "TEST_COMMAND": repr(command_for(realised, must.test_current_A) if polarity else 0.0),
+        "TEST_COMMAND": repr(command_for(delivery, must.test_current_A) if polarity else 0.0),
         "TEST_S": repr(must.test_s),
         "TEST_FALL_K": repr(must.test_fall_K),
         "FROZEN_S": "math.inf" if driven_by == "set-points" else repr(FROZEN_S),
@@ -93,10 +93,10 @@ def _player(realised: Realised, must: MustPrevent) -> bytes:
     return b"".join(filled(f"player-{part}.py.txt", values) for part in parts)
 
 
-def _marks(realised: Realised) -> dict[str, list[float]]:
+def _marks(delivery: DeliveredDrive) -> dict[str, list[float]]:
     """Times in s of every event, by its name."""
     found: dict[str, list[float]] = {}
-    for event in events_in(realised):
+    for event in events_in(delivery):
         found.setdefault(event.name, []).append(event.time_s)
     return found
 
@@ -114,13 +114,13 @@ def _column(name: str, k: int) -> str:
     return f"{name.replace(' ', '_')}{f'_{k + 1}' if k else ''}_s"
 
 
-def _drive(realised: Realised) -> Format:
+def _drive(delivery: DeliveredDrive) -> Format:
     by_kind = {"set-points": tcs2_serial.FORMAT, "temperatures": setpoint_csv.FORMAT}
-    return by_kind.get(realised.device.driven_by, csv_table.FORMAT)
+    return by_kind.get(delivery.device.driven_by, csv_table.FORMAT)
 
 
-def _suffix(realised: Realised) -> str:
-    return _drive(realised).suffix
+def _suffix(delivery: DeliveredDrive) -> str:
+    return _drive(delivery).suffix
 
 
 FORMAT = Format(

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import re
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .form import Column, Format, FormatError, samples_of
 
 FULL = 0x3FFF
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The list of codes."""
     return (Column("codes", "", f"16-bit little-endian; 0 is the low level in V, {FULL} the high level"),)
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the codes."""
-    samples = samples_of(realised)
+    samples = samples_of(delivery)
     if (samples.scale.lowest, samples.scale.highest) != (0, FULL):
         raise FormatError(
-            f"rigol-raf needs codes of 0 … {FULL} (14 bits, from zero); {realised.device.name} has "
+            f"rigol-raf needs codes of 0 … {FULL} (14 bits, from zero); {delivery.device.name} has "
             f"{samples.scale.lowest} … {samples.scale.highest}"
         )
     return samples.codes.astype("<u2").tobytes()

@@ -7,20 +7,20 @@ import io
 
 import numpy as np
 
-from ...rig.skin import Array
+from ...arrays import Array
+from ..delivered_drive import DeliveredDrive
 from ..device import Device
-from ..realised import Realised
 from .csv_table import marks_of
 from .form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, set-point, the voltage that stands for it where the device states a gain, event."""
     voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
     return (
         Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next"),
-        command_column(realised),
-        *((voltage,) if has_voltage(realised.device) else ()),
+        command_column(delivery),
+        *((voltage,) if has_voltage(delivery.device) else ()),
         Column("event", "", "what the icon prescribes from this row on; the last row marks the end"),
     )
 
@@ -37,16 +37,16 @@ def volts_of(device: Device, display_C: Array) -> Array:
     return (0.0 if offset is None else offset.central) + gain.central * display_C
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the table; temperatures have as many decimals as the device's step."""
-    samples, device = samples_of(realised), realised.device
+    samples, device = samples_of(delivery), delivery.device
     times, levels = samples.time_s, samples.command
     decimals = max(0, int(np.ceil(-np.log10(samples.scale.step) - 1e-9)))
     volts = volts_of(device, levels) if has_voltage(device) else None
-    marks = marks_of(realised, times)
+    marks = marks_of(delivery, times)
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
-    rows.writerow(column.name for column in columns(realised))
+    rows.writerow(column.name for column in columns(delivery))
     for row, (time, level) in enumerate(zip(times.tolist(), levels.tolist(), strict=True)):
         voltage = () if volts is None else (f"{volts[row]:.6f}",)
         rows.writerow([repr(time), f"{level:.{decimals}f}", *voltage, "; ".join(marks.get(row, ()))])

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
+from ..delivered_drive import DeliveredDrive
 from ..netlist import EDGE_S, points
-from ..realised import Realised
 from .form import PLAYS_CURRENT, Column, Format, command_column
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time and command, without a header, as the programs want it."""
-    command = command_column(realised)
+    command = command_column(delivery)
     return (Column("1", "s", "time"), Column("2", command.unit, f"{command.name}; a jump is a flank of 1 µs"))
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return a line for each corner of the command; rows that change nothing are left out.
 
     A source keeps its last value for ever, so the last line is the rest, 1 µs behind the end.
     """
-    gain = realised.rig.driver.transconductance_A_per_V if realised.device.driven_by == "volts" else 1.0
-    drive = realised.delivered
+    gain = delivery.rig.driver.transconductance_A_per_V if delivery.device.driven_by == "volts" else 1.0
+    drive = delivery.delivered
     pairs = [*points(drive, None), (float(drive.time_s[-1]) + EDGE_S, float(drive.current_A[-1]))]
     return "".join(f"{time!r} {current / gain!r}\n" for time, current in pairs).encode("ascii")
 

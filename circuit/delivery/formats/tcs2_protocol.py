@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from thermicon.icons import Corners
 
 from ...solver.inverse import baseline_C
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .form import PLAYS_SETPOINTS, Column, Format, FormatError
 
 ZONES = (1, 2, 3, 4, 5)
@@ -55,7 +55,7 @@ def stimulus_of(corners: Corners, fastest_K_per_s: float) -> Stimulus:
     return Stimulus(base, target, rates[0], rates[1], back)
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Keys of a zone."""
     return (
         Column("temperature", "°C", "target"),
@@ -66,15 +66,15 @@ def columns(realised: Realised) -> tuple[Column, ...]:
     )
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the protocol; raises FormatError for a cue that is no ramp, plateau and return of the display."""
-    icon = realised.icon
-    if icon.frame.control != "display":
+    icon = delivery.icon
+    if icon.context.control != "display":
         raise FormatError(
             f"tcs2-protocol-ini needs an icon that prescribes the display; {icon.name} prescribes the "
-            f"{icon.frame.control}: use tcs2-serial"
+            f"{icon.context.control}: use tcs2-serial"
         )
-    stimulus = stimulus_of(icon.lower(baseline_C(icon, realised.rig)), realised.device.most("ramp rate"))
+    stimulus = stimulus_of(icon.corners(baseline_C(icon, delivery.rig)), delivery.device.most("ramp rate"))
     return ("\n".join(_lines(stimulus)) + "\n").encode("ascii")
 
 

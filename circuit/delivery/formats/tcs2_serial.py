@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from ..setpoints import Setpoints
 from .form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
 
@@ -15,7 +15,7 @@ TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
 """What the commands count in: segments last ticks of 10 ms, levels are tenths of a degree, each in three digits."""
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The commands, one a line."""
     return (
         Column("N", "0.1 °C", "baseline"),
@@ -26,10 +26,10 @@ def columns(realised: Realised) -> tuple[Column, ...]:
     )
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the commands; the last, L, starts the stimulation."""
-    setpoints = setpoints_in(realised)
-    _check(setpoints, realised.device.name)
+    setpoints = setpoints_in(delivery)
+    _check(setpoints, delivery.device.name)
     greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
     segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
     commands = [

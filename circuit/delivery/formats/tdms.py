@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from importlib.metadata import version
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
     PLAYS_TEMPERATURES,
@@ -21,39 +21,39 @@ GROUP = "thermicon"
 LARGEST = 2**31 - 1
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Channels of the group `thermicon`."""
     voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
-    extra = (voltage,) if _is_voltage(realised) else ()
+    extra = (voltage,) if _is_voltage(delivery) else ()
     code = Column("code", "", "the command as a whole number of the device's steps")
-    return (command_column(realised), code, *extra)
+    return (command_column(delivery), code, *extra)
 
 
-def _is_voltage(realised: Realised) -> bool:
-    return realised.device.driven_by == "temperatures" and has_voltage(realised.device)
+def _is_voltage(delivery: DeliveredDrive) -> bool:
+    return delivery.device.driven_by == "temperatures" and has_voltage(delivery.device)
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the file; raises FormatError where npTDMS is not installed."""
     try:
         from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
     except ImportError:
         raise FormatError('tdms needs npTDMS, which is not installed: pip install "thermicon[hardware]"') from None
-    samples, command = samples_of(realised), command_column(realised)
+    samples, command = samples_of(delivery), command_column(delivery)
     if samples.scale.highest > LARGEST or samples.scale.lowest < -LARGEST - 1:
         raise FormatError(
-            f"tdms: codes are written in 32 bits, up to {LARGEST:,}; {realised.device.name} has "
+            f"tdms: codes are written in 32 bits, up to {LARGEST:,}; {delivery.device.name} has "
             f"{samples.scale.lowest:,} … {samples.scale.highest:,}: use csv"
         )
     clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
-    root = RootObject({"name": realised.icon.name, "author": f"thermicon {version('thermicon')}"})
-    group = GroupObject(GROUP, {"device": realised.device.name, "rig": realised.rig.name})
+    root = RootObject({"name": delivery.icon.name, "author": f"thermicon {version('thermicon')}"})
+    group = GroupObject(GROUP, {"device": delivery.device.name, "rig": delivery.rig.name})
     channels = [
         ChannelObject(GROUP, command.name, samples.command, {"unit_string": command.unit, **clock}),
         ChannelObject(GROUP, "code", samples.codes.astype("<i4"), {"unit_string": "", **clock}),
     ]
-    if _is_voltage(realised):
-        volts = volts_of(realised.device, samples.command)
+    if _is_voltage(delivery):
+        volts = volts_of(delivery.device, samples.command)
         channels.append(ChannelObject(GROUP, "command_V", volts, {"unit_string": "V", **clock}))
     file = io.BytesIO()
     with TdmsWriter(file) as writer:

@@ -11,7 +11,7 @@ import wave
 
 import numpy as np
 
-from ..realised import Realised
+from ..delivered_drive import DeliveredDrive
 from .form import Column, Format, FormatError, samples_of
 
 FULL = 32768
@@ -23,39 +23,39 @@ FRAME_RATES_HZ = (48_000, 44_100, 96_000, 88_200, 192_000, 176_400, 32_000, 24_0
 """Frames a second that sound interfaces play, the likeliest first."""
 
 
-def columns(realised: Realised) -> tuple[Column, ...]:
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The one channel."""
-    scale = samples_of(realised).scale
+    scale = samples_of(delivery).scale
     return (Column("channel 1", "", f"16-bit PCM; full scale (±{FULL}) is ±{-scale.step * scale.lowest:g} V"),)
 
 
-def frames(realised: Realised) -> tuple[int, int]:
+def frames(delivery: DeliveredDrive) -> tuple[int, int]:
     """Return frames a second and how many of them each update gets; FormatError where no rate is a multiple.
 
     A rate within what the device states is taken before others.
     """
-    rate = samples_of(realised).rate_Hz
-    low, high = realised.device.interval("update rate")
+    rate = samples_of(delivery).rate_Hz
+    low, high = delivery.device.interval("update rate")
     for frame_rate in sorted(FRAME_RATES_HZ, key=lambda one: not low <= one <= high):
         each = round(frame_rate / rate)
         if each >= 1 and abs(each * rate - frame_rate) < 1e-9 * frame_rate:
             return frame_rate, each
     raise FormatError(
         f"wav: no rate that sound interfaces play ({min(FRAME_RATES_HZ):,} to {max(FRAME_RATES_HZ):,} frames a second) "
-        f"is a whole multiple of the {rate:g} Hz of {realised.device.name}; set driver.update_Hz to 100, or use "
+        f"is a whole multiple of the {rate:g} Hz of {delivery.device.name}; set driver.update_Hz to 100, or use "
         f"dc-coupled-audio"
     )
 
 
-def facts(realised: Realised) -> dict[str, object]:
+def facts(delivery: DeliveredDrive) -> dict[str, object]:
     """What the sidecar says of the file."""
-    frame_rate, each = frames(realised)
+    frame_rate, each = frames(delivery)
     return {"frames_per_second": frame_rate, "frames_per_update": each}
 
 
-def write(realised: Realised) -> bytes:
+def write(delivery: DeliveredDrive) -> bytes:
     """Return the file; raises FormatError for a device that is not DC-coupled, or a rate that cannot be reached."""
-    device, samples = realised.device, samples_of(realised)
+    device, samples = delivery.device, samples_of(delivery)
     if device.levels != "fixed" or samples.scale.offset != 0:
         raise FormatError(f"wav has no levels of its own; {device.name} sets its levels by the waveform: use another")
     if not device.dc_coupled:
@@ -63,7 +63,7 @@ def write(realised: Realised) -> bytes:
             f"wav: {device.name} is not said to be DC-coupled (dc_coupled = true); an output that is not loses every "
             f"held level; use dc-coupled-audio, or another format"
         )
-    frame_rate, each = frames(realised)
+    frame_rate, each = frames(delivery)
     if (count := len(samples.codes) * each) > MOST_FRAMES:
         raise FormatError(
             f"wav: {count:,} frames at {frame_rate:,} a second; at most {MOST_FRAMES:,} are written, which is over an "

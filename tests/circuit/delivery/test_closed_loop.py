@@ -8,7 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, Trace, hold, netlist, simulate, simulate_current, simulate_many
+from thermicon.circuit import (
+    Drive,
+    Rig,
+    RigError,
+    Trace,
+    netlist,
+    simulate,
+    simulate_current,
+    simulate_many,
+    steady_state,
+)
 from thermicon.icons import Icon, parse
 
 GAINS = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
@@ -127,10 +137,10 @@ def test_a_hot_plate_under_its_own_control_agrees_with_ngspice(tool: Tool, tmp_p
 
 def sampled_loop(rig: Rig, cue: Icon, end_s: float) -> str:
     """The netlist of a rig whose command comes from a sampled PID made of capacitors and B sources."""
-    bias = hold(rig, "display", 32.0)[0]
+    bias = steady_state(rig, "display", 32.0)[0]
     text = netlist(rig, Drive([0.0, end_s], [bias, bias]), out_file="out.txt")
     text = re.sub(r"Vcommand command 0 PWL\(\n(\+.*\n)+", "", text)
-    corners = cue.lower(32.0)
+    corners = cue.corners(32.0)
     points = " ".join(f"{t!r} {v!r}" for t, v in zip(corners.time_s, corners.value, strict=True))
     lag, period = GAINS["lag_s"], 1 / rig.driver.update_Hz
     low, high = rig.driver.current_min_A, rig.driver.current_max_A
@@ -178,7 +188,7 @@ def test_a_batch_runs_the_loop_too() -> None:
     batch = simulate_many(cues, [LOOP, other], nominal=LOOP, end_s=9.0, probes=("display_C",))
     for r, rig in enumerate((LOOP, other)):
         for c, cue in enumerate(cues):
-            alone = simulate(cue, rig, tail_s=9.0 - cue.lower(32.0).duration_s)
+            alone = simulate(cue, rig, tail_s=9.0 - cue.corners(32.0).duration_s)
             assert np.abs(batch["display_C"][r, c] - alone.display_C).max() < 1e-4
     skin = [icon("cool by 3 °C at 1 °C/s\nhold for 5 s", "skin")]
     replayed = simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, probes=("skin_C",))
@@ -194,4 +204,4 @@ def test_a_hot_plate_without_the_power_to_rest_is_refused() -> None:
     with pytest.raises(RigError, match=r"at rest the hot plate has 10\.\d+ W to remove, its controller gives 0\.5 W"):
         simulate_current(Drive([0, 5], [1.0, 1.0]), weak)
     with pytest.raises(RigError, match=r"raise heat_sink\.power_limit_W, or begin nearer to rest"):
-        hold(HEAVY.with_(**{"heat_sink.power_limit_W": 0.1}), "display", 32.0)
+        steady_state(HEAVY.with_(**{"heat_sink.power_limit_W": 0.1}), "display", 32.0)

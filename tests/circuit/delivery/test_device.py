@@ -178,3 +178,9 @@ def test_an_unknown_device_is_named_with_the_nearest() -> None:
 def test_a_missing_file_is_told(tmp_path: Path) -> None:
     with pytest.raises(DeviceError, match="no such device file"):
         Device.load(tmp_path / "absent.toml")
+
+
+def test_a_folder_does_not_hide_a_shipped_device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "dac-16").mkdir()
+    assert Device.load("dac-16").name == "dac-16"

@@ -2,13 +2,20 @@
 
 import pytest
 
-from thermicon.circuit import Drive, Rig, difference, events_of, simulate_current
-from thermicon.circuit.solver.difference import Apart, Difference, loss_limit, loss_table
+from thermicon.circuit import Drive, Rig, simulate_current
+from thermicon.circuit.delivery.events import events_of
+from thermicon.circuit.solver.delivery_deviation import (
+    DeliveryDeviation,
+    Deviation,
+    delivery_deviation,
+    loss_limit,
+    loss_table,
+)
 from thermicon.icons import Corners, load_library
 
 
 def test_ramps_levels_and_returns_on_the_clock_of_the_file() -> None:
-    corners = load_library("six-icons")["cold-to-warm"].lower()
+    corners = load_library("six-icons")["cold-to-warm"].corners()
     found = [(event.name, round(event.time_s, 3), event.level) for event in events_of(corners, 0.01)]
     assert found == [
         ("ramp start", 0.01, 32.0),
@@ -36,13 +43,13 @@ def test_losses_are_records_with_a_source() -> None:
 
 
 def test_a_loss_is_told_with_its_limit() -> None:
-    apart = Difference((Apart("skin", 0.3, 1.0, 0.2), Apart("cold receptor", 0.1, 1.0, 0.0612)))
+    apart = DeliveryDeviation((Deviation("skin", 0.3, 1.0, 0.2), Deviation("cold receptor", 0.1, 1.0, 0.0612)))
     assert apart.losses() == ("the cold receptor differs by 0.061 K (rms) from the design, over the stated 0.05 K",)
-    assert repr(apart) == "Difference(skin +300 mK (rms 200), cold receptor +100 mK (rms 61.2))"
+    assert repr(apart) == "DeliveryDeviation(skin +300 mK (rms 200), cold receptor +100 mK (rms 61.2))"
 
 
 def test_traces_of_different_length_are_not_compared() -> None:
     rig = Rig.load("thenar")
     one, other = (simulate_current(Drive([0, end], [0.1, 0.1]), rig) for end in (1, 2))
     with pytest.raises(ValueError, match="traces of 101 and 201 rows cannot be compared"):
-        difference(one, other)
+        delivery_deviation(one, other)

@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, DeviceError, Record, Rig, RigError, Samples, prepare, realise, simulate_current
+from thermicon.circuit import Device, DeviceError, Rig, RigError, deliver, prepare, simulate_current
+from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.realise import traces_until
+from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.spread import open_loop_spread
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.records import Record
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.icons import load_library, parse
 
@@ -30,11 +32,11 @@ def with_records(*records: Record) -> Device:
     return replace(LOOP, records=(*kept, *records))
 
 
-class TestRealised:
+class TestDeliveredDrive:
     """What the display does under set-points."""
 
     def test_set_points_are_the_display_of_the_cue_by_means(self) -> None:
-        played = realise(STEP, RIG, LOOP).played
+        played = deliver(STEP, RIG, LOOP).played
         assert isinstance(played, Samples)
         middles = np.arange(800) * 0.01 + 0.005
         ideal = np.interp(middles, [0, 2, 6, 8], [32, 26, 26, 32])
@@ -42,23 +44,23 @@ class TestRealised:
         assert played.command[0] == played.command[-1] == pytest.approx(32.0)
 
     def test_the_display_follows_within_an_update_on_the_rigs_module(self) -> None:
-        found = realise(STEP, RIG, LOOP)
+        found = deliver(STEP, RIG, LOOP)
         assert found.trace.has_current
         assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.05
         assert found.trace.current_A.max() <= RIG.driver.current_max_A
-        assert found.apart.losses() == ()
+        assert found.deviation.losses() == ()
         again = simulate_current(found.delivered, RIG)
         assert again.skin_C == pytest.approx(found.trace.skin_C, abs=1e-9)
 
     def test_a_skin_cue_gets_the_display_that_its_design_finds(self) -> None:
-        found = realise(SKIN, RIG, LOOP)
+        found = deliver(SKIN, RIG, LOOP)
         assert found.outcome is not None
         assert found.outcome.reached
         assert np.abs(found.trace.skin_C - found.designed_trace.skin_C).max() < 0.05
 
     def test_the_drivers_limits_hold_it_back(self) -> None:
         weak = RIG.with_(**{"driver.current_limit_A": 0.6})
-        found = realise(STEP, weak, LOOP)
+        found = deliver(STEP, weak, LOOP)
         assert found.trace.current_A.max() == pytest.approx(0.6)
         assert found.trace.display_C[202] > 26.5
         assert found.outcome is not None
@@ -67,28 +69,28 @@ class TestRealised:
     def test_a_rigs_own_loop_is_what_follows(self) -> None:
         gains = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
         loop = RIG.with_(**{f"controller.{key}": value for key, value in gains.items()})
-        late = realise(STEP, loop, LOOP).trace.display_C - realise(STEP, RIG, LOOP).trace.display_C
+        late = deliver(STEP, loop, LOOP).trace.display_C - deliver(STEP, RIG, LOOP).trace.display_C
         assert 0.1 < np.abs(late).max() < 1.5
 
     def test_a_slower_controller_gets_every_nth_set_point(self) -> None:
         slow = with_records(Record("update rate", "Hz", "test", value=10.0))
-        found = realise(STEP, RIG, slow)
+        found = deliver(STEP, RIG, slow)
         assert (found.rate_Hz, found.requested_Hz, found.lead_s) == (10.0, 100.0, 0.1)
-        assert found.apart.places[1].rms_K < 0.1
+        assert found.deviation.places[1].rms_K < 0.1
 
     def test_it_goes_on_at_rest(self) -> None:
-        designed, delivered = traces_until(realise(STEP, RIG, LOOP), 20.0)
+        designed, delivered = traces_until(deliver(STEP, RIG, LOOP), 20.0)
         assert designed.time_s[-1] == delivered.time_s[-1] == 20.0
 
     def test_what_it_cannot_be_told(self) -> None:
         icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
         with pytest.raises(DeviceError, match=r"controller takes temperatures, and ramp prescribes a current"):
-            realise(icon, RIG, LOOP)
+            deliver(icon, RIG, LOOP)
         narrow = with_records(Record("set-point range", "°C", "test", low=28.0, high=40.0))
         with pytest.raises(DeviceError, match=r"a set-point of 26 °C is beyond 28 … 40 °C; change the icon"):
-            realise(STEP, RIG, narrow)
+            deliver(STEP, RIG, narrow)
         with pytest.raises(RigError, match="rig tcs2 is a thermode: it has no driver"):
-            realise(STEP, Rig.load("tcs2"), LOOP)
+            deliver(STEP, Rig.load("tcs2"), LOOP)
 
 
 class TestFiles:
@@ -107,7 +109,7 @@ class TestFiles:
         device = with_records(
             Record("set-point gain", "V/K", "test", value=0.1), Record("set-point offset", "V", "test", value=-2.0)
         )
-        found = realise(STEP, RIG, device)
+        found = deliver(STEP, RIG, device)
         rows = list(csv.DictReader(io.StringIO(load_format("setpoint-csv").write(found).decode())))
         for row in rows:
             assert float(row["command_V"]) == pytest.approx(0.1 * float(row["display_C"]) - 2.0, abs=1e-6)
@@ -116,7 +118,7 @@ class TestFiles:
         from nptdms import TdmsFile
 
         device = with_records(Record("set-point gain", "V/K", "test", value=0.1))
-        found = realise(STEP, RIG, device)
+        found = deliver(STEP, RIG, device)
         (tmp_path / "a.tdms").write_bytes(load_format("tdms").write(found))
         group = TdmsFile.read(tmp_path / "a.tdms")["thermicon"]
         assert isinstance(found.played, Samples)
@@ -130,7 +132,7 @@ class TestSpread:
     """What an open loop leaves open."""
 
     def test_it_is_that_of_the_corners(self) -> None:
-        found = realise(STEP, RIG, Device.load("dac-16"))
+        found = deliver(STEP, RIG, Device.load("dac-16"))
         spread = open_loop_spread(found)
         assert spread is not None
         rests, steps = [], []
@@ -150,13 +152,13 @@ class TestSpread:
             **{f"uncertainty.{key}": value for key, value in sure.items()},
             **{"uncertainty.reason": "all of it was measured"},
         )
-        spread = open_loop_spread(realise(STEP, rig, Device.load("dac-16")))
+        spread = open_loop_spread(deliver(STEP, rig, Device.load("dac-16")))
         assert spread is not None
         assert len(corners_of(rig)) > 1 or spread.baseline_C[0] == spread.baseline_C[1]
 
     @pytest.mark.parametrize("name", ["qst-tcs2", "closed-loop-controller"])
     def test_a_loop_leaves_none_open(self, name: str) -> None:
-        assert open_loop_spread(realise(STEP, RIG, Device.load(name))) is None
+        assert open_loop_spread(deliver(STEP, RIG, Device.load(name))) is None
 
     def test_export_and_sidecar_say_it_and_advise_a_loop(self) -> None:
         form = load_format("csv")

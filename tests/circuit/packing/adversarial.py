@@ -11,7 +11,7 @@ import numpy as np
 from thermicon.circuit import Device, Prepared, Rig, RigError, prepare
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.packing.export import Gate, prepare_set
+from thermicon.circuit.packing.prepare import Gate, prepare_set
 from thermicon.icons import Icon, parse
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
@@ -41,8 +41,8 @@ class Case:
     number: int
 
     def __repr__(self) -> str:
-        one = self.ready[0].realised
-        cues = " ".join(" ".join(str(each.realised.icon).split()) for each in self.ready)
+        one = self.ready[0].delivery
+        cues = " ".join(" ".join(str(each.delivery.icon).split()) for each in self.ready)
         changes = ", ".join(one.rig.changes)
         where = f"{one.rig.name} with {changes} | {one.device.name} as {self.form}"
         return f"#{self.number} {cues} | {where} | pause {self.pause_s}"

@@ -22,7 +22,8 @@ from tests.circuit.packing.independent import Json
 from tests.circuit.packing.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
 from thermicon.circuit import Prepared
 from thermicon.circuit.delivery.formats import Format, FormatError, load_format
-from thermicon.circuit.packing.export import Gate, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Gate
 
 PER_PART = 100
 LOOKED_AT = 6
@@ -101,7 +102,7 @@ def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: i
                 found.counts["cannot be played at all"] += 1
                 continue
             found.counts["judged"] += len(case.ready)
-            form, device = load_format(case.form), case.ready[0].realised.device
+            form, device = load_format(case.form), case.ready[0].delivery.device
             kind = f"{device.name.split('-')[0]} {case.form}"
             found.seconds["gate " + kind] += round(time.process_time() - begun, 3)
             found.counts["gated " + kind] += 1
@@ -141,7 +142,7 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
 
 def _replay(ready: list[Prepared], form: Format, rng: np.random.Generator) -> Worst:
     files = pack(ready, form)
-    stems = [form.stem(one.realised.icon.name) for one in ready]
+    stems = [form.stem(one.delivery.icon.name) for one in ready]
     return replayed(files, stems, rng)
 
 

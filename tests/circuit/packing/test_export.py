@@ -13,16 +13,10 @@ from typing import Any
 import pytest
 
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import (
-    Device,
-    Prepared,
-    Realised,
-    Rig,
-    Verdict,
-    prepare,
-)
+from thermicon.circuit import DeliveredDrive, Device, Prepared, Rig, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Verdict
 from thermicon.circuit.packing.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.packing.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest
@@ -97,8 +91,8 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
         str(refusal),
     )
     assert one.warnings == ()
-    dull = replace(one.realised, narrowed=replace(one.realised.narrowed, outcome=None))  # type: ignore[type-var]
-    (lossy,) = refusals_of(dull, one.verdict, one.apart)
+    dull = replace(one.delivery, narrowed=replace(one.delivery.narrowed, outcome=None))  # type: ignore[type-var]
+    (lossy,) = refusals_of(dull, one.verdict, one.deviation)
     assert re.search(r"^loses too much: dac-16 plays .* With that the \w+ receptor differs by ", str(lossy))
 
 
@@ -152,8 +146,8 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
 
     seen: list[str] = []
 
-    def stern(realised: Realised) -> Verdict:
-        seen.append(realised.icon.name)
+    def stern(delivery: DeliveredDrive) -> Verdict:
+        seen.append(delivery.icon.name)
         return Red()
 
     one = prepare(SIX["double-dip"], RIG, Device.load("dac-16"), CSV, gate=stern)
@@ -187,9 +181,9 @@ def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], 
 
 
 def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() -> None:
-    realised = ready("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).realised
-    assert realised.trace.beyond
-    assert realised.told == realised.warnings == ()
+    delivery = ready("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).delivery
+    assert delivery.trace.beyond
+    assert delivery.warnings == delivery.device_warnings == ()
 
 
 def test_a_format_that_cannot_hold_an_icon_names_it() -> None:
@@ -206,9 +200,9 @@ class TestSidecar:
         assert told["thermicon"] == version("thermicon")
         assert told["icon"]["content_hash"] == SIX["cooling-step"].content_hash
         assert parse(told["icon"]["text"])["cooling-step"] == replace(
-            SIX["cooling-step"], frame=parse(told["icon"]["text"])["cooling-step"].frame
+            SIX["cooling-step"], context=parse(told["icon"]["text"])["cooling-step"].context
         )
-        rig = one.realised.rig
+        rig = one.delivery.rig
         assert told["rig"]["content_hash"] == hashlib.sha256(rig.document.encode()).hexdigest()
         assert told["rig"]["changes"] == ["contact.area_cm2=8"]
         assert told["rig"]["document"] == json.loads(rig.document)
@@ -228,10 +222,10 @@ class TestSidecar:
         assert told["rig_sha256"] == told["rig"]["content_hash"]
         device = json.dumps(told["device"], sort_keys=True, ensure_ascii=False)
         assert told["device_sha256"] == hashlib.sha256(device.encode()).hexdigest()
-        assert told["device"]["streams"] is one.realised.device.streams
+        assert told["device"]["streams"] is one.delivery.device.streams
         assert told["program"] == {"version": version("thermicon"), "code_sha256": code_digest()}
         assert (told["played"]["greatest_command_V"], told["played"]["least_command_V"]) == pytest.approx(
-            (one.realised.played.command.max(), one.realised.played.command.min())  # type: ignore[union-attr]
+            (one.delivery.played.command.max(), one.delivery.played.command.min())  # type: ignore[union-attr]
         )
         known = told.pop("sidecar_sha256")
         bare = json.dumps(told, ensure_ascii=False, indent=2) + "\n"
@@ -272,7 +266,7 @@ class TestSidecar:
 
     def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
         told = sidecar_of(ready("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
-        one = ready("warming-step", "rigol-dg1000z", "rigol-raf").realised
+        one = ready("warming-step", "rigol-dg1000z", "rigol-raf").delivery
         assert told["played"]["high_level_V"] == pytest.approx(-told["played"]["low_level_V"])
         assert told["played"]["samples"] == len(one.trace.time_s)
         assert told["played"]["icon_begins_at_s"] == 0.01

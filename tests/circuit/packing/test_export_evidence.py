@@ -21,9 +21,10 @@ from tests.circuit.packing.evidence import PER_PART, Told, run_part
 from tests.circuit.packing.exported_files import read_file, sidecar_in
 from tests.circuit.packing.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.packing.spice_replay import by_ngspice
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.realised import Realised
-from thermicon.circuit.packing.export import Verdict, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Verdict
 from thermicon.circuit.packing.worstcase import worst_case
 
 DRIVES = int(os.environ.get("THERMICON_EVIDENCE", "10000"))
@@ -31,14 +32,14 @@ BY_NGSPICE, WITHIN_K = 300, 5e-3
 WIDER_K = 4.0
 
 
-def too_kind(realised: Realised) -> Verdict:
+def too_kind(delivery: DeliveredDrive) -> Verdict:
     """A gate whose limits of temperature are wider by 4 K, and whose other limits are twice what they are."""
-    limits = realised.rig.limits
+    limits = delivery.rig.limits
     rules = tuple(
         replace(rule, limit=rule.limit + (WIDER_K if rule.upper else -WIDER_K) if rule.unit == "°C" else 2 * rule.limit)
         for rule in limits.rules
     )
-    return worst_case(replace(realised, rig=replace(realised.rig, limits=replace(limits, rules=rules))), 20.0)
+    return worst_case(replace(delivery, rig=replace(delivery.rig, limits=replace(limits, rules=rules))), 20.0)
 
 
 def test_a_dozen_drives_are_safe_as_written() -> None:

@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Rig, prepare, realise, worst_case
+from thermicon.circuit import Device, Drive, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import Prepared, pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.prepare import Prepared
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon, parse
 
@@ -66,11 +68,11 @@ def ready(text: str, rig: Rig, device: str = "dac-16") -> Prepared:
 
 
 def test_a_step_back_at_the_very_end_is_judged_with_the_current_it_leaves_on() -> None:
-    realised = realise(icon_of("icon down { warm by 5 °C at 2 °C/s; hold for 1 s; step to 32 °C }"), FEWER,
+    delivery = deliver(icon_of("icon down { warm by 5 °C at 2 °C/s; hold for 1 s; step to 32 °C }"), FEWER,
                        Device.load("dac-16"))  # fmt: skip
-    current = realised.delivered.current_A
+    current = delivery.delivered.current_A
     assert current[-1] == pytest.approx(current[0], abs=1e-3), "the drive ends with its rest"
-    found = worst_case(realised, 120.0)
+    found = worst_case(delivery, 120.0)
     assert found.after_C["last value held"] == pytest.approx(32.0, abs=0.6)
 
 
@@ -94,7 +96,7 @@ def test_what_is_unsafe_on_a_weak_driver_is_not_forced() -> None:
 
 
 def test_a_train_of_pulses_after_a_hold_is_seen_in_full(amp: Device) -> None:
-    found = worst_case(realise(train(10.0), strong(), amp), 120.0)
+    found = worst_case(deliver(train(10.0), strong(), amp), 120.0)
     rate = [one for one in found.checks if one.quantity == "rate of skin temperature"]
     assert found.colour == "red"
     broken = [one for one in rate if not one.passed]
@@ -104,7 +106,7 @@ def test_a_train_of_pulses_after_a_hold_is_seen_in_full(amp: Device) -> None:
 
 @pytest.mark.slow
 def test_a_train_after_five_minutes_is_seen_as_one_after_ten_seconds(amp: Device) -> None:
-    early, late = (worst_case(realise(train(hold_s), strong(), amp), 120.0) for hold_s in (10.0, 300.0))
+    early, late = (worst_case(deliver(train(hold_s), strong(), amp), 120.0) for hold_s in (10.0, 300.0))
     for one, other in zip(early.checks, late.checks, strict=True):
         if one.quantity == "rate of skin temperature":
             assert other.value == pytest.approx(one.value, rel=0.02)

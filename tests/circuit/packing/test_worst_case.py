@@ -6,9 +6,10 @@ from functools import cache
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Rig, gate, judge_safety, prepare, realise, worst_case
+from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.safety.gate import gate_set
 from thermicon.icons import load_library, parse
 
@@ -31,8 +32,8 @@ class TestWorstCase:
             "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
         )
         one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
-        assert judge_safety(one.realised.trace).colour == "amber"
-        assert one.verdict == worst_case(one.realised)
+        assert judge_safety(one.delivery.trace).colour == "amber"
+        assert one.verdict == worst_case(one.delivery)
         assert one.verdict.colour == "red"
         (refusal,) = (refusal for refusal in one.refusals if refusal.kind == "unsafe")
         assert "with contact −30 %, ambient −3 K, gain +10 %, heat sink +1 K, " in str(refusal)
@@ -40,11 +41,11 @@ class TestWorstCase:
             pack([one], CSV)
 
     def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
-        found = ready().realised
+        found = ready().delivery
         assert worst_case(found) == gate(found.delivered, RIG)
 
     def test_a_bridge_rests_and_ends_with_means(self) -> None:
-        found = ready(device="pwm-h-bridge-10").realised
+        found = ready(device="pwm-h-bridge-10").delivery
         (rest, *_) = found.played.command  # type: ignore[union-attr]
         means = Drive(found.played.time_s, 1.5 * found.played.command, held=True)  # type: ignore[union-attr]
         assert found.device.most("carrier frequency") >= 100.0, "too fast for a plate to follow"
@@ -52,12 +53,12 @@ class TestWorstCase:
         assert worst_case(found) == by_means
 
     def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
-        found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").realised)
+        found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").delivery)
         assert (found.drift_C, found.scenarios, len(found.checks)) == (None, 20, 21)
         lowest = min(check.value for check in found.checks if check.quantity == "display" and not check.upper)
         assert lowest == pytest.approx(26.0, abs=0.06), "the set-point, in the corners too"
         coldest = next(check for check in found.checks if check.quantity == "skin surface" and not check.upper)
-        given = realise(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
+        given = deliver(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
         assert coldest.value < given - 0.1
         assert coldest.scenario.startswith("contact −30 %")
 
@@ -66,7 +67,7 @@ class TestWorstCase:
             "cue 1\nset s { control display\n baseline 32 °C }\n"
             "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
         )
-        found = realise(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
+        found = deliver(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
         assert judge_safety(found.trace).colour == "red", "the thermode follows its set-points, whatever the rig can"
         assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
@@ -77,13 +78,13 @@ class TestWorstCase:
         assert refusal.kind == "unreachable"
         one = ready(device="qst-tcs2", form="tcs2-serial", rig=weak)
         assert (one.refusals, one.warnings) == ((), ())
-        assert one.realised.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
+        assert one.delivery.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
 
     def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
         text = (
             "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 29 °C at 2 °C/s\n return at 2 °C/s }\n"
         )
         rig = RIG.with_(**{"module.seebeck_V_per_K": 0.026})
-        found = worst_case(realise(parse(text)["a"], rig, Device.load("qst-tcs2")))
+        found = worst_case(deliver(parse(text)["a"], rig, Device.load("qst-tcs2")))
         check = next(check for check in found.findings if check.quantity == "display")
         assert (check.value, check.scenario) == (pytest.approx(3.0), "the rig as given, followed at once")

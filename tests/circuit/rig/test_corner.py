@@ -4,11 +4,12 @@ import math
 
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, steady_state
+from thermicon.circuit import Rig, RigError, rig_names
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.thermode import contact_corners
 from thermicon.circuit.solver.network import network_of, skin_network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 THENAR = Rig.load("thenar")
 
@@ -20,7 +21,7 @@ def test_inside_the_bounds_of_a_file_a_corner_is_what_with_gives(name: str) -> N
     assert len(corners) == (65 if rig.thermode is None else 5)
     for corner in (corners[1], corners[-1]):
         changes = {
-            "contact.resistance_m2K_per_W": rig.contact.resistance_m2K_per_W * (1 + corner.contact_relative),
+            "contact.resistance_m2K_per_W": rig.contact.resistance_m2K_per_W * (1 + corner.contact_resistance_relative),
             "ambient.temperature_C": rig.ambient.temperature_C + corner.ambient_K,
         }
         if rig.thermode is None:
@@ -62,7 +63,7 @@ def test_every_factor_changes_what_it_names_and_makes_another_rig() -> None:
     assert (there.heat_sink.temperature_C, there.deep_C) == (42.0, THENAR.deep_C)
     assert there != THENAR  # caches are keyed by the rig
     # without a current the display moves with the heat sink by the share of the skin's path to it
-    rest, warm = (steady_state(network_of(rig), 0.0) for rig in (THENAR, perturbed(THENAR, heat_sink_K=2.0)))
+    rest, warm = (state_under_current(network_of(rig), 0.0) for rig in (THENAR, perturbed(THENAR, heat_sink_K=2.0)))
     assert 0 < (warm - rest).max() <= 2.0
 
 

@@ -6,10 +6,11 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, simulate, steady_state
+from thermicon.circuit import Rig, RigError, rig_names, simulate
 from thermicon.circuit.packing.refusal import needed_A
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.circuit.studies.paper import coldest_display_C
 from thermicon.icons import load_library
 
@@ -78,14 +79,14 @@ def test_receptors_are_nodes_of_the_mesh(name: str) -> None:
 def test_receptor_depths_in_both_conventions() -> None:
     depths = THENAR.receptor_depths()
     assert (depths.cold_mm, depths.warm_mm) == (0.15, 0.30)
-    assert (depths.cold_below_horny_mm, depths.warm_below_horny_mm) == (-0.02, 0.13)
+    assert (depths.cold_below_corneum_mm, depths.warm_below_corneum_mm) == (-0.02, 0.13)
     base = THENAR.with_(**{"skin.depth_from": "stratum corneum"})
     assert base.receptor_depths() == type(depths)(0.32, 0.47, 0.15, 0.30)
     assert base.skin.cold_receptor_m == pytest.approx(0.32e-3)
     thick = base.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
     assert thick.receptor_depths() == Rig.load("fingertip").receptor_depths()
     assert base.with_(**{"skin.depth_from": "surface"}).receptor_depths() == depths
-    assert SHANI.receptor_depths().cold_below_horny_mm is None
+    assert SHANI.receptor_depths().cold_below_corneum_mm is None
 
 
 @pytest.mark.parametrize(
@@ -135,7 +136,9 @@ def test_what_shani2021_says_of_itself_is_so() -> None:
     cue = load_library("cooling-step-skin")["cooling-step"]
     slab = 0.081e-3 / 0.24 + 2e-3 / 0.45
     low, high = ((37 / slab + film * 24) / (1 / slab + film) for film in (12, 8))
-    hot, hotter = (network_of(rig).read(steady_state(network_of(rig), -0.5), "skin_C") for rig in (SHANI, THENAR))
+    hot, hotter = (
+        network_of(rig).read(state_under_current(network_of(rig), -0.5), "skin_C") for rig in (SHANI, THENAR)
+    )
     cools = simulate(cue, SHANI.with_(**{"driver.current_min_A": 0})).outcome
     both = simulate(cue, SHANI).outcome
     assert cools is not None

@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Limits, Rig, design, gate, hold, judge_safety, simulate, simulate_current
+from thermicon.circuit import Drive, Limits, Rig, design, gate, judge_safety, simulate, simulate_current, steady_state
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.checks import findings_of
 from thermicon.circuit.safety.endings import ENDINGS
@@ -36,7 +36,7 @@ STEP = load_library("six-icons")["cooling-step"]
 
 def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Drive:
     """A drive that holds a level from before its start until 60 s after its end."""
-    current, _ = hold(rig, control, level_C)
+    current, _ = steady_state(rig, control, level_C)
     return Drive([0, time_s], [current, current])
 
 

@@ -5,7 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Limits, Rig, gate, realise, worst_case
+from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate
+from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set
@@ -164,8 +165,8 @@ def test_a_pause_that_cannot_be_is_told() -> None:
 def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_is_not() -> None:
     fewer = {f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates")}
     rig = THENAR.with_(**fewer, **{"uncertainty.reason": "a test in fewer corners"})
-    realised = realise(parse(HOT)["glow"], rig, Device.load("dac-16"))
-    usual, soon = worst_case(realised), worst_case(realised, 5.0)
+    delivery = deliver(parse(HOT)["glow"], rig, Device.load("dac-16"))
+    usual, soon = worst_case(delivery), worst_case(delivery, 5.0)
     assert usual.colour in ("green", "amber")
     assert usual.repeated.recovery_s == usual.repeated.pause_s > 60.0
     assert soon.colour == "red"

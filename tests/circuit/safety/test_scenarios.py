@@ -6,22 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from thermicon.circuit import (
-    Drive,
-    DriveError,
-    Rig,
-    RigError,
-    corners_of,
-    design,
-    play_out,
-    simulate_current,
-    steady_state,
-)
+from thermicon.circuit import Drive, DriveError, Rig, RigError, design, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.endings import ENDINGS
+from thermicon.circuit.safety.scenarios import play_out
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of, switched
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
@@ -60,7 +53,7 @@ def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
     assert found.values.shape == (4, 3, 65, len(found.time_s))
     for c, corner in enumerate(found.corners):
         gain = 1.0 + corner.gain_relative
-        start = steady_state(network_of(corner.rig), 0.05 * gain)
+        start = state_under_current(network_of(corner.rig), 0.05 * gain)
         for e, last in enumerate((drive.current_A[-1], 0.0)):
             times = np.concatenate([drive.time_s, [drive.time_s[-1] + 1e-6, drive.time_s[-1] + 60]])
             whole = Drive(times, gain * np.concatenate([drive.current_A, [last, last]]), held)
@@ -136,7 +129,7 @@ def test_power_off_by_an_independent_solver() -> None:
         heat[3:] -= net.perfusion_W_per_K * (state[3:] - net.deep_C)
         return np.asarray(heat / capacity)
 
-    start = steady_state(net, CUE.current_A[0])
+    start = state_under_current(net, CUE.current_A[0])
     begin = run_to_the_end(rig, start)
     solved = solve_ivp(slopes, (0, 60), np.concatenate([[sink], begin[:-1]]), method="BDF", rtol=1e-9, atol=1e-9)
     ours = found.values[:, 2, 0, -1]

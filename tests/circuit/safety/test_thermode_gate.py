@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Limits, Rig, realise, worst_case
-from thermicon.circuit.packing.worstcase import ways_of, worst_cases
-from thermicon.circuit.rig.skin import Array
+from thermicon.circuit import Device, Limits, Rig, deliver
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.packing.worstcase import ways_of, worst_case, worst_cases
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.safety.thermode import Shown, Under
@@ -130,20 +130,20 @@ def test_a_thermode_is_never_refused_for_the_heat_sink_of_a_rig(sink_C: float, r
     text = "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 4 °C at 2 °C/s\n return at 2 °C/s }\n"
     hot = THENAR.with_(**{"heat_sink.temperature_C": sink_C, "heat_sink.resistance_K_per_W": resistance})
     icon = parse(text)["a"]
-    found, plain = (worst_case(realise(icon, rig, TCS), 60.0) for rig in (hot, THENAR))
+    found, plain = (worst_case(deliver(icon, rig, TCS), 60.0) for rig in (hot, THENAR))
     assert (found.colour, found.checks) == ("green", plain.checks)
     assert not any("hot plate" in one.quantity for one in found.checks)
 
 
 def test_a_lagging_thermode_is_followed_in_both_ways_until_it_has_arrived() -> None:
     text = "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 6 °C at 20 °C/s\n return at 20 °C/s }\n"
-    realised = realise(parse(text)["a"], THENAR, TCS)
-    once, late = ways_of(realised)
+    delivery = deliver(parse(text)["a"], THENAR, TCS)
+    once, late = ways_of(delivery)
     assert (once.way, late.way) == ("followed at once", "followed with its lag")
     assert late.display_C[-1] == once.display_C[-1]
     assert late.display_C.min() > once.display_C.min() + 0.3
     assert late.end_s == pytest.approx(once.end_s + late.settling_s)
-    (found,) = worst_cases([realised], 30.0)
+    (found,) = worst_cases([delivery], 30.0)
     assert found.scenarios == 2 * 2 * 5
     rate = next(one for one in found.checks if one.quantity == "rate of skin temperature" and not one.upper)
     assert "followed at once" in rate.scenario

@@ -18,8 +18,8 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.parts import Contact
 from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, Column, Layer, Skin, column_of
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
-from thermicon.circuit.solver.network import PROBES, SKIN, Network, network_of, network_on
-from thermicon.circuit.solver.steady import steady_state
+from thermicon.circuit.solver.network import RECORDED, SKIN, Network, network_of, network_on
+from thermicon.circuit.solver.steady import state_under_current
 
 REFERENCE = tomllib.loads((Path(__file__).parents[2] / "reference" / "closed_forms.toml").read_text(encoding="utf-8"))
 VALUES: list[dict[str, Any]] = REFERENCE["value"]
@@ -101,7 +101,7 @@ def two_bodies(resistance: float, fine: int) -> np.ndarray:
     n, per = len(capacity), 1 / resistance if resistance else 0.0
     column = Column(np.arange(n) * 1.0, capacity, np.zeros(n), np.concatenate(between))
     readings = np.array([face - 1, face - 1]), np.array([[0.0, 1.0, 0.0], [per, -per, 0.0]])
-    return played(network_on(skin, column, 32.0), start, 8.0, extra=readings)[len(PROBES) :]
+    return played(network_on(skin, column, 32.0), start, 8.0, extra=readings)[len(RECORDED) :]
 
 
 def slowest(network: Network, count: int) -> np.ndarray:
@@ -121,7 +121,7 @@ def solved(case: str, fine: int) -> Any:
         film_ = {"contact.resistance_m2K_per_W": 0.1, "skin.cold_receptor_mm": 5.0, "skin.warm_receptor_mm": 6.0}
         stiff = {"module.thermal_resistance_K_per_W": 1e-12}
         network = circuit(uniform(BODY["perfusion_per_s"], deep_C=37.0, **held, **film_, **stiff), fine)
-        return network, steady_state(network, 0.0)
+        return network, state_under_current(network, 0.0)
     if case == "B9":
         return slowest(circuit(uniform(thickness_mm=2.0), fine, display_is_face=True), 1)
     if case == "B10":
@@ -143,7 +143,7 @@ def ours(row: dict[str, Any], fine: int) -> float:
         probe = "heat_flow_cold_receptor_W_per_m2" if depth else "heat_flow_skin_W_per_m2"
     if case == "B6":
         return found[0].read(found[1], probe)
-    return float(found[PROBES.index(probe), round(row["time_s"] * RATE)])
+    return float(found[RECORDED.index(probe), round(row["time_s"] * RATE)])
 
 
 def name(row: dict[str, Any]) -> str:

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, steady_state
+from thermicon.circuit import Rig
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.solver.batch_inputs import Intervals, State, run_on
 from thermicon.circuit.solver.constant_current import READ, ConstantCurrent
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 THENAR = Rig.load("thenar")
 LANES = np.arange(4, dtype=np.int64)
@@ -37,7 +38,7 @@ def test_it_comes_to_the_steady_state_of_the_closed_form(current_A: float) -> No
     few = ensemble()
     late = few.modes(current_A).after(LANES, few.at_rest(0.1).nodes_C, 1e5)
     for lane, corner in enumerate(few.corners):
-        closed = steady_state(network_of(corner.rig), current_A * float(few.gain[lane]))
+        closed = state_under_current(network_of(corner.rig), current_A * float(few.gain[lane]))
         assert np.abs(late[lane] - closed).max() < 1e-6
 
 

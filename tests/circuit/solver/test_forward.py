@@ -6,8 +6,8 @@ from scipy.linalg import expm
 
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.solver.network import PROBES, Network, network_of
-from thermicon.circuit.solver.steady import steady_state
+from thermicon.circuit.solver.network import RECORDED, Network, network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 RIGS = [Rig.load("thenar"), Rig.load("shani2021")]
 
@@ -40,8 +40,8 @@ def test_half_an_ampere_held_agrees_with_the_matrix_exponential(rig: Rig) -> Non
     network = network_of(rig)
     matrix, source = matrices(network, 0.5)
     steady, decay = -np.linalg.solve(matrix, source), expm(matrix * 0.01)
-    state = steady_state(network, 0.0)[:-1]
-    worst = dict.fromkeys(PROBES[:5], 0.0)
+    state = state_under_current(network, 0.0)[:-1]
+    worst = dict.fromkeys(RECORDED[:5], 0.0)
     for row in range(1, len(trace.time_s)):
         full = np.append(state, network.deep_C)
         for probe in worst:
@@ -58,5 +58,5 @@ def test_a_constant_current_stays_at_its_steady_state(rig: Rig, current: float) 
     network = network_of(rig)
     matrix, source = matrices(network, current)
     full = np.append(-np.linalg.solve(matrix, source), network.deep_C)
-    for probe in PROBES[:5]:
+    for probe in RECORDED[:5]:
         assert np.abs(getattr(trace, probe) - network.read(full, probe)).max() < 1e-6, probe

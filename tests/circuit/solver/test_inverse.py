@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigError, Trace, simulate
-from thermicon.circuit.solver.steady import hold
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, parse
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
@@ -97,7 +97,7 @@ def test_more_current_than_cools_is_never_used() -> None:
 def test_current_control_plays_its_own_corners_from_the_holding_current() -> None:
     text = "cue 1\nset s {\n control current\n}\nicon pump {\n to 0.5 A at 1 A/s\n hold for 2 s\n return at 1 A/s\n}"
     trace = simulate(parse(text).icons[0], THENAR)
-    start, _ = hold(THENAR, "display", 32.0)
+    start, _ = steady_state(THENAR, "display", 32.0)
     assert trace.current_A[0] == pytest.approx(start)
     assert trace.current_A.max() == pytest.approx(0.5)
     assert trace.time_s[-1] == pytest.approx(2 * (0.5 - start) + 2)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from thermicon.circuit import Drive, InputError, Rig, RigError, Trace, netlist, simulate, simulate_current
 from thermicon.circuit.delivery.netlist import EDGE_S
 from thermicon.circuit.solver.inverse import design
-from thermicon.circuit.solver.network import PROBES
+from thermicon.circuit.solver.network import RECORDED
 from thermicon.icons import load_library, parse
 
 Tool = Callable[[str], str]
@@ -58,7 +58,7 @@ def apart(trace: Trace, table: np.ndarray, drive: Drive) -> Apart:
     calm = drive.at(behind + 2 * EDGE_S) == drive.at(time[:-1]) if drive.held else np.full(len(behind), True)
     current, voltage, *probes = table[:, 1:].T
     far: dict[bool, list[float]] = {True: [], False: []}
-    for probe, theirs in zip(PROBES, probes, strict=True):
+    for probe, theirs in zip(RECORDED, probes, strict=True):
         ours = getattr(trace, probe)
         difference = float(np.abs(np.interp(time, table[:, 0], theirs) - ours).max())
         kelvin = probe.endswith("_C")

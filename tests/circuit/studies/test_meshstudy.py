@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, hold
+from thermicon.circuit import Drive, Rig, RigError, steady_state
 from thermicon.circuit.studies.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
 from thermicon.circuit.studies.paper import cooling_step
 from thermicon.icons import parse
@@ -101,7 +101,7 @@ def test_a_cue_that_prescribes_current_plays_it_on_every_mesh() -> None:
     )
     (push,) = parse(text).icons
     found = mesh_study(PAPER, push, meshes=[SHIPPED])
-    rest = float(0.5 - hold(PAPER, "display", 32.0)[0])
+    rest = float(0.5 - steady_state(PAPER, "display", 32.0)[0])
     assert found.time_s[-1] == pytest.approx(2.0 + rest, abs=1e-6)  # it returns to the current that holds the rest
     assert np.abs(found.error_K).max() < 2e-3
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate_current, steady_state
+from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.studies.account import account
+from thermicon.circuit.solver.steady import state_under_current
 from thermicon.circuit.studies.paper import (
     coldest_display_C,
     controlled_cue,
@@ -15,6 +15,7 @@ from thermicon.circuit.studies.paper import (
     printed,
     thermistors,
 )
+from thermicon.circuit.studies.paper_differences import paper_differences
 from thermicon.circuit.studies.studydraw import stacked_figure
 
 
@@ -46,7 +47,7 @@ def test_the_limit_is_that_of_the_lowest_temperature_that_the_paper_states() -> 
     assert settled == pytest.approx(coldest_display_C(rig), abs=1e-3)
     # the plates' energy balance with pencil: what the module absorbs comes through contact, epidermis and dermis
     net = network_of(rig)
-    state = steady_state(net, held)
+    state = state_under_current(net, held)
     cold, hot = (net.read(state, name) for name in ("display_C", "hot_plate_C"))
     brought = (37.0 - cold) * 9e-4 / (5.4e-4 + 0.081e-3 / 0.24 + 2e-3 / 0.45)
     assert rig.module.heat_absorbed_W(held, cold, hot) == pytest.approx(brought, rel=1e-6)
@@ -72,7 +73,7 @@ def test_the_miss_falls_with_the_current_limit() -> None:
 
 
 def test_a_drive_that_only_cools_misses_the_return_by_about_4_K() -> None:
-    (point,) = (point for point in account() if point.topic == "directions of current")
+    (point,) = (point for point in paper_differences() if point.topic == "directions of current")
     assert "with currents of 0 A and more the skin misses by 4." in point.ours
 
 
@@ -100,7 +101,7 @@ def test_the_third_thermistor_depends_on_a_distance_nobody_printed() -> None:
 
 
 def test_the_account_is_made_of_sentences_with_numbers() -> None:
-    points = account()
+    points = paper_differences()
     assert [point.topic for point in points if point.agrees] == ["shape under control"]
     for point in points:
         assert "nan" not in str(point)

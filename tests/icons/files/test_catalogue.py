@@ -1,4 +1,4 @@
-"""Every example of the catalogue of errors does what it promises; as a script, this file writes its page in docs/."""
+"""Every example of the catalogue of errors does what it promises. As a script: writes docs/reference/errors.md."""
 
 import re
 from pathlib import Path

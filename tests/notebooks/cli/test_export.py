@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 
 from tests.notebooks.surerig import SURE
-from thermicon.circuit import Device, Rig, realise
+from thermicon.circuit import Device, Rig, deliver
 from thermicon.icons import read_cue
 
 Cli = Callable[..., Any]
@@ -61,7 +61,7 @@ def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_pat
     assert cli("export", two, "--icon", "warm-step", "--to", "csv", "-o", tmp_path / "out", *SURE).exit_code == 0
     trace = tmp_path / "trace.csv"
     assert cli("simulate", "--current", tmp_path / "out" / "warm-step.csv", "--hold", "-o", trace, *SURE).exit_code == 0
-    ours = realise(read_cue(str(two))["warm-step"], Rig.load("thenar"), Device.load("dac-16")).trace.to_frame()
+    ours = deliver(read_cue(str(two))["warm-step"], Rig.load("thenar"), Device.load("dac-16")).trace.to_frame()
     theirs = pd.read_csv(trace)
     for column in ("time_s", "current_A", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
         # nine digits are written

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Rig, hold, nearest_reachable
+from thermicon.circuit import Rig, nearest_reachable, steady_state
 from thermicon.icons import read_cue
 
 Cli = Callable[..., Any]
@@ -103,7 +103,7 @@ def test_a_miss_beside_a_file_says_how_to_mend_it(cli: Cli, two: Path, tmp_path:
 def test_a_designed_drive_replays_exactly_when_held(cli: Cli, two: Path, tmp_path: Path) -> None:
     designed = pd.read_csv(io.StringIO(cli("simulate", two, "--icon", "cool-step", "-o", "-").stdout))
     # A drive starts steady with its first current, so one period at the resting current goes ahead.
-    resting_A, _ = hold(Rig.load("thenar"), "display", 32.0)
+    resting_A, _ = steady_state(Rig.load("thenar"), "display", 32.0)
     lead = pd.DataFrame({"time_s": [0.0], "current_A": [resting_A]})
     shifted = designed[["time_s", "current_A"]].assign(time_s=designed["time_s"] + 0.01)
     drive = tmp_path / "drive.csv"

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Rig, realise
+from thermicon.circuit import Device, Drive, Rig, deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, c_array, keysight_arb, load_format
 from thermicon.circuit.delivery.formats.form import check_name
@@ -139,7 +139,7 @@ def test_a_device_that_would_fill_the_memory_is_refused(tmp_path: Path) -> None:
         rate_of(fast, 100.0, 8.0)
     wide = device(tmp_path / "d.toml", least=1e9)
     with pytest.raises(DeviceError, match="the fewest that it plays are 999,999,999 samples"):
-        realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), wide)
+        deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), wide)
 
 
 def test_a_period_that_wraps_is_refused(tmp_path: Path) -> None:
@@ -169,7 +169,7 @@ def test_commands_of_a_thermode_count_in_its_own_ticks(tmp_path: Path) -> None:
     (tmp_path / "d.toml").write_text(text.replace("value = 0.01\n", "value = 0.02\n"), encoding="utf-8")
     thermode = Device.load(tmp_path / "d.toml")
     assert thermode.most("tick") == 0.02
-    played = realise(load_library("six-icons")["cooling-step"], Rig.load("thenar"), thermode)
+    played = deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), thermode)
     with pytest.raises(FormatError, match=r"counts ticks of 10 ms .* has 20 ms"):
         load_format("tcs2-serial").write(played)
 

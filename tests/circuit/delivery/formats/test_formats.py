@@ -15,17 +15,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Device, DriveError, Realised, Rig, Samples, read_drive, realise, simulate_current
+from thermicon.circuit import DeliveredDrive, Device, DriveError, Rig, deliver, read_drive, simulate_current
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
 from thermicon.circuit.delivery.formats.c_array import identifier
+from thermicon.circuit.delivery.samples import Samples
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
 ICON = load_library("six-icons")["cooling-step"]
 
 
-def played(format_name: str, device: str | None = None) -> tuple[Realised, Samples]:
-    found = realise(ICON, RIG, Device.load(device or load_format(format_name).device))
+def played(format_name: str, device: str | None = None) -> tuple[DeliveredDrive, Samples]:
+    found = deliver(ICON, RIG, Device.load(device or load_format(format_name).device))
     assert isinstance(found.played, Samples)
     return found, found.played
 
@@ -73,7 +74,7 @@ class TestCsv:
         scale = [
             replace(record, unit="A", low=-2.0, high=2.0) if record.unit == "V" else record for record in volts.records
         ]
-        found = realise(ICON, RIG, replace(volts, driven_by="amperes", records=tuple(scale)))
+        found = deliver(ICON, RIG, replace(volts, driven_by="amperes", records=tuple(scale)))
         path = tmp_path / "drive.csv"
         path.write_bytes(load_format("csv").write(found))
         assert path.read_text().startswith("time_s,current_A,command_A,code,event\n")
@@ -84,7 +85,7 @@ class TestCsv:
     @pytest.mark.parametrize("update", [100, 30])
     def test_a_replay_is_the_realised_trace(self, device: str, update: int, tmp_path: Path) -> None:
         rig = RIG.with_(**{"driver.update_Hz": update})
-        found = realise(ICON, rig, Device.load(device))
+        found = deliver(ICON, rig, Device.load(device))
         path = tmp_path / "drive.csv"
         path.write_bytes(load_format("csv").write(found))
         again = simulate_current(read_drive(path, hold=True), rig)
@@ -220,7 +221,7 @@ class TestWav:
         self, rate: tuple[float, float], update: float, frame_rate: int, each: int
     ) -> None:
         slow = _slow(*rate)
-        found = realise(ICON, RIG.with_(**{"driver.update_Hz": update}), slow)
+        found = deliver(ICON, RIG.with_(**{"driver.update_Hz": update}), slow)
         if not each:
             with pytest.raises(
                 FormatError, match=r"no rate that sound interfaces play \(8,000 to 192,000 frames a second"
@@ -250,7 +251,7 @@ class TestWav:
             load_format("wav").write(played("wav", "keysight-33500b")[0])
 
     def test_a_rate_that_fits_no_sound_interface_is_refused_with_the_cure(self) -> None:
-        found = realise(ICON, RIG.with_(**{"driver.update_Hz": 61.7}), _slow(1, 500))
+        found = deliver(ICON, RIG.with_(**{"driver.update_Hz": 61.7}), _slow(1, 500))
         words = (
             r"wav: no rate that sound interfaces play .* is a whole multiple of the 61\.7 Hz of slow; set "
             r"driver\.update_Hz to 100, or use dc-coupled-audio"
@@ -299,7 +300,7 @@ class TestCArray:
 
 def test_an_icon_in_amperes_has_levels_in_amperes() -> None:
     icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
-    found = realise(icon, RIG, Device.load("dac-16"))
+    found = deliver(icon, RIG, Device.load("dac-16"))
     table = pd.read_csv(io.BytesIO(load_format("csv").write(found)))
     assert table["event"].dropna().tolist() == [
         "rest",

@@ -9,15 +9,17 @@ import io
 import json
 import re
 import sys
+from functools import cache
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Device, Realised, Rig, Setpoints, prepare, realise
+from thermicon.circuit import DeliveredDrive, Device, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.delivery.setpoints import Setpoints
+from thermicon.circuit.packing.pack import pack
 from thermicon.icons import Corners, Icon, load_library, parse
 
 RIG = Rig.load("thenar")
@@ -55,22 +57,22 @@ class TestSerial:
     @pytest.mark.parametrize("name", ["cooling-step", "cold-to-warm", "double-dip"])
     def test_a_profile_read_back_is_the_icon(self, name: str) -> None:
         icon = load_library("six-icons")[name]
-        found = realise(icon, RIG, THERMODE)
+        found = deliver(icon, RIG, THERMODE)
         baseline, pairs = read_profile(load_format("tcs2-serial").write(found).decode("ascii"))
         times = np.cumsum([0.0, *(duration for duration, _ in pairs)])
         levels = [baseline, *(level for _, level in pairs)]
-        corners = icon.lower()
+        corners = icon.corners()
         grid = np.linspace(0, corners.duration_s, 200)
         assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
         assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)
 
     def test_cooling_is_timed_as_warming_is(self) -> None:
         write = load_format("tcs2-serial").write
-        cool, warm = (read_profile(write(realise(icon_of(way), RIG, THERMODE)).decode()) for way in ("cool", "warm"))
+        cool, warm = (read_profile(write(deliver(icon_of(way), RIG, THERMODE)).decode()) for way in ("cool", "warm"))
         assert [duration for duration, _ in cool[1]] == [duration for duration, _ in warm[1]] == [2.0, 2.0, 2.0]
 
     def test_a_quarter_of_a_degree_a_second_is_no_fifth(self) -> None:
-        found = realise(icon_of("warm", (0.25, 0.25)), RIG, THERMODE)
+        found = deliver(icon_of("warm", (0.25, 0.25)), RIG, THERMODE)
         _, pairs = read_profile(load_format("tcs2-serial").write(found).decode())
         ramp = sum(duration for duration, _ in pairs[:3])
         assert ramp == pytest.approx(6 / 0.25)
@@ -79,25 +81,25 @@ class TestSerial:
 class TestProtocol:
     """The protocol file."""
 
-    def read(self, found: Realised) -> configparser.ConfigParser:
+    def read(self, found: DeliveredDrive) -> configparser.ConfigParser:
         parser = configparser.ConfigParser()
         parser.optionxform = str  # type: ignore[assignment,method-assign]
         parser.read_string(load_format("tcs2-protocol-ini").write(found).decode("ascii"))
         return parser
 
     def test_a_cooling_step_lasts_as_long_as_a_warming_one(self) -> None:
-        zones = [self.read(realise(icon_of(way), RIG, THERMODE))["step3_zone1"] for way in ("cool", "warm")]
+        zones = [self.read(deliver(icon_of(way), RIG, THERMODE))["step3_zone1"] for way in ("cool", "warm")]
         assert [zone["temperature"] for zone in zones] == ["24.000", "36.000"]
         for zone in zones:
             # a signed rise time would have made 0.000 of the cooling one
             assert (zone["duration"], zone["speed"], zone["return"]) == ("4.000", "3.000", "3.000")
 
     def test_no_rate_is_truncated(self) -> None:
-        zone = self.read(realise(icon_of("cool", (0.25, 0.35)), RIG, THERMODE))["step3_zone5"]
+        zone = self.read(deliver(icon_of("cool", (0.25, 0.35)), RIG, THERMODE))["step3_zone5"]
         assert (zone["speed"], zone["return"], zone["duration"]) == ("0.250", "0.350", "26.000")
 
     def test_its_steps_are_baseline_trigger_and_stimulation(self) -> None:
-        parser = self.read(realise(icon_of("warm"), RIG, THERMODE))
+        parser = self.read(deliver(icon_of("warm"), RIG, THERMODE))
         assert int(parser["protocol"]["stepsNumber"]) == 3
         assert [parser[f"step{k}"]["stepTypeText"] for k in (1, 2, 3)] == ["BASELINE", "WAIT", "STIMULATE"]
         assert [parser[f"step{k}"]["stepType"] for k in (1, 2, 3)] == ["6", "2", "0"]
@@ -114,14 +116,14 @@ class TestProtocol:
         assert step.rise_K_per_s == 300.0
 
     def test_another_shape_is_refused(self) -> None:
-        found = realise(load_library("six-icons")["double-dip"], RIG, THERMODE)
+        found = deliver(load_library("six-icons")["double-dip"], RIG, THERMODE)
         with pytest.raises(
             FormatError, match=r"one ramp, one plateau and one return .* another shape: use tcs2-serial"
         ):
             load_format("tcs2-protocol-ini").write(found)
 
     def test_a_skin_cue_is_refused(self) -> None:
-        found = realise(icon_of("cool", control="skin"), RIG, THERMODE)
+        found = deliver(icon_of("cool", control="skin"), RIG, THERMODE)
         with pytest.raises(FormatError, match="needs an icon that prescribes the display; a prescribes the skin"):
             load_format("tcs2-protocol-ini").write(found)
 
@@ -129,7 +131,9 @@ class TestProtocol:
 class TestPsychopy:
     """Conditions, drives and player."""
 
-    def packed(self, device: str) -> dict[str, bytes]:
+    @staticmethod
+    @cache
+    def packed(device: str) -> dict[str, bytes]:
         form = load_format("psychopy")
         icons = [load_library("six-icons")[name] for name in ("warming-step", "double-dip")]
         return pack([prepare(icon, RIG, Device.load(device), form) for icon in icons], form)
@@ -181,6 +185,6 @@ class TestPsychopy:
 
 
 def test_set_points_of_a_thermode_are_segments() -> None:
-    found = realise(icon_of("cool"), RIG, THERMODE)
+    found = deliver(icon_of("cool"), RIG, THERMODE)
     assert isinstance(found.played, Setpoints)
     assert found.played.level_C.tolist() == pytest.approx([30.0, 24.0, 24.0, 30.0])

@@ -14,11 +14,12 @@ from typing import Any
 import pytest
 
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
-from thermicon.circuit import Device, Record, Rig, prepare
+from thermicon.circuit import Device, Rig, prepare
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
-from thermicon.circuit.packing.export import pack
+from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.records import Record
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
@@ -86,7 +87,7 @@ class Bench:
         form = load_format("psychopy")
         ready = prepare(ICON, RIG, device, form, gate=GreenVerdict)
         self.files = pack([ready], form)
-        self.drive = form.file_name(ready.realised)
+        self.drive = form.file_name(ready.delivery)
         (folder / self.drive).write_bytes(self.files[self.drive])
         self.path = str(folder / self.drive)
         self.clock = Clock()
@@ -280,4 +281,4 @@ class TestMustPrevent:
         form = load_format("c-array")
         ready = prepare(ICON, RIG, Device.load("dac-12"), form, gate=GreenVerdict)
         assert form.player is not None
-        assert set(form.player([Played(ready.realised, "a.h", "a.json")], MUST)) == set(form.set_files)
+        assert set(form.player([Played(ready.delivery, "a.h", "a.json")], MUST)) == set(form.set_files)

@@ -1,0 +1,152 @@
+"""What a device makes of a cue: quantised, held, limited, and simulated again.
+
+The file of a device that plays samples begins with the rest: for one update (`lead_s`) the current or duty that holds
+the baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from thermicon.icons import Icon
+
+from ..arrays import Array
+from ..inputs import signed
+from ..rig.rig import Rig
+from ..solver.batch_inputs import bank_of, run_follow
+from ..solver.drive import Drive
+from ..solver.inverse import Design, design
+from ..solver.pwm import steady_of
+from ..solver.simulate import duration_s, simulate_current
+from ..solver.steady import steady_state
+from ..solver.trace import Trace
+from .delivered_drive import DeliveredDrive, Narrowed
+from .device import Device
+from .regulated import deliver_setpoints, traces_of_setpoints
+from .samples import Samples, current_of, led, rate_of, sample, within
+from .setpoints import Setpoints
+from .temperatures import deliver_temperatures, designed_until, follow_samples
+
+BRIDGE_ROUNDS = 3
+"""Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
+
+
+__all__ = ["Narrowed", "DeliveredDrive", "designed_until", "followed", "deliver", "start_of", "traces_until"]
+
+
+def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> DeliveredDrive:
+    """Return what a device makes of a cue on a rig; the traces have `rate_Hz` rows a second.
+
+    Raises RigError where the baseline cannot be held, DeviceError where the device cannot play the cue at all.
+
+    >>> from thermicon.icons import load_library
+    >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
+    DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
+    """
+    if device.driven_by == "set-points":
+        return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
+    if device.driven_by == "temperatures":
+        return deliver_temperatures(icon, rig, device, tail_s, rate_Hz)
+    end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
+    plan = design(icon, rig, end)
+    rate = rate_of(device, requested, end)
+    narrow = within(device, rig)
+    best = plan if narrow is rig else design(icon, narrow, end)
+    possible = led(best, end, rate)
+    model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
+    samples, told = _sampled(device, rig, possible, rate, model)
+    narrowed = _narrowed(device, rig, narrow, plan, best)
+    if narrowed is not None:
+        told = (narrowed.text, *told)
+    designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
+    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
+    found = DeliveredDrive(
+        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
+        model, plan.outcome, told, None, narrowed,
+    )  # fmt: skip
+    return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
+
+
+def _sampled(
+    device: Device, rig: Rig, possible: Drive, rate_Hz: float, model: Trace
+) -> tuple[Samples, tuple[str, ...]]:
+    """The codes of a drive; those of a bridge also make up for the heat that its hotter hot plate lets back."""
+    hotter = np.zeros_like(model.time_s)
+    samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    if device.driven_by != "duty" or device.duty_rule != "equal heat":
+        return samples, told
+    for _ in range(BRIDGE_ROUNDS):
+        drive = current_of(device, rig, samples)
+        hot = simulate_current(drive, rig, start_C=_start_of(device, rig, samples))
+        hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
+        samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    return samples, told
+
+
+def start_of(delivery: DeliveredDrive) -> Array | None:
+    """State in °C from which a delivered drive starts; None: the steady state of its first current."""
+    return _start_of(delivery.device, delivery.rig, delivery.played)
+
+
+def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
+    if device.driven_by != "duty" or isinstance(played, Setpoints):
+        return None
+    low, high = device.interval("output range")
+    return steady_of(rig, float(played.command[0]), min(-low, high))
+
+
+def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
+    """Return the traces (designed, delivered) until a time in s on the clock of the files, the rest held at the end."""
+    rig, played = delivery.rig, delivery.played
+    if isinstance(played, Setpoints):
+        designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s, rate_Hz)
+        return designed, delivered
+    designed = simulate_current(designed_until(delivery.designed, end_s), rig, rate_Hz=rate_Hz)
+    until = played.until(end_s)
+    by_loop = delivery.device.driven_by == "temperatures"
+    drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
+    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(delivery))
+
+
+def _cut(drive: Drive, end_s: float) -> Drive:
+    """A held drive that ends at a time in s: its last sample may end a little later than what it is compared with."""
+    if drive.time_s[-1] <= end_s + 1e-9:
+        return drive
+    kept = drive.time_s < end_s - 1e-9
+    return Drive(np.append(drive.time_s[kept], end_s), np.append(drive.current_A[kept], drive.current_A[-1]), held=True)
+
+
+def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
+    """What a device's range lacks for a design, and the cure; None where the range is wide enough."""
+    asked, held = plan.drive.current_A, narrow.driver
+    if asked.min() >= held.current_min_A - 1e-9 and asked.max() <= held.current_max_A + 1e-9:
+        return None
+    most = max(held.current_max_A, -held.current_min_A)
+    peak = float(asked[np.argmax(np.abs(asked))])
+    low, high = device.interval("output range")
+    through = f" ({signed(low)} … {signed(high)} A)"
+    cure = f"use a device of {abs(peak):.3g} A or more"
+    if device.driven_by == "volts":
+        gain = rig.driver.transconductance_A_per_V
+        least = gain * max(asked.max() / held.current_max_A, asked.min() / (held.current_min_A or -np.inf))
+        through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
+        least = np.ceil(100 * least - 1e-6) / 100
+        cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
+    text = (
+        f"{device.name} plays {signed(held.current_min_A)} … {signed(held.current_max_A)} A{through}, the design asks "
+        f"for up to {signed(peak, '.3g')} A; {cure}"
+    )
+    return Narrowed(text, most, best.outcome)
+
+
+def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
+    """Return the current by which the display follows set-points from `lead_s` on; RigError where there is no rest."""
+    rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
+    bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    count = int(np.ceil(end_s / period - 1e-9))
+    times: Array = np.arange(count + 1, dtype=np.float64) * period
+    target = setpoints.at(times[1:] - lead_s)
+    currents, _, _ = run_follow(bank, one, one, period, target[np.newaxis], False, bank.states([state]))
+    return Drive(times, [rest, *currents[0][1:], rest], held=True)

@@ -1,0 +1,97 @@
+"""A cue as designed and as a device delivers it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from thermicon.icons import Icon
+
+from ..rig.rig import Rig
+from ..solver.delivery_deviation import DeliveryDeviation, delivery_deviation
+from ..solver.drive import Drive
+from ..solver.trace import Outcome, Trace
+from .device import Device
+from .devicefile import DeviceError
+from .samples import Samples
+from .setpoints import Setpoints
+
+
+@dataclass(frozen=True, slots=True)
+class Narrowed:
+    """A device whose range is smaller than a design asks for: in words, the most it plays in A, and what that misses.
+
+    `outcome` says whether the best design within the range reaches the target; None where the cue prescribes current.
+    """
+
+    text: str
+    most_A: float
+    outcome: Outcome | None
+
+
+@dataclass(frozen=True, slots=True)
+class DeliveredDrive:
+    """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
+
+    The device gets the best that its range allows: a design within that range. `played` is what goes into files,
+    `drives` the currents designed and delivered, None for a thermode, which has none; `trace` what the delivery does,
+    `designed_trace` the same without the device. `prompt_trace` is the delivery of a thermode without its lag: a
+    constant lag is a delay and not a loss. `outcome` says whether the design reaches its target,
+    `narrowed` where the range of the device is too small for it.
+    """
+
+    icon: Icon
+    rig: Rig
+    device: Device
+    requested_Hz: float
+    rate_Hz: float
+    lead_s: float
+    played: Samples | Setpoints
+    drives: tuple[Drive, Drive] | None
+    designed_trace: Trace
+    trace: Trace
+    outcome: Outcome | None
+    device_warnings: tuple[str, ...]
+    prompt_trace: Trace | None = None
+    narrowed: Narrowed | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"DeliveredDrive({self.icon.name!r} on {self.device.name}, {self.trace.time_s[-1]:g} s at "
+            f"{self.rate_Hz:g} Hz, skin {self.trace.skin_C.min():.2f} … {self.trace.skin_C.max():.2f} °C)"
+        )
+
+    @property
+    def designed(self) -> Drive:
+        """The current as designed; raises DeviceError for a thermode."""
+        return self._drives[0]
+
+    @property
+    def delivered(self) -> Drive:
+        """The current that flows; raises DeviceError for a thermode."""
+        return self._drives[1]
+
+    @property
+    def _drives(self) -> tuple[Drive, Drive]:
+        if self.drives is None:
+            raise DeviceError(f"{self.device.name} is a thermode: it shows temperatures, and no current of it is known")
+        return self.drives
+
+    @property
+    def deviation(self) -> DeliveryDeviation:
+        """How far the delivery lies from the design, a constant lag left out."""
+        return delivery_deviation(self.designed_trace, self.prompt_trace or self.trace)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is to be known of the delivery: warnings, and what it asks of the driver (which a bridge replaces)."""
+        return self.device_warnings if self.device.driven_by == "duty" else (*self.device_warnings, *self.trace.beyond)
+
+    @property
+    def end_s(self) -> float:
+        """Time in s of the row that marks the end."""
+        return float(self.trace.time_s[-1] if self.drives is None else self.delivered.time_s[-1])
+
+    @property
+    def file_s(self) -> float:
+        """How long in s the file plays; one of set-points has no rest before it, which the simulation begins with."""
+        return float(self.played.time_s[-1])

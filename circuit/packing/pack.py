@@ -1,0 +1,106 @@
+"""Prepared cues packed into files: a drive and a sidecar for each, and the files of the set; nothing is written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from ..delivery.formats import Format, FormatError
+from ..delivery.formats.form import Played
+from ..delivery.prevent import must_prevent
+from .prepare import Prepared
+from .refusal import Refusal
+from .sidecar import sealed, sidecar, sidecar_text
+
+
+def check_names(names: Sequence[str], form: Format) -> None:
+    """Raise FormatError that names both where two icons would get files of one name.
+
+    Names that differ only in capitals count as one, since some disks make no difference.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> check_names(["dip", "double-dip"], load_format("csv"))
+    """
+    taken: dict[str, str] = {}
+    for name in names:
+        stem = form.stem(name)
+        other = taken.setdefault(stem.casefold(), name)
+        if other is name:
+            continue
+        if form.stem(other) == stem:
+            raise FormatError(
+                f"{other} and {name}: the files of both would be called {stem} in the format {form.name}; rename one, "
+                f"or export them into two folders, one by one with --icon"
+            )
+        raise FormatError(
+            f"{other} and {name}: differ only in capitals, so that one's files would overwrite the other's on disks "
+            f"that make no difference; rename one, or export them into two folders, one by one with --icon"
+        )
+
+
+def pack(
+    ready: Sequence[Prepared],
+    form: Format,
+    *,
+    felt: Mapping[str, Mapping[str, object]] | None = None,
+    losses: Mapping[str, Sequence[str]] | None = None,
+) -> dict[str, bytes]:
+    """Return file names and their bytes: a sidecar and a drive for each cue, then what belongs to the set.
+
+    `felt` and `losses` are what perception says, by the names of cues; a cue with refusals is written as forced.
+    Raises FormatError where two cues would get the same name, or one is unsafe.
+    """
+    check_names([one.delivery.icon.name for one in ready], form)
+    drives = {}
+    for one in ready:
+        name = one.delivery.icon.name
+        if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
+            raise FormatError(f"{name}: {unsafe[0]}")
+        drive = form.file_name(one.delivery)
+        if drive.casefold() in form.set_files:
+            raise FormatError(
+                f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
+            )
+        try:
+            drives[name] = drive, form.write(one.delivery)
+        except FormatError as problem:
+            raise FormatError(f"{name}: {problem}") from None
+    shared: dict[str, bytes] = {}
+    if form.player is not None and ready:
+        names = [one.delivery.icon.name for one in ready]
+        played = [_played(one, drives[name][0], form) for one, name in zip(ready, names, strict=True)]
+        shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
+    files: dict[str, bytes] = {}
+    for one in ready:
+        name = one.delivery.icon.name
+        drive, content = drives[name]
+        over = [str(refusal) for refusal in one.refusals]
+        over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
+        about = sidecar(
+            one.delivery, form, one.deviation, one.verdict.to_dict(), (felt or {}).get(name), over,
+            demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
+        )  # fmt: skip
+        files[sidecar_name(name, form)] = sidecar_text(sealed(about))
+        files[drive] = content
+    return {**files, **shared}
+
+
+def _played(one: Prepared, file: str, form: Format) -> Played:
+    """A drive with what the gate says of it, for the player of a set."""
+    known = one.verdict.to_dict()
+    recovery, shortest = (
+        float(value) if isinstance(value := known.get(key), (int, float)) else None
+        for key in ("recovery_s", "shortest_pause_s")
+    )
+    return Played(
+        one.delivery, file, sidecar_name(one.delivery.icon.name, form), one.verdict.colour, recovery, shortest
+    )
+
+
+def sidecar_name(name: str, form: Format) -> str:
+    """Name of the sidecar of an icon.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> sidecar_name("double-dip", load_format("c-array"))
+    'double_dip.json'
+    """
+    return f"{form.stem(name)}.json"

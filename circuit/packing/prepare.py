@@ -1,0 +1,151 @@
+"""Icons prepared for export: delivered by a device, judged in the worst case, and accepted or refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from thermicon.icons import Icon
+
+from ..delivery.deliver import deliver
+from ..delivery.delivered_drive import DeliveredDrive
+from ..delivery.device import Device
+from ..delivery.formats import Format
+from ..delivery.spread import OpenLoopSpread, open_loop_spread
+from ..rig.rig import Rig
+from ..safety.repeated import check_pause
+from ..solver.delivery_deviation import DeliveryDeviation
+from .refusal import Refusal, refusals_of
+from .worstcase import worst_case, worst_cases
+
+
+class Verdict(Protocol):
+    """The verdict of a safety gate on one delivered cue."""
+
+    @property
+    def colour(self) -> str:
+        """Green, amber or red; red is never written."""
+
+    @property
+    def reason(self) -> str | None:
+        """Why it is red, in one sentence."""
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What is amber, a sentence each."""
+
+    @property
+    def scenarios(self) -> int:
+        """In how many worlds and endings the cue was judged."""
+
+    def to_dict(self) -> dict[str, object]:
+        """What the sidecar holds."""
+
+    @property
+    def demanded(self) -> dict[str, object]:
+        """What the hardware must prevent, as the sidecar and the players hold it."""
+
+
+Gate = Callable[[DeliveredDrive], Verdict]
+"""A function that judges one delivered cue."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """One cue that is ready to be written, or to be refused."""
+
+    delivery: DeliveredDrive
+    verdict: Verdict
+    deviation: DeliveryDeviation
+    refusals: tuple[Refusal, ...]
+    spread: OpenLoopSpread | None = None
+
+    def __repr__(self) -> str:
+        refused = ", ".join(refusal.kind for refusal in self.refusals)
+        return (
+            f"Prepared({self.delivery.icon.name!r} for {self.delivery.device.name}, {self.delivery.file_s:g} s, safety "
+            f"{self.verdict.colour}{f', REFUSED: {refused}' if refused else ''})"
+        )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is to be known of the delivery, then what is amber; not again what it is refused for."""
+        narrowed = self.delivery.narrowed
+        told = self.delivery.warnings
+        if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
+            told = tuple(text for text in told if text != narrowed.text)
+        refused = [refusal.text for refusal in self.refusals]
+        return (*(text for text in told if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
+
+
+def prepare(
+    icon: Icon,
+    rig: Rig,
+    device: Device,
+    form: Format,
+    *,
+    gate: Gate | None = None,
+    tail_s: float = 0.0,
+    pause_s: float | None = None,
+) -> Prepared:
+    """Return a cue as the device delivers it, judged by the gate, by its target and by what is lost.
+
+    The gate is that of the worst case, with `pause_s` between plays (None: the recovery time), unless another is given.
+
+    Raises PauseError for a pause that cannot be, FormatError where the format is not for this device, DeviceError
+    where the device cannot play the cue, and RigError where the baseline cannot be held.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icon, rig = load_library("six-icons")["warming-step"], Rig.load("thenar")
+    >>> ready = prepare(icon, rig, Device.load("dac-16"), load_format("csv"))
+    >>> ready.verdict.colour, ready.refusals
+    ('green', ())
+    """
+    form.check(device)
+    delivery = deliver(icon, rig, device, tail_s=tail_s)
+    return _judged(delivery, worst_case(delivery, pause_s) if gate is None else gate(delivery))
+
+
+def prepare_set(
+    icons: Sequence[Icon],
+    rig: Rig,
+    device: Device,
+    form: Format,
+    *,
+    tail_s: float = 0.0,
+    pause_s: float | None = None,
+    step: Callable[[int, int], None] | None = None,
+) -> tuple[Prepared, ...]:
+    """Return cues that may be played again and again in any order, as the device delivers them; as `prepare` does.
+
+    Each counts in the worst sequence of all of them. `step` is called after each with how many are done.
+
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icons, rig = list(load_library("six-icons"))[:2], Rig.load("thenar")
+    >>> ready = prepare_set(icons, rig, Device.load("dac-16"), load_format("csv"), pause_s=60.0)
+    >>> [one.verdict.safe for one in ready]
+    [True, True]
+    """
+    check_pause(pause_s)
+    form.check(device)
+    delivery = []
+    for done, icon in enumerate(icons, 1):
+        delivery.append(deliver(icon, rig, device, tail_s=tail_s))
+        if step is not None:
+            step(done, len(icons))
+    verdicts = worst_cases(delivery, pause_s) if delivery else ()
+    return tuple(_judged(one, verdict) for one, verdict in zip(delivery, verdicts, strict=True))
+
+
+def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:
+    deviation = delivery.deviation
+    refusals = refusals_of(delivery, verdict, deviation)
+    return Prepared(delivery, verdict, deviation, refusals, open_loop_spread(delivery))
+
+
+def _bare(warning: str) -> str:
+    """A warning without the name of the device before it."""
+    return warning.partition(": ")[2] or warning

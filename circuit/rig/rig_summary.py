@@ -1,0 +1,45 @@
+"""A rig in plain text: what there is to know of it before trusting what it computes."""
+
+from __future__ import annotations
+
+import textwrap
+from typing import TYPE_CHECKING
+
+from .parts import Thermode
+
+if TYPE_CHECKING:
+    from .rig import Rig
+
+WIDTH = 118
+
+
+def rig_summary(rig: Rig) -> str:
+    """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text."""
+    flux = -rig.resting_flux_W_per_m2
+    how = "solved from the rest" if rig.skin.deep_C is None else "given"
+    rows = [
+        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
+        (
+            "rest",
+            f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), "
+            f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
+        ),
+        ("receptors", str(rig.receptor_depths())),
+        ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
+        *(("warning", text) for text in rig.warnings),
+        *(("note", text) for text in rig.notes),
+    ]
+    head = f"{rig.name}: {rig.title}" if rig.title else rig.name
+    return "\n".join([head, *(line for label, text in rows for line in _wrapped(label, text))])
+
+
+def _thermode(thermode: Thermode) -> str:
+    fine = f"set-points in steps of {thermode.resolution_K:g} K" if thermode.resolution_K else "set-points of any step"
+    return (
+        f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C at up to {thermode.slew_K_per_s:g} K/s, {fine} at "
+        f"{thermode.update_Hz:g} Hz, followed with a lag of {thermode.lag_s:g} s; no module, no current"
+    )
+
+
+def _wrapped(label: str, text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=f"  {label:<11}", subsequent_indent=" " * 13)
