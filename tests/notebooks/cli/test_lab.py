@@ -59,7 +59,7 @@ def test_what_a_person_changed_is_kept_unless_forced(cli: Cli, tmp_path: Path) -
     assert said.stderr.splitlines()[-1] == f"{tmp_path / FIRST}: kept because you changed it; --force replaces it"
     assert source(tmp_path / FIRST) == "mine"
     forced = cli("lab", tmp_path, "--files-only", "--force")
-    assert forced.stderr == f"{tmp_path}: wrote 1 notebook, {len(ALL) - 1} notebooks there already\n"
+    assert forced.stderr == f"{tmp_path}: wrote 1 notebook, {len(ALL) - 1} notebooks already there\n"
     assert source(tmp_path / FIRST).startswith("%load_ext")
 
 
