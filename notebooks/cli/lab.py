@@ -47,17 +47,13 @@ class Copied:
 
     @property
     def text(self) -> str:
-        """What there is to say about them, without where."""
-        said = []
-        if self.written:
-            said.append(f"wrote {_counted(self.written)}")
+        """Summary of what was written, without the folder."""
+        if not self.written:
+            return "nothing to write, all notebooks are there" if self.current else ""
+        parts = [f"wrote {_counted(self.written)}"]
         if self.current:
-            said.append(
-                f"{_counted(self.current)} already there"
-                if self.written
-                else "nothing to write, all notebooks are there"
-            )
-        return ", ".join(said)
+            parts.append(f"{_counted(self.current)} already there")
+        return ", ".join(parts)
 
 
 def lab_command(

@@ -53,7 +53,7 @@ def chosen_as(
     if count < 2:
         raise usage(f"a choice of {count} has no pair to compare; choose 2 icons or more", "--choose")
     if objective is not None and objective not in OBJECTIVES:
-        raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
+        raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
         if most is not None and not (math.isfinite(most) and most > 0):
             raise usage(f"{most:g} {unit} is not above 0", option)

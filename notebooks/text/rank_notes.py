@@ -98,11 +98,11 @@ def rules_table(icons: Sequence[dict[str, Any]], pairs: Sequence[dict[str, Any]]
         "icon",
         "score",
         "rules passed",
-        "pairs distinct",
-        "smallest margin",
+        "distinct pairs",
+        "margin",
         "fails",
-        numbers=("score", "rules passed", "pairs distinct", "smallest margin"),
-        names=("icon", "score", "rules passed", "pairs distinct", "smallest margin"),
+        numbers=("score", "rules passed", "distinct pairs", "margin"),
+        names=("icon", "score", "rules passed", "distinct pairs", "margin"),
     )
     for icon in icons:
         rules = [rule for rule in icon["rules"] if not rule["from_model"]]

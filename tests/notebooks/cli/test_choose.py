@@ -55,8 +55,8 @@ def test_the_json_says_what_was_chosen(ranked: Callable[..., dict[str, Any]], ob
         pairs = [p["d_prime"] for p in found["pairs"] if {p["a"], p["b"]} <= set(chosen["icons"])]
         assert chosen["value"] == min(pairs)
     assert "Best 3 of 6, by " in found["stdout"]
-    assert "at the range of all 6: " in found["stdout"]
-    assert "at their own range: " in found["stdout"]
+    assert "within the range of all 6: " in found["stdout"]
+    assert "as a set of their own: " in found["stdout"]
 
 
 def test_without_the_question_nothing_is_chosen(ranked: Callable[..., dict[str, Any]]) -> None:
@@ -89,10 +89,10 @@ def test_limits_are_kept(ranked: Callable[..., dict[str, Any]]) -> None:
         (("--choose", 7), 1, "7 icons cannot be chosen: there are only 6 icons"),
         (("--choose", 3, "--must", "double-dop"), 1, "did you mean double-dip?"),
         (("--choose", 3, "--most-time", 5), 1, "stay within a total of 5 s"),
-        (("--choose", 1), 2, "1 cannot be told apart; choose 2 icons or more"),
-        (("--choose", 3, "--objective", "best"), 2, "'best' is none of worst, correct, bits, bits-per-s"),
-        (("--objective", "bits"), 2, "belongs to --choose K"),
-        (("--must", "double-dip"), 2, "belongs to --choose K"),
+        (("--choose", 1), 2, "a choice of 1 has no pair to compare; choose 2 icons or more"),
+        (("--choose", 3, "--objective", "best"), 2, "'best' is not one of worst, correct, bits, bits-per-s"),
+        (("--objective", "bits"), 2, "needs --choose K"),
+        (("--must", "double-dip"), 2, "needs --choose K"),
         (("--choose", 3, "--most-energy", -1), 2, "-1 J is not above 0"),
         (("--choose", 3, "--by", "rules"), 2, "icons are chosen by the model"),
     ],
@@ -125,9 +125,9 @@ def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_pa
         (("six-icons",), 1, "nothing to search: the file has no family"),
         (("search-space", "--choose", 1), 2, "1 is outside 2 to 64"),
         (("search-space", "--evaluations", 2), 2, "2 is outside 10 to 1000000"),
-        (("search-space", "--objective", "all"), 2, "'all' is none of worst, correct, bits, bits-per-s"),
+        (("search-space", "--objective", "all"), 2, "'all' is not one of worst, correct, bits, bits-per-s"),
         (("search-space", "-o", "found.txt"), 1, "a set of icons is written as .cue, not .txt"),
-        (("search-space", "--norm", "mean"), 2, "'mean' is none of max, rms, integral"),
+        (("search-space", "--norm", "mean"), 2, "'mean' is not one of max, rms, integral"),
     ],
 )
 def test_bad_searches(cli: Cli, options: tuple[object, ...], code: int, told: str) -> None:

@@ -71,7 +71,7 @@ def test_two_sets_are_paired_by_name(cli: Cli, two: Path, tmp_path: Path) -> Non
     said = cli("compare", two, other)
     assert said.exit_code == 0, said.stderr
     assert said.stdout.startswith("cool-step\nA  two.cue: 8 s")
-    assert f"only in one of the two: warm-step ({two}), hot-step ({other})" in said.stderr
+    assert f"only in one of the two sets: warm-step ({two}), hot-step ({other})" in said.stderr
     tables, _, duel = said.stdout.partition("\npredicted: ")
     assert "draws of person, contact, room and rig" in " ".join(duel.split())
     assert cli("compare", two, other, "--icon", "cool-step").stdout == tables
@@ -84,8 +84,8 @@ def test_the_better_of_two_sets_is_told(cli: Cli, two: Path, tmp_path: Path) -> 
     alike = body.replace("by 3 ", "by 3.3 ")
     worse.write_text(f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon cool-step {body}\nicon b {alike}\n")
     forth, back = (cli("compare", *sides).stdout.partition("predicted: ")[2] for sides in ((two, worse), (worse, two)))
-    assert forth.startswith("A is told apart better than B in 100 %")
-    assert back == forth.replace("A is told apart better than B", "B is told apart better than A")
+    assert forth.startswith("the icons of A are easier to distinguish than those of B in 100 %")
+    assert back == forth.replace("of A are", "of ? are").replace("those of B", "those of A").replace("of ?", "of B")
     warned = cli("compare", two, worse, "--set", "safety.skin_highest_C=38").stderr
     assert warned.count("warning:") == len({line for line in warned.splitlines() if line.startswith("warning:")}) > 0
 
@@ -123,7 +123,7 @@ def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: P
     assert " ".join(lines[-2:]).split("compared")[1] == (
         " at the 31 times of log.csv in the common span, 0.5–8 s; trace.csv interpolated between its rows"
     )
-    assert "log.csv: ignored, since no trace has them: note" in said.stderr
+    assert "log.csv: ignored columns that no trace has: note" in said.stderr
     turned = cli("compare", log, trace)
     assert next(line for line in turned.stdout.splitlines() if line.startswith("skin ")).split()[-2:] == ["−0.2", "K"]
     assert "the 31 times of log.csv" in turned.stdout
@@ -193,12 +193,15 @@ def test_a_parquet_file_without_pyarrow(cli: Cli, tmp_path: Path, monkeypatch: p
 USAGE = [
     (
         ("thenar", "six-icons"),
-        "thenar is a rig and six-icons is an icon set; both must be of one kind (a rig",
+        "thenar is a rig and six-icons is an icon set; both must be of the same kind (a rig",
     ),
-    (("six-icons", "six-icons:double-dip"), "both must be of one kind: write the one icon of the set as FILE:ICON"),
+    (
+        ("six-icons", "six-icons:double-dip"),
+        "both must be of the same kind: write the one icon of the set as FILE:ICON",
+    ),
     (("six-icons:double-dip", "log.csv"), "write a trace first with thermicon simulate FILE --icon NAME -o trace.csv"),
-    (("thenr", "thenar"), "thenr is nothing to compare; did you mean thenar? (a rig is a name or a .toml file"),
-    (("odd", "thenar"), "odd: its name does not tell what it is; a rig is a name or a .toml file, an icon FILE:ICON"),
+    (("thenr", "thenar"), "thenr cannot be compared; did you mean thenar? (a rig is a name or a .toml file"),
+    (("odd", "thenar"), "odd: its name does not show what it is; a rig is a name or a .toml file, an icon FILE:ICON"),
     (("thenar", "shani2021", "--rig", "thenar"), "'--rig': the two rigs are A and B"),
     (("six-icons", "six-icons", "--file", "a.cue"), "'--file': belongs to two rigs"),
     (("six-icons:double-dip", "six-icons:double-dip", "--icon", "a"), "'--icon': the two icons are A and B"),

@@ -70,9 +70,9 @@ def test_what_a_played_icon_needs_comes_along(cli: Cli, tmp_path: Path) -> None:
 def test_lost_comments_are_told(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "a.cue"
     path.write_text('cue 1 # version\nicon a means "no # comment" { hold for 1 s }\n')
-    assert "the comments of a.cue are not carried over" in cli("convert", path, "-o", tmp_path / "a.json").stderr
+    assert "comments in a.cue were dropped" in cli("convert", path, "-o", tmp_path / "a.json").stderr
     path.write_text('cue 1\nicon a means "no # \\" comment" { hold for 1 s }\n')
-    assert "not carried over" not in cli("convert", path, "-o", tmp_path / "a.json").stderr
+    assert "were dropped" not in cli("convert", path, "-o", tmp_path / "a.json").stderr
 
 
 def test_an_output_that_is_there_is_replaced_as_in_other_commands(cli: Cli, tmp_path: Path) -> None:
@@ -113,12 +113,12 @@ def test_a_recording_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
         (("two.cue", "-o", "-"), "the ending of the output says what is written: give a name such as icons.json", 1),
         (("two.cue", "-o", "a.txt"), "a set of icons is written as .cue or .json or .hjif, not .txt", 1),
         (("two.cue", "-o", "no/a.json"), "the folder no does not exist", 1),
-        (("two.cue", "-o", "two.cue"), "cannot write two.cue: it is the file that is read; give another name", 1),
+        (("two.cue", "-o", "two.cue"), "cannot write two.cue: it is the input file; give another name", 1),
         (("two.cu", "-o", "a.json"), "E001", 1),
         (("two.cue", "-o", "a.json", "--tolerance", "1"), "'--tolerance': belongs to a recording, a .csv file", 2),
         (("two.cue", "-o", "a.json", "--control", "skin"), "'--control': belongs to a recording, a .csv file", 2),
         (("a.csv", "-o", "a.json", "--tolerance", "0"), "'--tolerance': 0 is not a difference in K above 0", 2),
-        (("a.csv", "-o", "a.json", "--control", "amps"), "'--control': 'amps' is none of skin, display", 2),
+        (("a.csv", "-o", "a.json", "--control", "amps"), "'--control': 'amps' is not one of skin, display", 2),
         (("search-space", "-o", "a.hjif"), "HJIF takes 128 icons a file at most", 1),
         (
             ("bare.cue", "-o", "a.hjif"),

@@ -139,7 +139,7 @@ class TestRefused:
         said = cli(*arguments)
         assert said.exit_code == 3
         assert "refused: cool-step is NOT reached: misses its target by " in said.stderr
-        assert "--force exports it as it is, and the sidecar says so" in said.stderr
+        assert "--force exports it nevertheless, and the sidecar records that" in said.stderr
         assert not (tmp_path / "out").exists()
         said = cli(*arguments, "--force")
         assert said.exit_code == 0
@@ -237,7 +237,7 @@ def test_devices_and_formats_are_listed(cli: Cli) -> None:
     assert said.exit_code == 0
     for word in ("dac-12", "pwm-h-bridge-10", "set-points", "−10 to 10 V", "15.6 kHz", "tcs2-protocol-ini", "250 MHz"):
         assert word in said.stdout
-    assert "None of them was ever played by thermicon." in said.stdout
+    assert "None of them has been tested on hardware yet." in said.stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
 
 

@@ -59,9 +59,7 @@ def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Pa
 def test_a_shipped_set_is_refused(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said = cli("fmt", "six-icons")
     assert (said.exit_code, said.stdout) == (1, "")
-    assert (
-        said.stderr == "six-icons: this is a shipped set, which stays as it is; give the name of a file of your own\n"
-    )
+    assert said.stderr == "six-icons: a shipped set cannot be changed; give the name of your own file\n"
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "six-icons", LOOSE)
     assert cli("fmt", "six-icons").stdout == "six-icons: formatted\n"

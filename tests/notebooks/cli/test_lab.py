@@ -43,7 +43,7 @@ def test_the_notebooks_are_put_into_a_folder(cli: Cli, tmp_path: Path) -> None:
     assert ALL[0] == FIRST
     assert "workbench.ipynb" in ALL
     again = cli("lab", tmp_path / "mine", "--files-only")
-    assert again.stderr == f"{tmp_path / 'mine'}: nothing to write, all there\n"
+    assert again.stderr == f"{tmp_path / 'mine'}: nothing to write, all notebooks are there\n"
 
 
 def test_without_a_folder_they_get_one_of_their_own(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,10 +56,10 @@ def test_what_a_person_changed_is_kept_unless_forced(cli: Cli, tmp_path: Path) -
     cli("lab", tmp_path, "--files-only")
     change(tmp_path / FIRST, "mine")
     said = cli("lab", tmp_path, "--files-only")
-    assert said.stderr.splitlines()[-1] == f"{tmp_path / FIRST}: kept, since you changed it; --force replaces it"
+    assert said.stderr.splitlines()[-1] == f"{tmp_path / FIRST}: kept because you changed it; --force replaces it"
     assert source(tmp_path / FIRST) == "mine"
     forced = cli("lab", tmp_path, "--files-only", "--force")
-    assert forced.stderr == f"{tmp_path}: wrote 1 notebook, {len(ALL) - 1} notebooks there already\n"
+    assert forced.stderr == f"{tmp_path}: wrote 1 notebook, {len(ALL) - 1} notebooks already there\n"
     assert source(tmp_path / FIRST).startswith("%load_ext")
 
 
@@ -67,7 +67,7 @@ def test_what_was_only_run_is_kept_with_its_outputs(cli: Cli, tmp_path: Path) ->
     cli("lab", tmp_path, "--files-only")
     change(tmp_path / FIRST, "an output", "outputs")
     before = (tmp_path / FIRST).read_bytes()
-    assert cli("lab", tmp_path, "--files-only").stderr.endswith("nothing to write, all there\n")
+    assert cli("lab", tmp_path, "--files-only").stderr.endswith("nothing to write, all notebooks are there\n")
     assert (tmp_path / FIRST).read_bytes() == before
 
 

@@ -148,11 +148,11 @@ def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path
 
 def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
     said = cli("rank", two, "--people", 1, "--trials", 1)
-    assert "for 95 % of people" not in said.stdout
+    assert "95 % of people" not in said.stdout
     assert "% correct\n" in said.stdout
     assert " bits\n" in said.stdout
-    assert "of 1 trial would report" in said.stdout
-    assert "for 95 % of people" in cli("rank", two, "--people", 2).stdout
+    assert "a 1-trial experiment would report" in said.stdout
+    assert "95 % of people" in cli("rank", two, "--people", 2).stdout
 
 
 def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
@@ -173,7 +173,7 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
     path.write_text(f"cue 1\nset s {{ control display }}\nicon a {cue}\nicon b {cue}\n", encoding="utf-8")
     words = " ".join(cli("rank", path, "--people", 1).stdout.split())
-    assert "Caution, soft limit of safety passed by a, b: of a, skin surface reaches " in words
+    assert "Caution: a, b exceed a soft safety limit: of a, skin surface reaches " in words
     assert words.count("skin surface") == 1
     assert "NOT SAFE" not in words
 
@@ -188,7 +188,7 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     words = " ".join(cli("rank", path, "--people", 2, "--json", out).stdout.split())
     found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
     assert len(found) > 5
-    assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons back to back, ")
+    assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons ")
     assert "while naming one of them needs memory" in words
     assert words.count("(apart from 2.563)") == 5
     assert f"- and {len(found) - 5} more, all of them in --json" in words
@@ -238,16 +238,16 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
     (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("proportion_correct", "information_bits"))
-    assert f"     {100 * low:.0f} % to {100 * high:.0f} % over the range of the model's parameters\n" in said.stdout
-    assert f"     {least:.2f} to {most:.2f} over the range of the model's parameters\n" in said.stdout
+    assert f"     model uncertainty (95 %): {100 * low:.0f}–{100 * high:.0f} %\n" in said.stdout
+    assert f"     model uncertainty (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
 
 
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--by", "luck"), "'--by': 'luck' is none of model, rules"),
-        (("--parameters", 1), "'--parameters': 1 draw has no interval; ask for 2 or more, or 0 for none"),
+        (("--by", "luck"), "'--by': 'luck' is not one of model, rules"),
+        (("--parameters", 1), "'--parameters': an interval needs at least 2 draws; give 2 or more, or 0 for none"),
         (("--parameters", -1), "'--parameters': -1 is outside 0 to 10000"),
     ],
 )
@@ -265,10 +265,12 @@ def test_by_rules_the_table_has_no_number_of_the_model(cli: Cli, tmp_path: Path)
     words = " ".join(said.stdout.split())
     for word in ("detected", "onset channel", "correct", " bits"):
         assert word not in words
-    assert "icon score rules passed pairs apart least margin fails" in words
-    assert "Set: rules tell 15 of 15 pairs apart" in words
+    assert "icon score rules passed distinct pairs margin fails" in words
+    assert "Set: 15 of 15 pairs distinguishable by the rules" in words
     assert "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes" in words
-    assert "Worst pair by rules: warming-step and linear-warming, told apart - amplitude difference (warm): " in words
+    assert (
+        "Worst pair by rules: warming-step and linear-warming, distinguishable - amplitude difference (warm): " in words
+    )
     assert "Scored by rules of thumb alone on the thenar rig: the share of rules passed" in words
     assert "Rules on latency and felt peak need the model and are not counted" in words
     found = json.loads(out.read_text(encoding="utf-8"))

@@ -35,7 +35,7 @@ def test_no_people_and_both_kinds_of_workers(cli: Cli, two: Path) -> None:
     assert "0 is outside 1 to 100000" in cli("rank", two, "--people", 0).stderr
     said = cli("rank", two, "--workers", 2, "--cluster", "tcp://127.0.0.1:1")
     assert said.exit_code == 2
-    assert "is for this machine; a cluster has the workers that it has" in said.stderr
+    assert "applies to this machine; a cluster brings its own workers" in said.stderr
 
 
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:

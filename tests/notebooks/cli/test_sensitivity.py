@@ -51,7 +51,7 @@ def test_a_what_if(cli: Cli, two: Path) -> None:
         (("--samples", 10), "'--samples': 10 is not a power of 2, which sobol needs, such as 64"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
         (("--method", "luck"), "'--method': 'luck' is not one of sobol"),
-        (("--norm", "mean"), "'--norm': 'mean' is none of max, rms, integral"),
+        (("--norm", "mean"), "'--norm': 'mean' is not one of max, rms, integral"),
     ],
 )
 def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:

@@ -43,7 +43,7 @@ def test_an_order_is_played_and_reported(cli: Cli, two: Path, order: Path) -> No
     said = cli("session", two, "--order", order)
     assert said.exit_code == 0
     lines = said.stdout.splitlines()
-    assert lines[0] == "3 plays in 42 s on thenar, 10 s apart"
+    assert lines[0] == "3 plays in 42 s on thenar, 10 s between plays"
     assert lines[1].startswith("safety green in 195 scenarios")
     for words in ("  dose       0 min CEM43", "the limit of a session is 1", "  baseline   −0.", "back within 0.1 K"):
         assert words in said.stdout
@@ -126,7 +126,7 @@ def test_a_written_order_is_read_again(cli: Cli, two: Path, tmp_path: Path) -> N
         (["--random", "--gap", "1e9"], "1e+09 s is outside 0 to 3600 s"),
         (["--random", "--repeats", "0"], "0 is not a number of repeats of 1 or more"),
         (["--random", "--seed", "-1"], "-1 is outside 0 to"),
-        (["--random", "--tracking", "ideal"], "'ideal' is none of replay, display"),
+        (["--random", "--tracking", "ideal"], "'ideal' is not one of replay, display"),
     ],
 )
 def test_a_command_line_that_makes_no_sense_is_a_usage_error(

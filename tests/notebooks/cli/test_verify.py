@@ -284,7 +284,7 @@ class TestCommand:
         (out / "warming-step.csv").symlink_to(out.parent / "elsewhere.csv")
         done = cli("export", "--verify", out)
         assert done.exit_code == 1
-        assert "note: sub is a folder and is not looked into" in done.stderr
+        assert "note: sub is a folder and was not checked" in done.stderr
         assert "wrong: warming-step.csv: is missing" in done.stderr
 
     def test_nothing_of_a_file_reaches_the_terminal_raw(self, cli: Cli, out: Path) -> None:

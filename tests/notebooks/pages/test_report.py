@@ -120,10 +120,10 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
     for icon in icons:
         assert " ".join(str(icon)[str(icon).index("icon ") :].split()) in words
     low, high = result["set"]["proportion_correct_interval"]
-    assert f"for 95 % of people {100 * low:.0f} % to {100 * high:.0f} %" in words
+    assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
     for part in ("direction", "intensity", "rate", "duration", "pattern", "onset"):
         assert words.count(part) >= 2
-    for heading in ("What was asked", "Ranking", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
+    for heading in ("Settings", "Ranking", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
         assert f"<h2>{heading}</h2>" in made
 
 
@@ -153,7 +153,7 @@ def test_one_icon_has_no_pairs(rig: Rig) -> None:
     assert "Predicted ranking of 1 icon by thermicon" in words
     for heading in ("Pairs", "Pictures of the set", "Worst pair"):
         assert heading not in words
-    assert "for 95 % of people" not in words
+    assert "95 % of people" not in words
 
 
 def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
@@ -195,7 +195,7 @@ def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path
     [
         ("report.pdf", 1, "a report is written as .html or .htm, not .pdf"),
         ("no/report.html", 1, "does not exist; make it first"),
-        ("-", 2, "- is no file; give the name of a page, such as report.html"),
+        ("-", 2, "- is not a file; give the name of a page, such as report.html"),
     ],
 )
 def test_a_page_that_cannot_be_written_is_said_at_once(
