@@ -32,9 +32,9 @@ def view_parts(ranking: Ranking) -> Iterator[str]:
 
     vector = len(ranking.icons) <= VECTOR_ICONS
     yield element("h2", "Pictures of the set")
-    confused = "Rows: the icon presented. Columns: the name it is answered with. Icons that are near are side by side."
+    confused = "Rows: icon presented. Columns: name answered. The diagonal is correct. Similar icons are adjacent."
     maps = (
-        _drawn(plot_confusion(ranking), "confusions between the icons, per cent", confused, vector),
+        _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused, vector),
         _drawn(
             plot_distance(ranking),
             "d′ of every pair",

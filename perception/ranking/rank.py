@@ -21,8 +21,8 @@ from ..comparison.rule_score import disagreements, icon_score, pair_margin, wors
 from ..comparison.rules import icon_rules, pair_rules, rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.intervals import DRAWS, parameter_intervals
+from ..identification.map import spread_over_people
 from ..identification.population import Scores
-from ..identification.spread import spread_over_people
 from ..identification.task import USUAL, Task
 from ..observer.observer import DATA, Norm, Observer, check_norm
 from ..observer.people import People, draw_people

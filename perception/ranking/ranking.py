@@ -14,7 +14,7 @@ from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
 from ..comparison.rules import DISTINGUISHABLE, RuleResult
 from ..identification.intervals import ParameterIntervals
-from ..identification.spread import PersonSpread
+from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
 

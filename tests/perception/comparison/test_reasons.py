@@ -5,23 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.perception import (
-    NORMS,
-    Observer,
-    Percept,
-    attack_K_per_s,
-    delay_s,
-    difference_trace,
-    excursion_K,
-    identification_dprime,
-    largest_difference,
-    load_rules,
-    onset_s,
-    pair_reasons,
-    peak_change_K,
-    perceive,
-    percept_distance,
-)
+from thermicon.perception import NORMS, Observer, Percept, perceive, percept_distance
+from thermicon.perception.comparison.reasons import largest_difference, pair_reasons
+from thermicon.perception.comparison.rules import load_rules
+from thermicon.perception.identification.distance import difference_trace, identification_dprime
+from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
 
 
 def why(cue: Any, observer: Observer, a: dict[str, Any], b: dict[str, Any]) -> list[Any]:

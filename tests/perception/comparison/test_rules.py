@@ -3,8 +3,15 @@ from typing import Any
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import Observer, RuleResult, icon_rules, load_rules, pair_rules, perceive, rig_rules
-from thermicon.perception.comparison.rules import DISTINGUISHABLE
+from thermicon.perception import Observer, perceive
+from thermicon.perception.comparison.rules import (
+    DISTINGUISHABLE,
+    RuleResult,
+    icon_rules,
+    load_rules,
+    pair_rules,
+    rig_rules,
+)
 
 
 def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:

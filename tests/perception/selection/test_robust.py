@@ -3,9 +3,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import ChoiceError, best_set_probability, compare_sets, draw_people
+from thermicon.perception import ChoiceError, compare_sets, draw_people
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.robust import drawn_rigs
+from thermicon.perception.selection.robust import best_set_probability, drawn_rigs
 
 
 @pytest.fixture(scope="module")
