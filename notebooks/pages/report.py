@@ -81,7 +81,9 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[str]
     yield element("p", rules_caveat(result) if ranking.by == "rules" else told.caveat(result), "note")
     if ranking.by == "rules":
         apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
-        yield cards([(f"{apart} of {len(result['pairs'])}", "pairs told apart by rules")] if result["pairs"] else [])
+        yield cards(
+            [(f"{apart} of {len(result['pairs'])}", "pairs distinguishable by rules")] if result["pairs"] else []
+        )
         return
     spread = "" if ranking.people == 1 else "; for 95 % of people {} to {}"
     low, high = whole["proportion_correct_interval"]

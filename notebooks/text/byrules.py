@@ -49,7 +49,7 @@ def margin(share: float | None) -> str:
 
 
 def rules_lines(result: Mapping[str, Any]) -> list[str]:
-    """Return the sentences on the set: pairs told apart, the rules on the rig, the worst pair with its rules."""
+    """Return the sentences on the set: distinguishable pairs, the rules on the rig, the worst pair with its rules."""
     pairs, whole = result["pairs"], result["set"]
     lines = []
     if pairs:
@@ -76,6 +76,6 @@ def rules_caveat(result: Mapping[str, Any]) -> str:
 def _worst(pairs: Sequence[dict[str, Any]], names: Sequence[str]) -> Iterator[str]:
     for pair in pairs:
         if {pair["a"], pair["b"]} == set(names):
-            word = "told apart" if pair["told_apart_by_rules"] else "not told apart"
+            word = "distinguishable" if pair["told_apart_by_rules"] else "not distinguishable"
             yield f"Worst pair by rules: {pair['a']} and {pair['b']}, {word}"
             yield from (f"  - {rule['text']}" for rule in pair["rules"])

@@ -221,7 +221,7 @@ class _Bisection:
         self.programs += 1
         result = milp(
             np.zeros(left.size),
-            integrality=np.ones(left.size),
+            integrality=np.ones(left.size, dtype=np.int64),
             bounds=Bounds(np.isin(left, self.must).astype(np.float64), 1.0),
             constraints=constraints,
             options={"node_limit": self.most_nodes},

@@ -81,11 +81,11 @@ def test_every_number_of_the_largest_difference_can_be_computed_again(cue: Any, 
         f"a and b differ most at {felt[0].time_s[k]:.2f} s by {total:.1f} d′ of sensation "
         f"(cold {cold:.1f}, warm {warm:.1f}); "
     )
-    leaves = f"memory noise leaves a nominal person d′ {left:.1f}"
+    leaves = f"d′ {left:.1f} for a nominal person"
     ends = {
-        "max": f"{leaves} to tell them apart by",
-        "rms": f"by the rms norm it is {apart:.1f} d′ in all, of which {leaves}",
-        "integral": f"by the integral norm it is {apart:.1f} d′·s in all, of which {leaves}",
+        "max": f"with memory noise, {leaves}",
+        "rms": f"by the rms norm it is {apart:.1f} d′ in all, which with memory noise is {leaves}",
+        "integral": f"by the integral norm it is {apart:.1f} d′·s in all, which with memory noise is {leaves}",
     }
     assert text == begins + ends[norm]
 
