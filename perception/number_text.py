@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 MOST = 17
-"""From so many digits on, two different numbers never read the same."""
+"""With this many digits, two different numbers never read the same."""
 
 
 def decimals(value: float, limit: float, least: int = 2) -> int:
@@ -19,7 +19,7 @@ def decimals(value: float, limit: float, least: int = 2) -> int:
 
 
 def fixed(value: float, digits: int, least: int = 2) -> str:
-    """`value` to so many decimals, without zeros at the end beyond the first `least`.
+    """`value` with `digits` decimals, without zeros at the end beyond the first `least`.
 
     >>> fixed(1.43, 4), fixed(0.4, 2), fixed(1.4297, 4)
     ('1.43', '0.40', '1.4297')

@@ -75,8 +75,8 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
 
 CURES = (
     (("rate of skin temperature",), "a slower change"),
-    (("hot plate",), "a smaller or slower change, or a heat sink that takes more"),
-    (("thermal dose", "Henriques integral", "time of the display"), "a shorter hold, or a smaller change"),
+    (("hot plate",), "less current or a better heat sink"),
+    (("thermal dose", "Henriques integral", "time of the display"), "a shorter hold"),
     (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
 )
 """What keeps a quantity within its limit, by the beginning of its name."""
@@ -96,7 +96,7 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
     cures = [cure for names, cure in CURES if any(one.quantity.startswith(names) for one in hard)]
-    return f"{more}; ask for {' and '.join(cures)}" if cures else more
+    return f"{more}; ask for {', '.join(cures)}" if cures else more
 
 
 def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:

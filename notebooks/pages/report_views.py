@@ -35,9 +35,9 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
 
     vector = len(ranking.icons) <= VECTOR_ICONS
     yield Heading("Pictures of the set")
-    confused = "Rows: the icon presented. Columns: the response. Similar icons are adjacent."
+    confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
     maps = (
-        _drawn(plot_confusion(ranking), "confusions between the icons, per cent", confused, vector),
+        _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused, vector),
         _drawn(
             plot_distance(ranking),
             "d′ of every pair",

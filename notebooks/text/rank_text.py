@@ -80,11 +80,9 @@ def caveat(result: dict[str, Any]) -> str:
 
 
 def rival(confusion: dict[str, Any], place: int) -> str:
-    """Return the name most often given by mistake to the icon at this place, with its share of trials."""
-    row = confusion["probability"][place]
-    others = [
-        (share, label) for k, (share, label) in enumerate(zip(row, confusion["labels"], strict=True)) if k != place
-    ]
+    """Return the icon that the one at this place is confused with most often, and how often: the mean of both ways."""
+    matrix, labels = confusion["probability"], confusion["labels"]
+    others = [(0.5 * (matrix[place][k] + matrix[k][place]), label) for k, label in enumerate(labels) if k != place]
     if not others:
         return "–"
     share, label = max(others)

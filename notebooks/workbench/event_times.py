@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
-    from thermicon.perception import Channel, Percept
+    from thermicon.perception import Percept
+    from thermicon.perception.observer.observer import Channel
 
 FELT_DPRIME = 1.0
 """Smallest marked peak of sensation: the detection threshold in a two-interval choice, d′ = 1."""

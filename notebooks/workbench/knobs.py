@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.perception import Observer, age_factor, load_thresholds
-from thermicon.perception.observer.people import YOUNG_YEARS
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.people import YOUNG_YEARS, age_factor
 
 from ..text.number_text import number, span
 
 if TYPE_CHECKING:
-    from thermicon.perception import Receptor
+    from thermicon.perception.observer.observer import Receptor
 
 OLDEST_YEARS, YOUNGEST_YEARS = 100.0, 18.0
 """What ``perception.people.age_factor`` covers."""

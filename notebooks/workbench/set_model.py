@@ -116,7 +116,7 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
         "matrices": [
             {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": highest,
              "text": "0.0"},
-            {"key": "confusion", "label": "confusion", "buffer": 1, "unit": "", "low": 0,
+            {"key": "confusion", "label": "answered", "buffer": 1, "unit": "", "low": 0,
              "high": 1, "text": "0%"},
         ],
         "picked": None if picked is None else [labels.index(name) for name in picked],

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.perception import CHANNELS, Channel, Observer, load_thresholds, receptor_drive
+from thermicon.perception import CHANNELS, Observer
+from thermicon.perception.observer.observer import Channel, load_thresholds
+from thermicon.perception.sensation.receptors import receptor_drive
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

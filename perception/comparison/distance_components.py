@@ -1,6 +1,6 @@
-"""What the distance of two icons is made of: direction, intensity, rate, duration, pattern, onset.
+"""Components of the distance of two icons: direction, intensity, rate, duration, pattern, onset.
 
-Six named numbers, each in a unit of its own and beside the value at which it is just noticed back to back.
+Each has its unit and the value that is just noticeable back to back.
 Direction, rate and onset go by the rules of thumb on pairs; intensity and pattern by the sensory noise,
 which is 1 d′; duration by the uncertainty of the two moments that bound it.
 """
@@ -27,19 +27,19 @@ COMPONENTS = ("direction", "intensity", "rate", "duration", "pattern", "onset")
 SENSORY_NOISE = 1.0
 HALF = 0.5
 LEAST_SENSATION = 0.05
-"""A course that stays below this (d′) has no duration, rate or pattern of its own."""
+"""A course that stays below this (d′) has no duration, rate or pattern."""
 BLUR_REACH = 6.0
-"""So many times the uncertainty of an onset, its blur has faded."""
+"""The blur of an onset has faded after this many times its uncertainty."""
 GRID = np.linspace(-0.5, 2.0, 251)
 """Where courses are compared, in durations after the first half of the peak."""
 
 
 @dataclass(frozen=True, slots=True)
 class DistanceComponent:
-    """One part of the distance of two icons; `a` and `b` are what each icon has of it, where each has a number.
+    """One component of the distance of two icons; `a` and `b` are its values for each icon, where each has one.
 
     `value` is None where there is nothing to compare, as for an icon that is not felt. `noticeable` is the value
-    that is just noticed back to back, in the same unit. A rate is a factor, whose unit is 1, of two rates in K/s.
+    that is just noticeable back to back, in the same unit. A rate is a factor, whose unit is 1, of two rates in K/s.
     """
 
     name: str
@@ -83,7 +83,7 @@ class DistanceComponent:
         unit = "" if self.unit == "1" else f" {self.unit}"
         if self.value is None:
             return f"DistanceComponent({self.name}: nothing to compare)"
-        return f"DistanceComponent({self.name} {self.value:.3g}{unit}, just noticed {self.noticeable:.3g}{unit})"
+        return f"DistanceComponent({self.name} {self.value:.3g}{unit}, just noticeable {self.noticeable:.3g}{unit})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +108,7 @@ class Course:
 def distance_components(
     a: Trace, b: Trace, observer: Observer | None = None, felt: tuple[Percept, Percept] | None = None
 ) -> tuple[DistanceComponent, ...]:
-    """The six parts of the distance of two simulated icons for a nominal person (or `observer`), in COMPONENTS order.
+    """The six components of the distance of two simulated icons for a nominal person (or `observer`).
 
     `felt` are their percepts, where they are known already. `direction` is the strongest sensation (d′) in a
     direction whose place in the order of directions differs; `intensity` the difference of the strongest
@@ -148,7 +148,7 @@ def course(trace: Trace, felt: Percept, observer: Observer) -> Course:
 
 
 def course_components(a: Course, b: Course, observer: Observer) -> tuple[DistanceComponent, ...]:
-    """The six parts from what each of the two icons brings."""
+    """The six components from the courses of the two icons."""
     weaker = min(a.strongest, b.strongest)
     moments = math.sqrt(2.0) * observer.onset_uncertainty_s
     duration = _apart(a.duration_s, b.duration_s)

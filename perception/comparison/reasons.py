@@ -1,4 +1,4 @@
-"""Why a pair is told apart or not: sentences whose every number can be computed again.
+"""Why a pair is distinguishable or not: sentences whose every number can be recomputed.
 
 The numbers come from the two nominal traces and percepts through the public functions of
 `features`, `distance` and `rules`.
@@ -58,7 +58,7 @@ def pair_reasons(
     """What separates the two icons, or fails to: direction, peaks, rates, onsets, and the largest difference.
 
     Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm of distance
-    that the two are told apart by from memory.
+    with which the two are distinguished from memory.
     """
     if _alike(a, b):
         text = (
@@ -154,17 +154,17 @@ def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Obs
         return Reason(
             f"{names} nowhere differ by {LEAST_SENSATION:g} d′ of sensation, so their names are guessed", values, "d′"
         )
-    told = (
+    text = (
         f"{names} differ most at {k * felt_a.dt_s:.2f} s by {size:.1f} d′ of sensation "
         f"(cold {cold:.1f}, warm {warm:.1f})"
     )
     if norm == "max":
-        told += f"; memory noise leaves a nominal person d′ {left:.1f} to tell them apart by"
+        text += f"; with memory noise, d′ {left:.1f} for a nominal person"
     else:
         unit = {"rms": "d′", "integral": "d′·s"}[norm]
-        told += f"; by the {norm} norm it is {apart:.1f} {unit} in all"
-        told += f", of which memory noise leaves a nominal person d′ {left:.1f}"
-    return Reason(told, values, "d′")
+        text += f"; by the {norm} norm it is {apart:.1f} {unit} in all"
+        text += f", which with memory noise is d′ {left:.1f} for a nominal person"
+    return Reason(text, values, "d′")
 
 
 def _alike(a: Trace, b: Trace) -> bool:

@@ -25,9 +25,9 @@ def counted(results: Iterable[RuleResult]) -> list[RuleResult]:
 
 
 def pair_margin(results: Iterable[RuleResult]) -> float | None:
-    """How safely the rules tell a pair apart: the largest normalised margin, since one rule suffices.
+    """Margin by which rules separate a pair: the largest normalised margin, since one rule suffices.
 
-    Negative where no rule does; None where a rule without a size tells them apart, such as direction.
+    Negative where no rule does; None where a rule without a size separates them, such as direction.
     """
     ours = [r for r in results if r.quantity in OURS]
     if any(r.passed and (r.quantity == "direction" or r.margin is None) for r in ours):
@@ -37,9 +37,9 @@ def pair_margin(results: Iterable[RuleResult]) -> float | None:
 
 
 def icon_score(icon: Sequence[RuleResult], pairs: Sequence[tuple[bool, float | None]]) -> tuple[float, float | None]:
-    """Share passed of an icon's own rules and of its pairs told apart, and the smallest normalised margin of them.
+    """Share passed of an icon's rules and of its pairs, and the smallest normalised margin of them.
 
-    `pairs` holds (told apart, margin) of every pair it is in. Bands have no margin to compare. The margin
+    `pairs` holds (distinguishable, margin) of every pair it is in. Bands have no margin to compare. The margin
     is None where nothing has one.
     """
     own = counted(icon)
@@ -51,7 +51,7 @@ def icon_score(icon: Sequence[RuleResult], pairs: Sequence[tuple[bool, float | N
 
 
 def worst_by_rules(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
-    """The pair that rules tell apart least safely; equal ones by how few rules pass, then by name."""
+    """The pair with the smallest margin by rules; equal ones by how few rules pass, then by name."""
 
     def safety(pair: PairScore) -> tuple[bool, float, int, str, str]:
         margin = float("inf") if pair.rules_margin is None else pair.rules_margin
@@ -64,7 +64,7 @@ def worst_by_rules(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
 
 
 def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tuple[dict[str, Any], ...]:
-    """Icons and pairs that rules and model judge differently, with what each says."""
+    """Icons and pairs that rules and model judge differently, with both verdicts."""
     found: list[dict[str, Any]] = []
     for icon in icons:
         rules = passes(icon.rules, "change at the receptor", "rate at the receptor")

@@ -1,8 +1,8 @@
 """Rules of thumb, scored on an icon, a pair or a rig, each with its margin and its source.
 
 The thresholds are data (`data/rules.toml`). Rules from the literature and rules of this project
-are told apart by their source; none of them feeds the model. A rule whose value only the model
-has (when something is felt) is marked `from_model`, and no score by rules counts it.
+are distinguished by their source; none of them feeds the model. A rule whose value only the model
+provides (when something is felt) is marked `from_model`, and no score by rules counts it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 DISTINGUISHABLE = "distinguishable"
 OURS = ("direction", "peak", "rate ratio", "onset")
-"""Rules of this project on a pair; one that passes tells it apart."""
+"""Rules of this project on a pair; one that passes makes it distinguishable."""
 Plain = str | float | bool | None
 
 
@@ -95,7 +95,7 @@ def load_rules() -> Table:
 def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
     """Rules on one icon: change and rate in every direction it moves, neutral zone; latency and felt peak.
 
-    The last two hold what the model predicts against what is published, and are marked so. The window of
+    The last two compare what the model predicts with what is published, and are marked so. The window of
     latencies is for rates over 0.1 K/s; a slower change has no latency rule.
     """
     table = load_rules()
@@ -120,7 +120,7 @@ def icon_rules(trace: Trace, percept: Percept) -> tuple[RuleResult, ...]:
 
 
 def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
-    """Rules on a pair; the last, `told apart`, passes when any of this project's others does.
+    """Rules on a pair; the last, `distinguishable`, passes when any other rule of this project does.
 
     All of them are read off the two traces: onsets are the times at which a receptor passes its threshold.
     """
@@ -181,7 +181,7 @@ def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleRes
         return _inside(record, channel, onset_s)
     low, high = record.interval
     band = f"{low:.3g} to {high:.3g}{_unit(record)}"
-    text = f"latency: the icon is not felt, so it has no onset to hold against {band}"
+    text = f"latency: the icon is not felt, so it has no onset to compare with {band}"
     return _result(record, channel, False, None, None, high, text, low)
 
 

@@ -1,4 +1,4 @@
-"""What an icon leaves behind for the next one: warmth in the skin, and adaptation of the receptors.
+"""Carry-over from an icon to the next: temperature left in the skin, and adaptation of the receptors.
 
 The nominal person feels every icon after every other one. Between the display and the receptors the skin is linear, so
 that what is left of the icon before adds to what the next one brings; adaptation, which is not, is then run over both.

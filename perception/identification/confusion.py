@@ -152,7 +152,7 @@ def _two(d_prime: Array, favour: Array) -> Array:
 
 
 def _shared(named: Array, distances: Array, favour: Array) -> Array:
-    """Answers shared equally among icons that nobody can tell apart, which the nearest point leaves to rounding."""
+    """Answers shared equally among identical icons, among which rounding would decide otherwise."""
     fair = (favour[:, :, None] == favour[:, None]).all(axis=0)
     same = ((distances < 1e-9).all(axis=0) & fair).astype(np.float64)
     mean = same / same.sum(axis=1, keepdims=True)
@@ -174,7 +174,7 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
         for person in range(part.start, part.stop):
             rng = np.random.default_rng(np.random.SeedSequence([seed, 1], spawn_key=(first + person,)))
             used = max(1, int(np.any(points[person] != 0.0, axis=0).sum()))
-            # A row an axis: the noise along an axis does not hang on how many others there are.
+            # One row per axis: the noise along an axis does not depend on the number of axes.
             noise = rng.standard_normal((used, samples))
             noise[0] = strata
             if used > 1:

@@ -1,4 +1,4 @@
-"""Designed against delivered, as people feel it: detection of each icon, and d′ to every other icon of the set."""
+"""Perception of the designed and of the delivered icons: detection of each, and d′ to every other icon of the set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class DeliveredChange:
-    """A number of the design and of what is delivered."""
+    """A number for the design, and for what the device delivers."""
 
     designed: float
     delivered: float
@@ -34,7 +34,7 @@ class DeliveredChange:
 
 @dataclass(frozen=True, slots=True)
 class PerceivedChange:
-    """What a device changes of one icon for a nominal person: probability of detection, d′ to each other icon."""
+    """Effect of a device on one icon for a nominal person: probability of detection, d′ to each other icon."""
 
     icon: str
     detection: DeliveredChange
@@ -47,7 +47,7 @@ class PerceivedChange:
         return f"PerceivedChange({self.icon}: {detected}{pair})"
 
     def losses(self) -> tuple[str, ...]:
-        """A sentence for every drop over the stated loss."""
+        """One sentence for every drop that exceeds the stated loss."""
         found = []
         if self.detection.drop > loss_limit("detection drop"):
             found.append(
@@ -64,7 +64,7 @@ class PerceivedChange:
         return tuple(found)
 
     def to_dict(self) -> dict[str, object]:
-        """What a sidecar holds."""
+        """Plain data for the sidecar file."""
         return {
             "observer": "nominal",
             "detected_probability": _pair(self.detection),
@@ -80,7 +80,7 @@ def judge_delivered(
     observer: Observer | None = None,
     norm: str = "max",
 ) -> tuple[PerceivedChange, ...]:
-    """Return what a device changes of every icon of a set, for a nominal person (or `observer`).
+    """Compare designed and delivered icons of a set for a nominal person (or `observer`).
 
     All traces must have the same rows. Each icon is compared with the others as they were designed, and, delivered,
     with the others as they are delivered.

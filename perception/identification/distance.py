@@ -1,4 +1,4 @@
-"""How far apart two percepts are, in d′: over time by a named norm, then over noise.
+"""Distance of two percepts in d′: a norm over time, divided by noise.
 
 At each instant the difference is d(t) = √(Δψ_cold² + Δψ_warm²), after both sensations were
 smoothed by the uncertainty of a remembered onset. A norm makes one number of it: `max` its
@@ -68,7 +68,23 @@ def percept_distances(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, obs
 
 
 def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, norm: Norm = "max") -> float:
-    """Difference of two percepts in sensation units; the shorter one is held at its end."""
+    """Distance of two percepts in sensation units.
+
+    Parameters
+    ----------
+    a, b
+        Percepts on the same clock; the shorter one is held at its end.
+    observer
+        The person (None: the nominal one).
+    norm
+        How the difference over time is counted: `max`, `rms` or `integral`.
+
+    Raises
+    ------
+    ValueError
+        For different clocks and for an unknown norm.
+
+    """
     person = Observer.load() if observer is None else observer
     cold, warm, dt = _common(a, b)
     return float(percept_distances(cold[None], warm[None], dt, person)[check_norm(norm)][0, 0, 1])
@@ -115,7 +131,7 @@ def sensory_noise(norm: Norm, observer: Observer, duration_s: float) -> float:
 
 
 def memory_from_task(difference: float, proportion: float, observer: Observer, norm: Norm, duration_s: float) -> float:
-    """Memory noise (log units) at which a difference is told in a two-interval choice with `proportion` correct.
+    """Memory noise (log units) that gives `proportion` correct for a difference in a two-interval forced choice.
 
     The choice is correct with probability Φ(d′/√2).
     """

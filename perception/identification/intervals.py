@@ -1,4 +1,4 @@
-"""How far a prediction moves when the observer's parameters lie elsewhere in their intervals.
+"""Uncertainty of a prediction from the intervals of the observer's parameters.
 
 Observers are drawn from within the intervals (Latin hypercube, one seed), each judges the icons with the
 same few people on the same noise, and what it changes against the shipped observer is added to the
@@ -22,11 +22,11 @@ from .population import ReceptorTemperatures, Scores, score
 from .task import USUAL, Task
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768
-"""Asked again are the first 24 people; of larger sets fewer, but at least 12, so that about 768 icons are felt."""
+"""Number of people: 24, of larger sets fewer, but at least 12, so that about 768 icons are judged."""
 EVERY = 8
-"""Draws are judged at 12.5 Hz: it moves the scores of shipped icons by less than 0.001, and what it does cancels."""
+"""Draws are judged at 12.5 Hz: this changes the scores of shipped icons by less than 0.001, and the change cancels."""
 MANY = 32
-"""Larger sets are judged at half of these instants: it moves the ends of an interval by less than 0.002."""
+"""Larger sets are judged at half of these instants: this changes the ends of an interval by less than 0.002."""
 SAMPLES, LEAST, NAMED = 512, 128, 8192
 """Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 DRAWS = 128
@@ -70,7 +70,7 @@ def parameter_intervals(
 ) -> ParameterIntervals:
     """Intervals about `predicted`, from `draws` observers; `step` is called after each.
 
-    `thin` is what the first PEOPLE of the crowd went through, at every EVERY-th instant: they are asked again.
+    `thin` holds the temperatures of the first PEOPLE of the crowd at every EVERY-th instant.
     Raises `ValueError` for fewer than two draws, which have no interval.
     """
     if draws < 2:
@@ -124,7 +124,7 @@ def parameter_intervals(
 
 
 def people_for_intervals(icons: int) -> int:
-    """How many people, at most, judge a set of so many icons with every observer.
+    """Largest number of people who judge a set of this size with every observer.
 
     >>> people_for_intervals(6), people_for_intervals(64)
     (24, 12)

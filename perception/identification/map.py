@@ -1,6 +1,6 @@
 """The perceptual map: icons as points of a plane whose distances come as near to the pairwise d′ as a plane allows.
 
-Classical scaling gives a start, SMACOF (majorisation of the stress) betters it. Where the map comes to lie is a
+Classical scaling gives a start, SMACOF (majorisation of the stress) improves it. The orientation of the map is a
 convention, or follows a reference map, so that an edited set is found where it was before.
 """
 
@@ -30,8 +30,8 @@ ALIKE = 1e-6
 class PerceptualMap:
     """Points (icons, 2) in d′ for icons by name, and how far the plane bends the distances.
 
-    `stress` is Kruskal's stress-1, 0 for none. `covariance` (icons, 2, 2) in d′² says where the icons lie on the maps
-    of single people, each turned and shifted onto this one; None where one person was asked.
+    `stress` is Kruskal's stress-1, 0 for none. `covariance` (icons, 2, 2) in d′² is their scatter over the maps
+    of single people, each rotated and shifted onto this one; None for one person.
     """
 
     labels: tuple[str, ...]
@@ -52,7 +52,7 @@ class PerceptualMap:
             object.__setattr__(self, name, own)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the points with their names and ellipses; returns the axes."""
+        """Draw the points with their names and ellipses; return the axes."""
         from ..plots.draw_map import plot_map
 
         return plot_map(self, ax)
@@ -121,7 +121,7 @@ def classical(distances: Array) -> Array:
 
 
 def smacof(distances: Array, start: Array, steps: int = STEPS, tolerance: float = TOLERANCE) -> Array:
-    """Points (..., icons, 2) bettered by majorisation from a start; no step raises the stress.
+    """Points (..., icons, 2) improved by majorisation from a start; no step raises the stress.
 
     `distances` (..., icons, icons). Ends when no map's stress falls by more than `tolerance` in a step.
     """
@@ -185,3 +185,50 @@ def settled(points: Array) -> Array:
         turned[:, axis] *= side if first_off > 0 else -side
     made: Array = turned
     return made
+
+
+MOST_PEOPLE, MOST_CELLS = 64, 200_000
+"""How many people a map is drawn from, and how many d′ are kept for it: fewer people of many icons."""
+
+
+@dataclass(frozen=True, slots=True)
+class PersonSpread:
+    """Over people: `place_probability` (icons, places), whose rows and columns sum to 1; `d_prime` (few, icons, icons).
+
+    Places go from the icon that a person names best to the one named worst. Icons that agree to the whole per cent
+    share their places, since smaller differences are within the sampling error of the confusions.
+    """
+
+    place_probability: Array
+    d_prime: Array
+
+    def __post_init__(self) -> None:
+        for name in ("place_probability", "d_prime"):
+            own = np.array(getattr(self, name), dtype=np.float64)
+            own.setflags(write=False)
+            object.__setattr__(self, name, own)
+
+
+def spread_over_people(d_prime: Array, correct: Array) -> PersonSpread:
+    """Places and a few d′ out of pairwise d′ (people, icons, icons) and proportions correct (people, icons)."""
+    icons = d_prime.shape[-1]
+    few = max(2, min(MOST_PEOPLE, MOST_CELLS // (icons * icons)))
+    return PersonSpread(place_probability(correct), d_prime[:few])
+
+
+def place_probability(correct: Array) -> Array:
+    """Probability (icons, places) over people that an icon is at a place, from proportions correct (people, icons).
+
+    >>> place_probability(np.array([[0.9, 0.7], [0.8, 0.8]])).tolist()
+    [[0.75, 0.25], [0.25, 0.75]]
+    """
+    whole = np.rint(100.0 * np.asarray(correct, dtype=np.float64))
+    people, icons = whole.shape
+    found, places = np.zeros((icons, icons)), np.arange(icons)
+    for person in whole:
+        better = (person[None, :] > person[:, None]).sum(axis=1)
+        equal = (person[None, :] == person[:, None]).sum(axis=1)
+        within = (places >= better[:, None]) & (places < (better + equal)[:, None])
+        found += within / equal[:, None]
+    found /= people
+    return found

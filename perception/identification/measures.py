@@ -1,4 +1,4 @@
-"""What a confusion matrix is worth: proportion correct and information.
+"""Scores of a confusion matrix: proportion correct and information.
 
 Published information is the plug-in estimate of a few dozen trials, which is biased upwards;
 `plugin_bits` computes what such an experiment would report, `information_bits` the exact value.
@@ -47,7 +47,7 @@ def information_bits(confusion: ArrayLike) -> Array:
 def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> PluginInformation:
     """What experiments of `trials` trials report, by the plug-in estimator on their counts.
 
-    Presentations are spread over the icons as evenly as they go. With `confusion` of shape
+    Presentations are spread over the icons as evenly as possible. With `confusion` of shape
     (people, m, m), every person takes part in `experiments` experiments.
     """
     people = np.asarray(confusion, dtype=np.float64)
@@ -57,9 +57,9 @@ def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: i
 
 
 def experiments_bits(confusion: Array, trials: int, seed: int, experiments: int, first: int = 0) -> Array:
-    """Bits that each of a person's experiments reports, (people, experiments), from `confusion` (people, m, m).
+    """Bits that each experiment of a person reports, (people, experiments), from `confusion` (people, m, m).
 
-    A person's experiments hang on the seed and on the person's number, which counts from `first`.
+    A person's experiments depend on the seed and on the person's number, which counts from `first`.
     """
     if trials < 1:
         raise ValueError(f"an experiment needs at least one trial, not {trials}")

@@ -1,4 +1,4 @@
-"""Many people on many icons: receptor temperatures → what each feels → whom each confuses with whom."""
+"""Many people and many icons: receptor temperatures → responses → pairwise d′ → confusions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .task import USUAL, Task
 
 @dataclass(frozen=True, slots=True)
 class ReceptorTemperatures:
-    """What the receptors of every person went through: °C of shape (people, icons, n_time), clock in s, area in m²."""
+    """Temperatures at the receptors of every person: °C, shape (people, icons, n_time); clock in s, area in m²."""
 
     cold_C: Array
     warm_C: Array
@@ -31,7 +31,7 @@ class ReceptorTemperatures:
         return ReceptorTemperatures(self.cold_C[:, icons], self.warm_C[:, icons], self.time_s, self.site, self.area_m2)
 
     def thinned(self, people: int, every: int) -> ReceptorTemperatures:
-        """The first people of them at every k-th instant, on arrays of their own."""
+        """The first people at every k-th instant, copied."""
         cold, warm = (held[:people, :, ::every].copy() for held in (self.cold_C, self.warm_C))
         return ReceptorTemperatures(cold, warm, self.time_s[::every], self.site, self.area_m2)
 
@@ -51,7 +51,7 @@ class PopulationResponse:
 
 @dataclass(frozen=True, slots=True)
 class Scores:
-    """What one observer's constants make of it: per person proportion correct and bits, per icon the detected share."""
+    """Scores by one observer: proportion correct and bits of every person, detected share of every icon."""
 
     proportion_correct: Array
     information_bits: Array
@@ -59,7 +59,7 @@ class Scores:
 
 
 def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> PopulationResponse:
-    """What every person feels of every icon, and how far apart the icons are for them."""
+    """Detection of every icon by every person, and the distances between the icons."""
     dt, rows = uniform_clock(played.time_s)
     cold, warm = perceive_many(
         played.cold_C[..., :rows],
@@ -86,7 +86,7 @@ def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> 
 
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
-    """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) is each person's own noise."""
+    """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) multiplies the memory noise."""
     own = task.memory(memory, felt.peaks, observer)[:, None, None]
     return felt.apart[norm] / task.between(identification_noise(observer, norm, felt.duration_s, own), norm)
 
@@ -103,7 +103,7 @@ def identify(
 ) -> tuple[Array, Confusion]:
     """Pairwise d′ from memory (people, icons, icons) by one norm, and the confusions that follow.
 
-    `first` is the number of the first person, on which the noise and the bias hang.
+    `first` is the number of the first person, on which the noise and the bias depend.
     """
     d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
     bias = task.favour(first, len(crowd), d_prime.shape[-1], seed)
@@ -119,7 +119,7 @@ def score(
     samples: int,
     task: Task = USUAL,
 ) -> Scores:
-    """The whole chain for one observer, without what only a report needs."""
+    """Scores by one observer, without what only a report needs."""
     felt = respond(played, crowd, observer)
     confusion = identify(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
     return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

@@ -31,7 +31,7 @@ from .distance import memory_from_task, percept_distances
 TAIL_S = 10.0
 STRENGTHS = np.round(np.linspace(0.0, 1.0, 51), 2)
 EVEN = 1.02
-"""Strengths whose task is within 2 % of the most even one are not told apart by it."""
+"""Strengths whose task is within 2 % of the most even one are not distinguished by it."""
 
 
 def gain_strength(known: Table, observer: Observer) -> Record:

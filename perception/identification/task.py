@@ -1,4 +1,4 @@
-"""What naming an icon from memory adds to feeling it: the range of the set, the icon before, and favoured names.
+"""The identification task: effects of the range of the set, of the preceding icon, and of favoured names.
 
 In context coding (Durlach & Braida 1969) an intensity is remembered against the ends of the range in use, and the noise
 of memory grows with that range. The one thermal record that we have, the rate task that memory noise is calibrated on,
@@ -18,21 +18,21 @@ from ..arrays import Array
 from ..observer.observer import NORMS, Norm, Observer
 
 NARROWEST = 0.25
-"""Below a quarter of the calibrating task's range memory gets no better: then the trace itself is what is compared."""
+"""Below a quarter of the calibrating task's range memory does not improve: then the trace itself is compared."""
 LONGEST_GAP_S = 600.0
 MOST_BIAS = 5.0
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """How icons are asked for; the default is constant memory noise, a long pause before every icon, and no bias.
+    """An identification task; the default is constant memory noise, a long pause before every icon, and no bias.
 
     `context` (0–1) is the share of memory noise, in its logarithm, that follows the range of the set. `gap_s` is the
     time from the end of one icon to the next (None: all has faded). `bias` is the SD over people and names of the log
     likelihood that favours a name. There is no thermal record of the last two, nor of `context` above 0.
     The rest is filled in by `prepared` for the icons at hand: `carried` (norms, icons) is what the icons before change
     of each, in sensation units; `counted` are the places of the icons that will be played, which make up the range
-    (none: all); `places` are those that the icons had in the set that they come from, on which bias hangs.
+    (none: all); `places` are those that the icons had in the set that they come from, on which the bias depends.
 
     >>> Task(context=1.5)
     Traceback (most recent call last):
@@ -60,11 +60,11 @@ class Task:
 
     @property
     def plain(self) -> bool:
-        """Whether naming adds nothing but constant memory noise."""
+        """Whether the task adds only constant memory noise."""
         return self == USUAL
 
     def asked(self) -> Task:
-        """The task as it was asked for, without what was filled in for some icons."""
+        """The task without what was filled in for particular icons."""
         return Task(self.context, self.gap_s, self.bias)
 
     def memory(self, own: Array, peaks: tuple[Array, Array], observer: Observer) -> Array:
@@ -85,7 +85,7 @@ class Task:
         return found
 
     def favour(self, first: int, people: int, icons: int, seed: int) -> Array | float:
-        """Log likelihoods (people, icons) that favour names; a person's own do not hang on who else takes part."""
+        """Log likelihoods (people, icons) that favour names; those of a person do not depend on the other people."""
         if self.bias == 0.0:
             return 0.0
         streams = (np.random.SeedSequence([seed, 7], spawn_key=(first + person,)) for person in range(people))

@@ -53,7 +53,7 @@ def drive_unit(variable: Variable, model: Model) -> str:
 
 
 def source_of(variable: Variable, model: Model) -> str:
-    """How the parameter file ends the name of a number that hangs on the variant; nothing for the default.
+    """How the parameter file ends the name of a number that depends on the variant; nothing for the default.
 
     >>> source_of("temperature", "adapting"), source_of("heat flow", "adapting")
     ('', ' from heat flow')

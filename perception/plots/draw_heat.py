@@ -1,4 +1,4 @@
-"""Heat maps of a set: distances, confusions and places, icons that are near one another side by side.
+"""Heat maps of a set: distances, answers and ranks, with similar icons adjacent.
 
 One light map of one hue, so that a page stays printable and a grey copy keeps the order of the shades. Every cell says
 its number as long as it is large enough to hold one; then a colour bar says what the shades mean.
@@ -29,38 +29,38 @@ LONGEST_LABEL = 44
 
 
 def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
-    """Predicted confusions in per cent: rows the icon presented, columns the name it is answered with.
+    """Draw the predicted answers in per cent: rows are the icon presented, columns the name answered.
 
-    Icons that are confused stand side by side, or `clustered=False` keeps the order of the file.
+    The diagonal is correct. Icons that are often confused are adjacent; `clustered=False` keeps the order of the file.
     """
     order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
     names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
     axes.set_xlabel("answered")
     axes.set_ylabel("presented")
-    axes.set_title(f"predicted confusions, % ({100 * ranking.proportion_correct:.0f} % correct)")
+    axes.set_title(f"Predicted answers, % (diagonal correct: {100 * ranking.proportion_correct:.0f} %)")
     return axes
 
 
 def plot_distance(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
-    """Predicted d′ of every pair, the median over people; icons that are near stand side by side."""
+    """Draw the predicted d′ of every pair, the median over people; similar icons are adjacent."""
     order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
     names = [ranking.marked[k] for k in order]
     matrix = ranking.d_prime[np.ix_(order, order)]
     axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))
     axes.set_xlabel("… and")
     axes.set_ylabel("d′ between …")
-    axes.set_title(f"predicted d′ between icons ({ranking.norm})")
+    axes.set_title(f"Predicted d′ between icons ({ranking.norm} norm)")
     return axes
 
 
 def plot_places(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Probability in per cent that an icon is at each place among the icons, over people; the best icon on top.
+    """Draw the probability over people, in per cent, that an icon has each rank; the best icon is at the top.
 
-    Raises `ValueError` for a ranking that kept nothing of its people.
+    Raises `ValueError` for a ranking without results of single people.
     """
     if ranking.spread is None:
-        raise ValueError("this ranking keeps no places of single people: rank the icons again")
+        raise ValueError("this ranking has no results of single people: rank the icons again")
     place = {name: k for k, name in enumerate(ranking.labels)}
     order = [place[row["icon"]] for row in ranking.rows()] if ranking.by == "model" else list(place.values())
     names = [ranking.marked[k] for k in order]

@@ -24,9 +24,9 @@ INK, QUIET = "#1a1a1a", "#8a8a8a"
 POINT = 9.0
 """Size of a name in points."""
 FEW, SMALL, LARGE = 10, (7.2, 5.6), (10.0, 7.8)
-"""Up to so many icons have room in the small size (inches)."""
+"""Largest number of icons for the small size (inches)."""
 NEAR = 8.0
-"""A name further than so many points from its dot has a line to it."""
+"""A name farther than this many points from its dot is joined to it by a line."""
 
 
 def plot_map(found: PerceptualMap, ax: Axes | None = None) -> Axes:
@@ -47,8 +47,8 @@ def plot_map(found: PerceptualMap, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right"]].set_visible(False)
     axes.set_title(f"perceptual map (stress {found.stress:.2f})", loc="left")
     if found.covariance is not None:
-        told = f"ellipses: {100 * SHARE:.0f} % of {found.people} people"
-        axes.annotate(told, (1.0, 1.01), xycoords="axes fraction", ha="right", va="bottom", fontsize=8, color="#444444")
+        note = f"ellipses: {100 * SHARE:.0f} % of {found.people} people"
+        axes.annotate(note, (1.0, 1.01), xycoords="axes fraction", ha="right", va="bottom", fontsize=8, color="#444444")
     _names(axes, found)
     return axes
 

@@ -42,7 +42,7 @@ def plot_ranking(ranking: Ranking, ax: Axes | None = None) -> Axes:
     axes.set_yticks(places, names)
     axes.tick_params(axis="y", length=0)
     axes.set_xticks([0, 25, 50, 75, 100])
-    axes.set_xlabel("correct (%)" if model else "rules passed and pairs told apart (%)")
+    axes.set_xlabel("correct (%)" if model else "rules passed and pairs distinguishable (%)")
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
@@ -91,11 +91,9 @@ def _plays(row: dict[str, Any]) -> str:
 
 
 def _rival(ranking: Ranking, name: str) -> str:
-    """The icon that this one is called most often by mistake, with the share."""
-    place = ranking.labels.index(name)
-    others = [(share, label) for share, label in zip(ranking.confusion[place], ranking.labels, strict=True)]
-    del others[place]
-    if not others:
+    """The icon that this one is confused with most often, and how often: the mean of both directions."""
+    pairs = [pair for pair in ranking.pairs if name in (pair.a, pair.b)]
+    if not pairs:
         return "–"
-    share, label = max(others)
+    share, label = max((pair.confused_probability, pair.b if pair.a == name else pair.a) for pair in pairs)
     return f"{label} ({100 * share:.0f} %)"

@@ -1,4 +1,4 @@
-"""The main job: icons on a rig → what people feel → who is confused with whom → a ranking."""
+"""Rank a set: icons on a rig → percepts → confusions → a ranking."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from ..comparison.rule_score import disagreements, icon_score, pair_margin, wors
 from ..comparison.rules import icon_rules, pair_rules, rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.intervals import DRAWS, parameter_intervals
+from ..identification.map import spread_over_people
 from ..identification.population import Scores
-from ..identification.spread import spread_over_people
 from ..identification.task import USUAL, Task
 from ..observer.observer import DATA, Norm, Observer, check_norm
 from ..observer.people import People, draw_people
@@ -65,24 +65,52 @@ def rank(
     keep: Path | None = None,
     progress: Progress | None = None,
 ) -> Ranking:
-    """Predict how well people tell the icons of a set apart when they name them from memory.
+    """Predict how well people identify the icons of a set from memory.
 
-    Every icon is simulated to one common end, the longest icon plus 10 s, on the nominal rig and on
-    that of each virtual person. `tracking` is `replay`, `display` or `ideal` (None: what suits the
-    icon's control); `norm` is `max`, `rms` or `integral`. `by` is `model`, or `rules`: then icons
-    are ranked by rules alone, and the model only says where it disagrees. `parameters` observers are drawn
-    for the intervals that the observer's parameters leave open (0: none). `choosing` asks for the best few of the
-    icons, and the intervals are then those of the chosen; `edits` for the cheapest edit of the `worst` pair, of `all`
-    that are not apart, or of `none`. `task` says how icons are asked for: memory noise that follows the range of the
-    set, a gap so short that the icon before is still felt, favoured names. `progress` is called with (steps done,
-    steps in all). A pair's d′ is the median over people. Icons that are not safe or not reached are ranked apart,
-    after all others.
+    Every icon is simulated to one common end, the longest icon plus 10 s, on the nominal rig and on that of each
+    virtual person. The d′ of a pair is the median over people. Icons that are not safe or not reached are ranked last.
 
-    The work goes in chunks of people, to `workers` threads (None: one a core) or to the dask cluster whose scheduler
-    has the address `cluster`; with a folder `keep`, finished chunks stay there and a run that was ended goes on from
-    them. None of it changes the result: same arguments, same bytes.
+    Parameters
+    ----------
+    icons
+        The set.
+    rig
+        The rig that plays it.
+    people, seed
+        Number of virtual people, and the seed they and all noise are drawn from.
+    trials
+        Trials of the predicted experiment.
+    tracking
+        `replay`, `display` or `ideal` (None: what suits the control of each icon).
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+    by
+        `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
+    parameters
+        Draws for the intervals from the observer's parameters (0: none).
+    choosing
+        Request for the best subset; the intervals are then those of the chosen icons.
+    edits
+        Find the cheapest edit of the `worst` pair, of `all` pairs that are not distinguishable, or of `none`.
+    task
+        The identification task: memory noise that follows the range of the set, a short gap, favoured names.
+    workers, cluster
+        Threads (None: one per core), or the address of the scheduler of a dask cluster.
+    keep
+        Folder that keeps finished batches, so that an interrupted run continues from them.
+    progress
+        Called with (steps done, steps in all).
 
-    Raises `ValueError` for a set without icons, for unknown names, a single draw, and a choice that cannot be made.
+    Returns
+    -------
+    Ranking
+        The same bytes for the same arguments, wherever the work is done.
+
+    Raises
+    ------
+    ValueError
+        For a set without icons, unknown names, a single draw, and a choice that cannot be made.
+
     """
     from thermicon.circuit import duration_s, simulate_all
 

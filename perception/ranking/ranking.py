@@ -1,4 +1,4 @@
-"""What `rank` found: a frozen noun with the contract's JSON, a table and two pictures."""
+"""The result of `rank`: icons, pairs and confusion matrix, with JSON, a table and a figure."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
 from ..comparison.rules import DISTINGUISHABLE, RuleResult
 from ..identification.intervals import ParameterIntervals
-from ..identification.spread import PersonSpread
+from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
 
@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from ..selection.edit import Edit, NoEdit
 
 
-A_POINT = 0.01
+PERCENTAGE_POINT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class IconScore:
-    """One icon. Probability of detection and per cent correct are means over people; the rest is nominal.
+    """One icon. Probability of detection and proportion correct are means over people; the rest is nominal.
 
     `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
-    attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` says why the icon is not
-    safe, cannot be reached, or both; `cautions` are the soft limits of safety that it passes; `outside_data`
-    says where no data stand behind the prediction. `rules_score` is the share passed of its own rules and of
-    its pairs told apart, `rules_margin` the smallest normalised margin among them.
+    attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` states why the icon is not
+    safe, cannot be reached, or both; `cautions` are the soft safety limits that it exceeds; `outside_data`
+    states where no data support the prediction. `rules_score` is the share that is passed of its rules and of
+    its pairs, `rules_margin` the smallest normalised margin among them.
     """
 
     name: str
@@ -66,11 +66,11 @@ class IconScore:
 
 @dataclass(frozen=True, slots=True)
 class PairScore:
-    """One pair: median d′ over people, share of confusions (either way, mean of both), why, rules.
+    """One pair: median d′ over people, share of trials in which it is confused (mean of both directions), why, rules.
 
-    `rules_margin` is how safely rules tell it apart, in shares of a threshold (None: by direction alone). `edit` is
-    the cheapest edit that parts the two, or why there is none (None: not looked for); `parts` are those of the distance
-    for a nominal person.
+    `rules_margin` is the margin by which rules separate it, in shares of a threshold (None: by direction alone). `edit`
+    is the cheapest edit that separates the two, or the reason why there is none (None: not requested); `parts` are the
+    components of the distance for a nominal person.
     """
 
     a: str
@@ -85,7 +85,7 @@ class PairScore:
 
     @property
     def rules_pass(self) -> bool:
-        """Whether the rules alone tell the two apart."""
+        """Whether the two are distinguishable by rules alone."""
         return any(r.passed for r in self.rules if r.rule == DISTINGUISHABLE)
 
 
@@ -93,15 +93,15 @@ class PairScore:
 class Ranking:
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
-    Per cent correct is 0–1 and information in bits, each with the 2.5–97.5 % interval over people.
-    `rig_changes` are what was changed on the rig for this question, such as `contact.area_cm2=4`.
-    `stress` and the standard errors (of the pooled cell, and of the cell of one person, that sampling blurs most) are
-    the accuracy of confusions, not spread over people.
-    `parameter_intervals` is what the observer's parameters leave open (None: not asked for). `by` says what
-    the icons are ranked by and which worst pair is told; the model's numbers are there in both cases. `chosen` are
-    the best few of them, where asked for; `spread` is what pictures need of single people. `task` is how icons are
-    asked for; `carry_over`, with a gap between them, what each leaves behind for the next (None: nothing). `by_norm` is
-    the proportion correct of each icon by the norms that were not asked for.
+    Proportion correct is 0–1 and information is in bits, each with the 2.5–97.5 % interval over people.
+    `rig_changes` are the keys of the rig that were changed, such as `contact.area_cm2=4`.
+    `stress` and the standard errors (the largest of a pooled cell, and of a cell of one person) state
+    the accuracy of the confusions, not their spread over people.
+    `parameter_intervals` is the uncertainty from the observer's parameters (None: not requested). `by` states what
+    the icons and the worst pair are ranked by; the model's numbers are present in both cases. `chosen` is the best
+    subset, where requested; `spread` is what figures need of single people. `task` is the identification task;
+    `carry_over` is what each icon leaves behind for the next where there is a gap (None: nothing). `by_norm` is the
+    proportion correct of each icon by the other norms.
     """
 
     version: str
@@ -139,7 +139,7 @@ class Ranking:
     def __post_init__(self) -> None:
         own = np.array(self.confusion, dtype=np.float64)
         if own.shape != (len(self.icons),) * 2 or not np.allclose(own.sum(axis=1), 1.0, rtol=0, atol=1e-12):
-            raise ValueError("the confusion matrix must have a row and a column for each icon, and rows that sum to 1")
+            raise ValueError("the confusion matrix must have one row and one column per icon, and rows that sum to 1")
         own.setflags(write=False)
         object.__setattr__(self, "confusion", own)
 
@@ -170,29 +170,29 @@ class Ranking:
 
     @property
     def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """By each other norm, the pairs of icons that change places: the first is better here, the second there.
+        """By each other norm, the pairs of icons whose order changes: the first is better here, the second there.
 
-        Only by more than one point of per cent correct in both, since less is within what sampling blurs.
+        Differences must exceed one percentage point in both, since smaller ones are within the sampling error.
         """
         own = [icon.proportion_correct for icon in self.icons]
         return {
             norm: tuple(
                 (self.labels[i], self.labels[j])
                 for i, j in permutations(range(len(own)), 2)
-                if own[i] > own[j] + A_POINT and each[j] > each[i] + A_POINT
+                if own[i] > own[j] + PERCENTAGE_POINT and each[j] > each[i] + PERCENTAGE_POINT
             )
             for norm, each in self.by_norm.items()
         }
 
     @property
     def rules_score(self) -> float | None:
-        """Share of pairs that rules alone tell apart; None for one icon."""
+        """Share of pairs that are distinguishable by rules alone; None for one icon."""
         return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
 
     def rows(self) -> list[dict[str, Any]]:
-        """One plain row for each icon, the best first: by per cent correct, or by its rules when `by` is rules.
+        """One plain row per icon, the best first: by proportion correct, or by its rules when `by` is rules.
 
-        Icons that are not safe or not reached come after all others. By rules, what only the model gives is None.
+        Icons that are not safe or not reached come last. By rules, what only the model provides is None.
         """
         model = self.by == "model"
         return [
@@ -223,19 +223,19 @@ class Ranking:
         return pd.DataFrame(self.rows())
 
     def to_dict(self) -> dict[str, Any]:
-        """The contract of `rank --json` as plain data: what does not exist is None, never NaN."""
+        """The content of `rank --json` as plain data: missing values are None, never NaN."""
         from .rank_file import ranking_file
 
         return ranking_file(self)
 
     def to_json(self) -> str:
-        """That contract as text, the same bytes for the same arguments."""
+        """The content of `rank --json` as text, the same bytes for the same arguments."""
         from .rank_file import as_text
 
         return as_text(self.to_dict())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the pooled confusion matrix; returns the axes."""
+        """Draw the pooled confusion matrix; return the axes."""
         from ..plots.draw import plot_confusion
 
         return plot_confusion(self, ax)
@@ -274,7 +274,7 @@ class Ranking:
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:
-    """A rig's name with what was changed on it.
+    """Name of a rig with its changed keys.
 
     >>> with_changes("thenar", ["contact.area_cm2=4"]), with_changes("thenar", [])
     ('thenar with contact.area_cm2=4', 'thenar')

@@ -1,4 +1,4 @@
-"""What a set is worth in a few numbers: the chain of `rank` without reasons, rules and intervals."""
+"""A set in a few numbers: the chain of `rank` without reasons, rules and intervals."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TAIL_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Appraisal:
-    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits a second."""
+    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second."""
 
     worst_pair: tuple[str, str]
     d_prime: float
@@ -67,7 +67,7 @@ def appraise(
     samples: int = SAMPLES,
     task: Task = USUAL,
 ) -> Appraisal:
-    """Predict how well people tell these icons apart, with the same people and noise as `rank`.
+    """Predict how well people identify these icons, with the same people and noise as `rank`.
 
     Raises `ValueError` for fewer than two icons, and what `simulate_many` raises.
 
@@ -78,7 +78,7 @@ def appraise(
     ('cooling-step', 'warming-step')
     """
     if len(icons) < 2:
-        raise ValueError("two icons at least are needed to be told apart")
+        raise ValueError("at least two icons are needed to be distinguished")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
     d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task)
     return appraise_dprime([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)

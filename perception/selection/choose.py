@@ -1,4 +1,4 @@
-"""The best k of n icons: exact where that can be proven, else the best of seeded restarts under an honest bound.
+"""The best k of n icons: exact where that can be proven, else the best of seeded restarts with an upper bound.
 
 Icons are compared at the range of the pool they come from, so that a pair is as far apart in every choice; the chosen
 are then judged again at their own range.
@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 ENUMERATED = 20
 MOST_SUBSETS = 200_000
-"""Pools of up to 20 icons, and any with so few choices, are looked through to the last one."""
+"""Pools of up to 20 icons, and all with at most this many choices, are enumerated completely."""
 RESTARTS = 6
 ONE_BY_ONE = 50
-"""So many people are taken one by one, to see for how many the choice is also their own best."""
+"""Number of people for each of whom the best choice is found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +50,12 @@ class SubsetChoice:
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The chosen icons in the order of the file, and how sure it is that no other choice is better.
+    """The chosen icons in the order of the file, and whether it is proven that no other choice is better.
 
     `value` and `bound` are at the range of the pool: median d′ of the worst pair over all people, or proportion
     correct, bits or bits a second of the first `people`. `excluded` are icons that could not be chosen, and why.
-    `best_share` is the proportion of the first 50 people for whom no other choice parts its worst pair farther,
-    `loss` what the middle one of them loses by it in d′ (both None but for `worst`). `parameter_intervals` are what the
+    `best_share` is the proportion of the first 50 people for whom no other choice has a better worst pair,
+    `loss` is the median loss of these people in d′ (both None but for `worst`). `parameter_intervals` are what the
     observer's parameters leave open for the chosen (None: not asked for).
     """
 
@@ -183,7 +183,9 @@ def pick(
         try:
             best = max_min_subset(middle, count, must, within)
         except UndecidedError:
-            raise ChoiceError("whether any choice keeps the totals could not be decided: loosen one of them") from None
+            raise ChoiceError(
+                "it could not be decided whether any choice keeps the totals: relax one of them"
+            ) from None
         if best is None:
             return None
         return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.programs)
@@ -203,7 +205,7 @@ def _climbed(
     limits: Limits,
     seed: int,
 ) -> SubsetChoice | None:
-    """The best of the widest choice and of random ones, each bettered by single swaps until none helps."""
+    """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
     others = [k for k in range(len(middle)) if k not in must]
     starts = [pick(middle, None, count, "worst", must, limits)]
@@ -256,7 +258,7 @@ def _limits(asked: Selection, pool: UsableIcons) -> Limits:
 
 
 def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Limits) -> tuple[float, float]:
-    """Share of people for whom no other choice parts its worst pair farther, and what the middle person loses."""
+    """Share of people for whom no other choice has a better worst pair, and the median loss (d′)."""
     own = list(picked.chosen)
     losses = []
     for one in d[:ONE_BY_ONE]:
@@ -273,13 +275,13 @@ def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
 
 
 def _nothing_fits(asked: Selection, pool: UsableIcons) -> str:
-    told = []
+    totals = []
     for costs, most, unit, what in (
         (pool.durations_s, asked.most_s, "s", "shortest last"),
         (pool.energies_J, asked.most_J, "J", "most frugal take"),
     ):
         if most is not None:
             least = math.fsum(np.sort(costs)[: asked.count])
-            told.append(f"{most:g} {unit} (the {asked.count} {what} {least:.3g} {unit})")
+            totals.append(f"{most:g} {unit} (the {asked.count} {what} {least:.3g} {unit})")
     forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
-    return f"no {asked.count} of the {len(pool.places)} icons{forced} stay within a total of {' and '.join(told)}"
+    return f"no {asked.count} of the {len(pool.places)} icons{forced} stay within a total of {' and '.join(totals)}"

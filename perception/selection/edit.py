@@ -2,7 +2,7 @@
 
 An edit costs the |log| of the ratio of the new number to the old, plus a tenth for every second that it adds, so that
 a second is worth about 10 % of a number. Candidates are tried on the nominal person at the range and clock of the set,
-by bisection for every number in both directions; the cheapest that people confirm is told.
+by bisection for every number in both directions; the cheapest one that the virtual people confirm is returned.
 """
 
 from __future__ import annotations
@@ -113,14 +113,14 @@ def cheapest_edit(
     before: Array | None = None,
     task: Task = USUAL,
 ) -> Edit | NoEdit:
-    """The cheapest edit of `a` or `b` that parts them by a median d′ of `wanted` (by default: apart).
+    """The cheapest edit of `a` or `b` that separates them by a median d′ of `wanted` (default: the criterion).
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
     by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known, in the same `task`.
     Raises `KeyError` for a name that is not there, `ValueError` for a `wanted` that is not above 0.
     """
     if not 0 < wanted < math.inf:
-        raise ValueError(f"a pair is parted by a d′ above 0, not {wanted:g}")
+        raise ValueError(f"a pair is separated by a d′ above 0, not {wanted:g}")
     if a == b:
         raise ValueError(f"a pair is two icons, not {a} twice")
     names = [icon.name for icon in icons]
@@ -162,7 +162,7 @@ class _Search:
 
         before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:
-            return NoEdit(f"d′ {before[i, j]:.1f} is told apart already (from {self.wanted:.3g})")
+            return NoEdit(f"the pair is distinguishable already: d′ {before[i, j]:.1f}, criterion {self.wanted:.3g}")
         if self.now[i, j] > 0 and before[i, j] > 0:
             self.target = self.wanted * self.now[i, j] / before[i, j]
         refused = False
@@ -190,8 +190,8 @@ class _Search:
             self.refused.add((one.place, one.new))
             if parted < self.wanted:
                 self.target *= 1.002 * min(self.wanted / max(parted, 1e-6), 1.5)
-        said = "each one that parts them makes another pair worse" if refused or self.opposed else self._why_not()
-        return NoEdit(f"no single edit parts them to d′ {self.wanted:.3g}: {said}")
+        reason = "each one that separates them makes another pair worse" if refused or self.opposed else self._why_not()
+        return NoEdit(f"no single edit separates them to d′ {self.wanted:.3g}: {reason}")
 
     def _untried(self, offers: Sequence[_CandidateEdit]) -> list[_CandidateEdit]:
         return [one for one in offers if (one.place, one.new) not in self.refused]
@@ -267,8 +267,8 @@ class _Search:
         once = "its one statement" if count_of == 1 else f"its {count_of} statements"
 
         def tried(count: int) -> list[_CandidateEdit]:
-            told = (once, f"repeat {count} {{ {once} }}", math.log(count))
-            return self._valid(lambda: repeated(icon, count), lambda _: told, place, (-1, count), float(count))
+            described = (once, f"repeat {count} {{ {once} }}", math.log(count))
+            return self._valid(lambda: repeated(icon, count), lambda _: described, place, (-1, count), float(count))
 
         return [one for count in REPEATS for one in tried(count)]
 
@@ -310,7 +310,7 @@ class _Search:
 
     def _why_not(self) -> str:
         most = f"with numbers up to {self.largest:g} times larger or smaller"
-        return f"the farthest that a safe and reachable one gets a nominal person, {most}, is d′ {self.closest:.1f}"
+        return f"the largest d′ of a safe and reachable one for a nominal person, {most}, is {self.closest:.1f}"
 
     def _played(self, place: int) -> bool:
         """Whether another icon of the set plays this one, and would change with it."""
@@ -326,7 +326,7 @@ class _Search:
 
 
 def _outwards(value: float, number: Number, digits: int) -> float:
-    """A value with so many digits, rounded away from the old one so that what it does is not lost."""
+    """A value with `digits` digits, rounded away from the old one so that its effect is kept."""
     if value == 0:
         return value
     place = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))

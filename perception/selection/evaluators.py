@@ -1,4 +1,4 @@
-"""Whom a search asks: the nominal person, who is quick, or a few people, who are not; both give d′ within a pool."""
+"""Evaluators of a search: the nominal person, which is fast, or a few people; both give d′ within a pool."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class NominalEvaluator:
 
 
 class PopulationEvaluator(NominalEvaluator):
-    """The first 24 people of a seed, each with contact, skin and thresholds of their own."""
+    """The first 24 people of a seed, who differ in contact, skin and thresholds."""
 
     def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int, tracking: str | None) -> None:
         super().__init__(rig, objective, norm, seed)

@@ -1,4 +1,4 @@
-"""What a choice is asked for, which icons can be chosen from, and why others cannot."""
+"""The request for a choice, the icons that can be chosen, and why others cannot."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ChoiceError(ValueError):
-    """No choice can be made as asked; the text says why and what would help."""
+    """The requested choice cannot be made; the text states why and what would help."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class Selection:
     """How many icons to choose and what for; `must` are names of icons that are in any choice.
 
     `objective` is `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`. All chosen icons together last
-    at most `most_s` (s) and take at most `most_J` (J) of the driver, where given. Raises `ChoiceError` for what can
-    be asked of no set.
+    at most `most_s` (s) and take at most `most_J` (J) of the driver, where given. Raises `ChoiceError` for what cannot
+    be requested of any set.
 
     >>> Selection(3, must=("a", "a")).must
     ('a',)
@@ -48,7 +48,7 @@ class Selection:
         if self.objective not in OBJECTIVES:
             raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {self.objective!r}")
         if self.count < 2:
-            raise ChoiceError(f"{self.count} cannot be chosen: at least 2 icons are needed to be told apart")
+            raise ChoiceError(f"{self.count} cannot be chosen: at least 2 icons are needed to be distinguished")
         if len(self.must) > self.count:
             raise ChoiceError(f"{len(self.must)} icons must be among {self.count}: choose more, or ask for fewer")
         for name, most, unit in (("time", self.most_s, "s"), ("energy", self.most_J, "J")):
@@ -67,7 +67,7 @@ class UsableIcons:
 
 
 def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace], rig: Rig) -> UsableIcons:
-    """Sort out what is unsafe, cannot be reached, or moves like an icon before it.
+    """Exclude icons that are unsafe, cannot be reached, or move like an earlier icon.
 
     Raises `ChoiceError` for an icon that must be in and is unknown or sorted out, and where too few are left.
     """
@@ -129,7 +129,7 @@ def shape_of(icon: Icon, rig: Rig) -> object:
 
 
 def objection(trace: Trace) -> str | None:
-    """What speaks against playing an icon: it is not safe, or the rig does not reach it; None where nothing does."""
+    """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
     from thermicon.circuit import judge_safety
 
     verdict = judge_safety(trace)
@@ -159,7 +159,7 @@ def _too_few(count: int, all_: int, left: int, names: Sequence[str], excluded: d
     if not excluded:
         there = "there is only 1 icon" if all_ == 1 else f"there are only {all_} icons"
         return f"{count} icons cannot be chosen: {there}"
-    told = "; ".join(f"{name} {excluded[name]}" for name in names[:3])
+    reasons = "; ".join(f"{name} {excluded[name]}" for name in names[:3])
     more = f"; and {len(names) - 3} more" if len(names) > 3 else ""
     rest = "none is left" if left == 0 else f"only {left} of {all_} are left"
-    return f"{count} icons cannot be chosen: {rest} ({told}{more})"
+    return f"{count} icons cannot be chosen: {rest} ({reasons}{more})"

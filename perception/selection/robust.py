@@ -1,4 +1,4 @@
-"""Which of several sets is best when people, contact, ambient and rig turn out otherwise.
+"""Which of several sets is best when people, contact, ambient and rig vary.
 
 Each draw is one virtual person on one rig: contact and skin are the person's, ambient, module and heat sink are drawn
 about the rig. Every set meets the same draws and the same noise, so that what differs is the set.
@@ -54,13 +54,13 @@ class SetRobustness:
         return self.names[int(np.argmax(self.best))]
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
-        return f"SetRobustness(best by {self.objective} in {self.draws} draws: {told})"
+        shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
+        return f"SetRobustness(best by {self.objective} in {self.draws} draws: {shares})"
 
 
 @dataclass(frozen=True, slots=True)
 class SetComparison:
-    """Probability that set A beats set B (ties count half), its standard error, and the median gain of A over B."""
+    """Probability that set A is better than set B (ties count half), standard error, and median gain of A over B."""
 
     probability: float
     standard_error: float
@@ -126,11 +126,11 @@ def best_set_probability(
         raise ChoiceError(f"at least one draw is needed, not {draws}")
     sets = {name: tuple(each) for name, each in choices.items()}
     if len(sets) < 2:
-        raise ChoiceError("two sets at least are needed to say which is better")
+        raise ChoiceError("at least two sets are needed for a comparison")
     pool: list[Icon] = []
     for name, each in sets.items():
         if len(each) < 2:
-            raise ChoiceError(f"{name} has only {len(each)} icon: two at least are needed to be told apart")
+            raise ChoiceError(f"{name} has only {len(each)} icon: at least two are needed to be distinguished")
         pool += [icon for icon in each if icon not in pool]
     rows = {name: [pool.index(icon) for icon in each] for name, each in sets.items()}
     durations = np.array([duration_s(icon, rig) for icon in pool])

@@ -1,4 +1,4 @@
-"""A better set out of families: their continuous parameters moved until the model tells the icons apart best.
+"""Search of families for a better set: their parameters are varied until the model predicts the best identification.
 
 The best set among the members that the families count out is surrounded by icons that differ a little from its own;
 the best set of that pool is found as in `choose`, surrounded again, and so on, in steps that shrink: first on the
@@ -41,7 +41,7 @@ ALIKE = -1.0
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """The set that was found and the one it began with, each appraised on all people, and what was spent on it."""
+    """The best set and the starting set, each appraised by all people, and the number of evaluations."""
 
     found: IconSet
     start: tuple[Icon, ...]
@@ -70,9 +70,9 @@ def search(
     norm: str = "max",
     progress: Progress | None = None,
 ) -> SearchResult:
-    """Look for values of the families' parameters that make the set better: one icon a family, or `count` in all.
+    """Search the parameters of the families for a better set: one icon per family, or `count` in all.
 
-    Icons of the file that are no families stay as they are. Spans are continuous between their ends, counts and lists
+    Icons of the file that are not families stay as they are. Spans are continuous between their ends, counts and lists
     are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set. Raises
     `ChoiceError` for a file without families, for fewer than two icons, or where no set can be played.
     `evaluations` counts icons that are played to the nominal person.
@@ -128,7 +128,7 @@ def _asked(icons: IconSet, count: int | None, objective: str) -> tuple[tuple[Ico
     if wanted < 2:
         raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
     if wanted <= len(fixed):
-        raise ChoiceError(f"{wanted} icons leave nothing to search: the file has {len(fixed)} that are no families")
+        raise ChoiceError(f"{wanted} icons leave nothing to search: the file has {len(fixed)} that are not families")
     return fixed, wanted - len(fixed)
 
 
@@ -205,7 +205,7 @@ class _Run:
 def climbed(
     namings: SubsetIdentification, chosen: list[int], objective: Objective, middle: Array, must: int
 ) -> list[int]:
-    """Single swaps that better an objective until none does; the first `must` stay, and no two alike come in."""
+    """Single swaps that improve an objective until none does; the first `must` stay, and no two alike come in."""
     score = namings.score(chosen, objective)
     while True:
         allowed = np.ones((len(chosen), len(middle)), dtype=bool)

@@ -1,4 +1,4 @@
-"""Where data end: a sentence for every way in which an icon lies outside what the predictions rest on.
+"""Where data end: one sentence for every way in which an icon lies outside the data behind the predictions.
 
 The limits are data (`data/coverage.toml`): temperatures and rates of skin and receptors, and the sites
 for which detection thresholds are published.

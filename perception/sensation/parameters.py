@@ -2,7 +2,7 @@
 
 A parameter is a record of `data/observer.toml` whose interval has two different ends. What is drawn
 per person (conduction, decision, lapse) belongs to the spread between people and is left alone here.
-The drive of a threshold step is no free number: it is set anew for every draw, so that the published
+The drive of a threshold step is not a free number: it is set again for every draw, so that the published
 thresholds stay what they are whatever adaptation and integration do.
 """
 
@@ -155,7 +155,7 @@ def _moved(record: Record, values: Mapping[str, float]) -> Record:
 def _anchored(observer: Observer, channel: Channel) -> Observer:
     """The observer whose threshold drive is as far above a threshold step's peak as the shipped one's.
 
-    Gain control makes the peak hang on the threshold drive itself, so that it takes a few rounds.
+    Gain control makes the peak depend on the threshold drive itself, so that it takes a few rounds.
     """
     goal = _in_thresholds(Observer.load(), channel)
     for _ in range(ROUNDS):

@@ -59,7 +59,7 @@ class SimulationGrid:
         return ReceptorTemperatures(cold, warm, self.time_s, self.site, self.area_m2)
 
     def played_key(self, shares: Array) -> tuple[float, float]:
-        """All that `played` hangs on: the shares of contact and layer."""
+        """What `played` depends on: the shares of contact and layer."""
         return self._share(shares, CONTACT), self._share(shares, LAYER)
 
     def crowd_at(self, shares: Array) -> People:

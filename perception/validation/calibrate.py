@@ -48,7 +48,7 @@ def calibrate(thresholds: Table | None = None) -> Table:
 
 
 def _variant(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> list[Record]:
-    """Records that hang on what the receptors go by and how, in the order in which each needs the others."""
+    """Records that depend on the sensory variable and the receptor model, each after those that it needs."""
     draft = Observer.from_table(Table("draft", (*shared, *_unset(variable, model))), variable=variable, model=model)
     strength = [gain_strength(known, draft)] if model == "adapting" else []
     person = with_unit_drives(known, with_gain(draft, strength[0].central) if strength else draft)

@@ -1,4 +1,4 @@
-"""Icons named from memory, for every variant of the observer: confusions, and what hangs on parameters.
+"""Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
 The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow or count
 impulses, and the plausible observers that stand behind the other experiments too.

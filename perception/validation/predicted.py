@@ -1,4 +1,4 @@
-"""One predicted number with what it hangs on: parameters that nobody has measured, and people."""
+"""One predicted number with its uncertainty: parameters that nobody has measured, and people."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DRAWS = 24
 
 @dataclass(frozen=True, slots=True)
 class Predicted:
-    """A number that a published experiment can be held against; a prediction, not a measurement.
+    """A number that a published experiment can be compared with; a prediction, not a measurement.
 
     `value` is that of the nominal observer (median of people where there are some), None where nothing
     was felt. `low`, `high` enclose 95 % of the observers that the assumed and calibrated intervals leave

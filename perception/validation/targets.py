@@ -1,6 +1,6 @@
 """What the observer has to explain: targets and their rows, read from `data/targets.toml`.
 
-A row names the prediction of an experiment, the published record it is held against, and the rule
+A row names the prediction of an experiment, the published record it is compared with, and the rule
 by which it is judged. Published numbers themselves come from the table of thresholds alone.
 """
 

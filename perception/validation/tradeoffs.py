@@ -17,7 +17,7 @@ from ..arrays import Array
 STRONG = 0.5
 RARE = 0.001
 FEWEST = 8
-"""Draws below which no correlation is told."""
+"""Draws below which no correlation is reported."""
 
 
 @dataclass(frozen=True, slots=True)

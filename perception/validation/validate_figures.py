@@ -1,6 +1,6 @@
 """Figures of the validation report that set predictions against published numbers; each returns a figure.
 
-Colour tells cold from warm and never anything else; variants are told apart by their marks and dashes.
+Colour distinguishes cold from warm and nothing else; variants differ in markers and dashes.
 Published numbers are black.
 """
 

@@ -152,5 +152,5 @@ def _bounds(row: Row, published: Published) -> tuple[float, float, bool]:
 
 def _value(row: Row, published: Published) -> float:
     if published.value is None:
-        raise ValueError(f"{row.label}: the published record has no value to be held against")
+        raise ValueError(f"{row.label}: the published record has no value to compare with")
     return published.value

@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from thermicon.perception import Observer, perceive_many
+from thermicon.perception import Observer
+from thermicon.perception.sensation.percept import perceive_many
 
 pytestmark = pytest.mark.benchmark
 TRACES, ROWS, STEP_S = 10_000, 3001, 0.01

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare
+from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.packing.worstcase import worst_case
@@ -88,3 +89,37 @@ class TestWorstCase:
         found = worst_case(deliver(parse(text)["a"], rig, Device.load("qst-tcs2")))
         check = next(check for check in found.findings if check.quantity == "display")
         assert (check.value, check.scenario) == (pytest.approx(3.0), "the rig as given, followed at once")
+
+
+class TestRefusals:
+    """What a refusal names beside its first reason."""
+
+    def test_every_hard_limit_and_a_cure(self) -> None:
+        icon = parse("cue 1\nset s { control display\n baseline 32 °C }\nicon bang { step by 12 °C\n hold for 8 s }\n")
+        refusal = str(prepare(icon["bang"], RIG, Device.load("dac-16"), CSV).refusals[0])
+        assert refusal.startswith("NOT SAFE: rate of skin temperature reaches ")
+        assert refusal.count("rate of skin temperature") == 1
+        assert "; also beyond hard limits: " in refusal
+        assert "skin surface 4" in refusal
+        assert refusal.endswith("; ask for a slower change, a shorter hold, a smaller or shorter change")
+
+    def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
+        icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")
+        narrowed = deliver(icon["amp"], RIG, Device.load("dac-16")).narrowed
+        assert narrowed is not None
+        assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
+        assert "transconductance" not in narrowed.text
+
+
+class TestStartWithoutPower:
+    """A controller starts from a display that had no power, and is there again after a stop."""
+
+    def test_the_cut_off_has_room_for_it_and_the_rest_is_held(self) -> None:
+        verdict = ready("cooling-step", "closed-loop-controller", "setpoint-csv").verdict
+        demands: dict[str, Any] = verdict.demanded
+        unpowered = simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), RIG).display_C[0]
+        cut = demands["cut_off_display_C"]
+        assert unpowered > 38.0, "without power the heat sink of this rig warms the display"
+        assert cut["low"] < unpowered < cut["high"] < 43.0
+        assert 10.0 < demands["rest_before_first_play_s"] < 600.0
+        assert any("without power" in fault["fault"] for fault in demands["faults"])

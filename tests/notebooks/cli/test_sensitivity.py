@@ -76,7 +76,8 @@ def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path
 
 def test_nothing_that_moves_and_what_to_do() -> None:
     from thermicon.notebooks.cli.sensitivity import HOW, how, sentences
-    from thermicon.perception import Sensitivity, observer_parameters
+    from thermicon.perception import Sensitivity
+    from thermicon.perception.sensation.parameters import observer_parameters
     from thermicon.perception.sensitivity.simulation_grid import OTHERS
 
     still = Sensitivity("thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())

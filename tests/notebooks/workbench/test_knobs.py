@@ -8,7 +8,9 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.notebooks.workbench.knobs import aged, apply, knobs_of
-from thermicon.perception import Observer, age_factor, perceive, perceive_many
+from thermicon.perception import Observer, perceive
+from thermicon.perception.observer.people import age_factor
+from thermicon.perception.sensation.percept import perceive_many
 
 
 @pytest.fixture(scope="module")

@@ -14,8 +14,10 @@ from thermicon.notebooks.workbench.event_times import missed_spans
 from thermicon.notebooks.workbench.knobs import aged
 from thermicon.notebooks.workbench.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
 from thermicon.notebooks.workbench.threshold_band import threshold_change_K
-from thermicon.perception import Observer, perceive, receptor_drive, sensation
+from thermicon.perception import Observer, perceive
 from thermicon.perception.sensation.features import passing_s
+from thermicon.perception.sensation.receptors import receptor_drive
+from thermicon.perception.sensation.sensation import sensation
 
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
 BROKEN = DIP.replace("6 °C", "6")

@@ -103,7 +103,7 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
     assert answer["picked"] == [place("near"), place("far")]
     assert "opposite" in ranked.said("why") or "direction" in ranked.said("why")
     ranked.wait()
-    assert "told apart already" in ranked.said("edit_text")
+    assert "distinguishable already" in ranked.said("edit_text")
     assert ranked.view.apply.disabled
     ranked.click(place("near"), place("near"))
     assert "two different icons" in ranked.said("edit_text")

@@ -5,23 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.perception import (
-    NORMS,
-    Observer,
-    Percept,
-    attack_K_per_s,
-    delay_s,
-    difference_trace,
-    excursion_K,
-    identification_dprime,
-    largest_difference,
-    load_rules,
-    onset_s,
-    pair_reasons,
-    peak_change_K,
-    perceive,
-    percept_distance,
-)
+from thermicon.perception import NORMS, Observer, Percept, perceive, percept_distance
+from thermicon.perception.comparison.reasons import largest_difference, pair_reasons
+from thermicon.perception.comparison.rules import load_rules
+from thermicon.perception.identification.distance import difference_trace, identification_dprime
+from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
 
 
 def why(cue: Any, observer: Observer, a: dict[str, Any], b: dict[str, Any]) -> list[Any]:
@@ -93,11 +81,11 @@ def test_every_number_of_the_largest_difference_can_be_computed_again(cue: Any, 
         f"a and b differ most at {felt[0].time_s[k]:.2f} s by {total:.1f} d′ of sensation "
         f"(cold {cold:.1f}, warm {warm:.1f}); "
     )
-    leaves = f"memory noise leaves a nominal person d′ {left:.1f}"
+    leaves = f"d′ {left:.1f} for a nominal person"
     ends = {
-        "max": f"{leaves} to tell them apart by",
-        "rms": f"by the rms norm it is {apart:.1f} d′ in all, of which {leaves}",
-        "integral": f"by the integral norm it is {apart:.1f} d′·s in all, of which {leaves}",
+        "max": f"with memory noise, {leaves}",
+        "rms": f"by the rms norm it is {apart:.1f} d′ in all, which with memory noise is {leaves}",
+        "integral": f"by the integral norm it is {apart:.1f} d′·s in all, which with memory noise is {leaves}",
     }
     assert text == begins + ends[norm]
 

@@ -4,8 +4,9 @@ import pytest
 
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
-from thermicon.perception import Observer, icon_rules, pair_rules, perceive
+from thermicon.perception import Observer, perceive
 from thermicon.perception.comparison.rule_score import counted, icon_score, pair_margin
+from thermicon.perception.comparison.rules import icon_rules, pair_rules
 
 
 def test_a_score_is_the_share_passed_without_those_of_the_model(cue: Any, observer: Observer) -> None:

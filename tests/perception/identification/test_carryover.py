@@ -10,8 +10,9 @@ import pytest
 from thermicon.circuit import Rig, SessionPlan, simulate_current
 from thermicon.circuit.safety.sessiondrive import drive_of
 from thermicon.icons import Icon, parse, read_cue
-from thermicon.perception import Task, carry_over, rank
+from thermicon.perception import Task, rank
 from thermicon.perception.identification import carry_over as carryover
+from thermicon.perception.identification.carry_over import carry_over
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")

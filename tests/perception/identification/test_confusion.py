@@ -4,8 +4,8 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import confuse, equal_proportion_correct, proportion_correct
-from thermicon.perception.identification.confusion import SAMPLES, embed, sampling_error
+from thermicon.perception import confuse, proportion_correct
+from thermicon.perception.identification.confusion import SAMPLES, embed, equal_proportion_correct, sampling_error
 
 
 def equal(d: float, icons: int = 6) -> np.ndarray:

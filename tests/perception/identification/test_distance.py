@@ -3,15 +3,15 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception import (
-    Observer,
-    Percept,
+from thermicon.perception import Observer, Percept, percept_distance
+from thermicon.perception.identification.distance import (
     back_to_back_dprime,
     identification_dprime,
-    percept_distance,
+    memory_from_task,
     percept_distances,
+    sensory_noise,
+    smooth,
 )
-from thermicon.perception.identification.distance import memory_from_task, sensory_noise, smooth
 from thermicon.perception.observer.observer import check_norm
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate_current
-from thermicon.perception import DeliveredChange, PerceivedChange, judge_delivered
+from thermicon.perception import PerceivedChange, judge_delivered
+from thermicon.perception.identification.delivered import DeliveredChange
 
 RIG = Rig.load("thenar")
 REST_A = 0.0824

@@ -7,7 +7,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import CarryOver, Observer, Ranking, Selection, Task, carry_over, rank
+from thermicon.perception import Observer, Ranking, Selection, Task, rank
+from thermicon.perception.identification.carry_over import CarryOver, carry_over
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
@@ -88,7 +89,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
-    from thermicon.perception import percept_distances
+    from thermicon.perception.identification.distance import percept_distances
     from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]

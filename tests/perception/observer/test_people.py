@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import People, draw_people, people_records
-from thermicon.perception.observer.people import age_factor
+from thermicon.perception import draw_people
+from thermicon.perception.observer.people import People, age_factor, people_records
 
 
 def test_the_first_people_are_the_same_whatever_the_number() -> None:

@@ -8,8 +8,15 @@ from matplotlib.axes import Axes
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Ranking, rank
-from thermicon.perception.identification.map import between, map_of, perceptual_map
-from thermicon.perception.identification.spread import MOST_PEOPLE, PersonSpread, place_probability, spread_over_people
+from thermicon.perception.identification.map import (
+    MOST_PEOPLE,
+    PersonSpread,
+    between,
+    map_of,
+    perceptual_map,
+    place_probability,
+    spread_over_people,
+)
 from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
 from thermicon.perception.plots.draw_heat import clustered_order, heat, light_map
 from thermicon.perception.plots.draw_map import label_offsets, text_width

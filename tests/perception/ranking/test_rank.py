@@ -94,13 +94,13 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert repr(ranking).startswith("Ranking(predicted: 6 icons on thenar, 12 people, ")
     axes = ranking.plot()
     assert sorted(t.get_text() for t in axes.get_xticklabels()) == sorted(ranking.labels)
-    assert axes.get_title().startswith("predicted confusions, %")
+    assert axes.get_title().startswith("Predicted answers, % (diagonal correct: ")
     assert ranking._repr_html_().startswith("<svg")
     from thermicon.perception.plots.draw import plot_distance
 
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     apart = plot_distance(ranking)
-    assert apart.get_title() == "predicted d′ between icons (max)"
+    assert apart.get_title() == "Predicted d′ between icons (max norm)"
     assert (apart.get_xlabel(), apart.get_ylabel()) == ("… and", "d′ between …")
     assert len(apart.texts) == len(axes.texts) == 36  # every cell says its number, so no colour bar is needed
 
@@ -171,7 +171,7 @@ def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
     assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
     assert found["text"].startswith("a and b: rules: distinguishable; model: d′ ")
     assert float(found["text"].split("d′ ")[1].split(",")[0]) < 2.563
-    assert found["text"].endswith(" (apart from 2.563)")
+    assert found["text"].endswith(", below the 2.563 criterion")
 
 
 def test_what_does_not_exist_is_null(rig: Rig) -> None:

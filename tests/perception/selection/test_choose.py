@@ -7,9 +7,10 @@ import pytest
 
 from thermicon.circuit import Rig, Trace, duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
-from thermicon.perception import ChoiceError, Selection, appraise, choose, draw_people, energy_J, rank
+from thermicon.perception import ChoiceError, Selection, choose, draw_people, rank
 from thermicon.perception.observer.people import People
-from thermicon.perception.selection.appraise import population_dprime
+from thermicon.perception.selection.appraise import appraise, population_dprime
+from thermicon.perception.selection.request import energy_J
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (

@@ -74,13 +74,13 @@ def test_the_same_arguments_give_the_same_edit(six: list[Icon], found: Edit, rig
 def test_what_is_apart_needs_no_edit(six: list[Icon], rig: Rig) -> None:
     edit = cheapest_edit(six, rig, "cooling-step", "warming-step", people=8)
     assert isinstance(edit, NoEdit)
-    assert "is told apart already (from 2.56)" in edit.reason
+    assert "criterion 2.56" in edit.reason
 
 
 def test_what_no_edit_can_do_is_told(six: list[Icon], rig: Rig) -> None:
     edit = cheapest_edit(six, rig, "warming-step", "linear-warming", wanted=30.0, people=8)
     assert isinstance(edit, NoEdit)
-    assert edit.reason.startswith("no single edit parts them to d′ 30: the farthest that a safe and reachable one")
+    assert edit.reason.startswith("no single edit separates them to d′ 30: the largest d′ of a safe and reachable one")
 
 
 def test_a_repeat_is_an_edit(rig: Rig) -> None:

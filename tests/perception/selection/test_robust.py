@@ -3,9 +3,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import ChoiceError, best_set_probability, compare_sets, draw_people
+from thermicon.perception import ChoiceError, compare_sets, draw_people
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.robust import drawn_rigs
+from thermicon.perception.selection.robust import best_set_probability, drawn_rigs
 
 
 @pytest.fixture(scope="module")
@@ -57,9 +57,9 @@ def test_rigs_are_drawn_about_their_own_values(rig: Rig) -> None:
 
 
 def test_bad_questions(six: list[Icon], rig: Rig) -> None:
-    with pytest.raises(ChoiceError, match=r"^two sets at least are needed"):
+    with pytest.raises(ChoiceError, match=r"^at least two sets are needed"):
         best_set_probability({"only": six}, rig)
-    with pytest.raises(ChoiceError, match=r"^B has only 1 icon: two at least"):
+    with pytest.raises(ChoiceError, match=r"^B has only 1 icon: at least two"):
         compare_sets(six, six[:1], rig)
     with pytest.raises(ChoiceError, match=r"^at least one draw is needed, not 0$"):
         compare_sets(six, six, rig, draws=0)

@@ -3,7 +3,8 @@ import pytest
 
 from thermicon.circuit import Rig, judge_safety, simulate
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.perception import ChoiceError, SearchResult, appraise, search
+from thermicon.perception import ChoiceError, SearchResult, search
+from thermicon.perception.selection.appraise import appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 
 SMALL = (

@@ -6,8 +6,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.perception import load_coverage, load_thresholds, outside_data, rank
-from thermicon.perception.sensation.coverage import outside_site
+from thermicon.perception import rank
+from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.sensation.coverage import load_coverage, outside_data, outside_site
 
 
 def test_an_ordinary_icon_is_inside(cue: Any) -> None:

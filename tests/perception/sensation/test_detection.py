@@ -4,8 +4,14 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, criterion_of, detect, false_alarms, forced_choice_dprime
-from thermicon.perception.sensation.detection import channel_name
+from thermicon.perception import Observer
+from thermicon.perception.sensation.detection import (
+    channel_name,
+    criterion_of,
+    detect,
+    false_alarms,
+    forced_choice_dprime,
+)
 
 
 def test_criterion_keeps_its_false_alarms() -> None:

@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, receptor_drive
+from thermicon.perception import Observer
 from thermicon.perception.sensation.impulses import mean_positive_part
+from thermicon.perception.sensation.receptors import receptor_drive
 
 
 @pytest.fixture

@@ -2,8 +2,15 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import Record
-from thermicon.perception import CHANNELS, Observer, ObserverParameter, observer_at, observer_parameters
-from thermicon.perception.sensation.parameters import _in_thresholds, latin, parameter_name
+from thermicon.perception import CHANNELS, Observer
+from thermicon.perception.sensation.parameters import (
+    ObserverParameter,
+    _in_thresholds,
+    latin,
+    observer_at,
+    observer_parameters,
+    parameter_name,
+)
 
 
 def test_what_is_uncertain_is_what_the_file_says() -> None:

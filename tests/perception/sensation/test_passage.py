@@ -4,7 +4,8 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, detect, false_alarms
+from thermicon.perception import Observer
+from thermicon.perception.sensation.detection import detect, false_alarms
 from thermicon.perception.sensation.first_passage import ResponseTimes, log_survival, response_times
 
 

@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, receptor_drive
+from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Receptor
+from thermicon.perception.sensation.receptors import receptor_drive
 
 
 def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:

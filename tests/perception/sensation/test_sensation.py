@@ -3,8 +3,9 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, amplitude_jnd, psi_of_multiple, sensation
+from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Channel
+from thermicon.perception.sensation.sensation import amplitude_jnd, psi_of_multiple, sensation
 
 
 @pytest.mark.parametrize("a", [1.0, 5.0, 12.0, 30.0])

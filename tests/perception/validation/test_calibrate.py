@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import Record, RecordError, Table, load_records
-from thermicon.perception import Observer, amplitude_jnd, false_alarms, load_thresholds
+from thermicon.perception import Observer
 from thermicon.perception.identification.rate_task import rate_task, with_gain
-from thermicon.perception.observer.observer import CHANNELS, DATA, NORMS
+from thermicon.perception.observer.observer import CHANNELS, DATA, NORMS, load_thresholds
 from thermicon.perception.observer.variants import VARIANTS, source_of
+from thermicon.perception.sensation.detection import false_alarms
 from thermicon.perception.sensation.fits import with_unit_drives
+from thermicon.perception.sensation.sensation import amplitude_jnd
 from thermicon.perception.validation.calibrate import MODEL_CONSTANTS, calibrate, to_toml
 
 SHIPPED = DATA / "observer.toml"

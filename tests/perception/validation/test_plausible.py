@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import false_alarms
 from thermicon.perception.observer.variants import VARIANTS, Model, Variable
 from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.sensation.detection import false_alarms
 from thermicon.perception.validation.plausible import plausible_observers, uncertain_records
 from thermicon.perception.validation.procedures import forced_choice
 

@@ -76,7 +76,7 @@ def test_numbers_of_both_channels() -> None:
 
 
 def test_messages() -> None:
-    with pytest.raises(ValueError, match=r"time, cold: the published record has no value to be held against"):
+    with pytest.raises(ValueError, match=r"time, cold: the published record has no value to compare with"):
         judge_row(row("close", 0.5), 1.0, Published("felt", "somebody"))
     with pytest.raises(ValueError, match=r"time, cold: the published record has no interval to be inside of"):
         judge_row(row("published range"), 1.0, Published("2 s", "somebody", value=2.0))
