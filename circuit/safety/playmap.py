@@ -1,4 +1,4 @@
-"""A play as a linear map: with a given current the circuit is linear, so a few runs tell what any start leads to.
+"""A play as a linear map: with a given current the circuit is linear, so a few runs determine the result of any start.
 
 One lane a node starts 1 K warmer there, and one starts as it is: the differences at the end are the columns of Φ in
 x → Φ·x + g, with Φ ≥ 0. Then repetition costs products of small matrices instead of runs. The steady cycle is a linear

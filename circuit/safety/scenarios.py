@@ -52,7 +52,7 @@ def play_out(
 ) -> Futures:
     """Play a drive in every corner and follow it through every ending.
 
-    `rest_A` has been held for ever before; None: the drive's first current. `bridge_A` says that the current comes from
+    `rest_A` holds the steady state before; None: the drive's first current. `bridge_A` says that the current comes from
     a bridge that switches between this current and none: `rest_A` and the drive's last current are then means.
     Raises RigError where the rig as given has no steady state to start from, DriveError for a rest that cannot be.
     """

@@ -36,7 +36,7 @@ class WorstCase:
 
 
 def worst_case_of(played: SessionDrive, rig: Rig, limits: Limits, progress: Progress | None = None) -> WorstCase:
-    """Check a session against every rule in all corners; `progress` is called with seconds played and in all.
+    """Check a session against every rule in all corners; `progress` is called with the seconds played and the total.
 
     Raises RigError where the rig as given has no rest to start from.
     """

@@ -48,7 +48,7 @@ def gate_shown(
     rates: bool = True,
     module: bool = False,
 ) -> tuple[Gate, ...]:
-    """Check what a device shows, which may be played again and again in any order, against every rule of safety.
+    """Check what a device shows, in repeated plays in any order, against every rule of safety.
 
     Parameters
     ----------

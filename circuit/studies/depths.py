@@ -21,7 +21,7 @@ from ..solver.trace import Trace
 
 @dataclass(frozen=True, slots=True)
 class Depths:
-    """A run seen at k depths: `depth_m` (k,), temperature °C and heat flow W/m² into the skin (k, rows), its trace."""
+    """A run at k depths: `depth_m` (k,), temperature °C and heat flow W/m² into the skin (k, rows), its trace."""
 
     depth_m: Array
     temperature_C: Array
@@ -42,7 +42,7 @@ class Depths:
 def probe_depths(
     cue: Icon | Drive, rig: Rig, depths_m: Sequence[float] | Array, *, rate_Hz: float = 100.0, tail_s: float = 0.0
 ) -> Depths:
-    """Play a cue or a drive on a rig and look at depths in m, counted from the surface; lumps are `rig.column.depth_m`.
+    """Simulate a cue or a drive on a rig and record depths in m from the surface; lumps are at `rig.column.depth_m`.
 
     Temperature is linear in thermal resistance between lumps. Heat flow at a lump is the mean of its two faces, between
     lumps the face's, at the surface the contact's. Raises RigError for a depth outside the skin.

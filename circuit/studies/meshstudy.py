@@ -1,4 +1,4 @@
-"""How much a mesh of the skin matters: graded meshes and fixed elements held against a mesh-converged solution.
+"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution.
 
 Two comparisons are fair, and both are offered: every mesh played the same `current` (what a rig really shares), and
 every mesh led along the same controlled `temperature` with its own current (what a cue prescribes).
@@ -35,7 +35,7 @@ DEPTHS = ("cold_receptor_C", "warm_receptor_C")
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A way to cut skin into lumps: graded (cell at the surface m, growth per unit depth), or elements a layer."""
+    """A division of skin into lumps: graded (cell at the surface m, growth per unit depth), or elements per layer."""
 
     name: str
     first_cell_m: float = FIRST_CELL_M
@@ -221,7 +221,7 @@ def _network(rig: Rig, mesh: Mesh) -> Network:
 
 @dataclass(frozen=True, slots=True)
 class _Currents:
-    """The current that all meshes are played; before it, `rest_A` was held for ever."""
+    """The current that all meshes are played; before it, `rest_A` holds the steady state."""
 
     drive: Drive
     rest_A: float

@@ -44,8 +44,8 @@ class Nearest:
 def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     """Return the nearest cue that the rig reaches; None where the cue is reached itself, or where no such cue exists.
 
-    Looked for by bisection, to about 1 %, along two ways: slower ramps between the same levels, and smaller changes
-    in the same time. A cue that prescribes current is not changed.
+    Searched by bisection, to about 1 %, in two ways: slower ramps between the same levels, and smaller changes in the
+    same time. A cue that prescribes current is not changed.
 
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]

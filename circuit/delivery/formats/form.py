@@ -65,10 +65,10 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One kind of file: what it is called, which devices take it, where its layout is told, and how to write it.
+    """One kind of file: what it is called, which devices take it, where its layout is documented, and how to write it.
 
-    `device` is taken where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
-    hangs on the device; `how` tells a person how to play it. `write` gives the bytes of one drive, `columns` what is in
+    `device` is used where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
+    depends on the device; `how` explains how to play it. `write` gives the bytes of one drive, `columns` what is in
     them, `facts` what else the sidecar says of the file. `player` gives the files of the whole set, named in
     `set_files`, from all its drives and what the hardware must prevent.
     """
