@@ -197,13 +197,13 @@ def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator
             if table_of(files[name]) is None:
                 yield Finding(name, "wrong", "cannot be read as JSON, so it is a sidecar of nothing", RESTORE)
             else:
-                yield Finding(name, "told", "is not a sidecar and is not checked")
+                yield Finding(name, "told", "is not a sidecar and is not looked into")
         elif name.lower().endswith(ends):
             yield Finding(
                 name, "wrong", "has no sidecar, so nothing says what it is", "remove it, or export its icon again"
             )
         else:
-            yield Finding(name, "told", "does not belong to an export and is not checked")
+            yield Finding(name, "told", "does not belong to an export and is not looked into")
 
 
 def _suffixes() -> tuple[str, ...]:

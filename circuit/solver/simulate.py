@@ -244,7 +244,7 @@ def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str,
     if asked.max() > 1e-9:
         most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
         found.append(
-            f"the drive needs {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+            f"the drive asks for {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
     needed = np.abs(voltage) - driver.voltage_limit_V
