@@ -88,9 +88,9 @@ def resembles(
 ) -> Likeness:
     """Return the depth in the skin under the display whose course a probe on insulated skin resembles most.
 
-    Compared are changes from the first row, since where a trace starts says nothing of depth: least rms over the rows,
-    over all depths. `probe` is a name, or None for the first on insulated skin. A lag of the probe is part of what it
-    reads. The second column is a 1-D stand-in, so the answer is one as well. Raises RigError without such a probe.
+    Changes from the first row are compared, since the start of a trace does not depend on depth: least rms over the
+    rows, over all depths. `probe` is a name, or None for the first on insulated skin. A lag of the probe is part of its
+    reading. The second column is a 1-D substitute, and so is the result. Raises RigError without such a probe.
 
     >>> from thermicon.icons import load_library
     >>> rig = Rig.load("thenar").with_(probe=[{"name": "pad", "place": "insulated skin"}])

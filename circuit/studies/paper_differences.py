@@ -1,4 +1,4 @@
-"""Where our runs and the source paper differ, and why, in sentences whose numbers are computed when asked."""
+"""Where our runs and the source paper differ, and why, in sentences whose numbers are computed on request."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 
 @dataclass(frozen=True, slots=True)
 class PaperDifference:
-    """One point of comparison: whether we agree, what the paper says, what we find, and why."""
+    """One point of comparison: whether we agree, the paper's statement, our result, and the reason."""
 
     topic: str
     agrees: bool
@@ -44,7 +44,7 @@ class PaperDifference:
 
 
 def paper_differences() -> tuple[PaperDifference, ...]:
-    """Play the paper's cue on its own rig (limits lifted) and on `thenar`, and say point by point where we differ.
+    """Simulate the paper's cue on its own rig (limits lifted) and on `thenar`, and report where we differ.
 
     >>> for point in paper_differences():
     ...     print(point.topic, "-", "agrees" if point.agrees else "differs")

@@ -1,4 +1,4 @@
-"""CSV: a row for each update, with the current that flows; `thermicon simulate --current FILE --hold` replays it."""
+"""CSV: one row per update, with the current that flows; `thermicon simulate --current FILE --hold` replays it."""
 
 from __future__ import annotations
 
