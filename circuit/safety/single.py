@@ -66,7 +66,7 @@ class Single:
         return all(tally.passes() for tally in self.tallies)
 
     def demands(self, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Demands:
-        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` extremes of all displays."""
+        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` extremes of displays."""
         corners = self._farthest([*self.tallies, *played])
         few = self.ensemble.only(corners)
         faulty = Faulty(few, self.drive, self.rest_A, self.start.take(np.array(corners)), self.limits)
