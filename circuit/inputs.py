@@ -107,6 +107,17 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] =
         raise error(f"{path}: cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
 
 
+def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> None:
+    """Raise `error` with the cure where pyarrow, which reads and writes Parquet files, is not installed."""
+    try:
+        import pyarrow  # noqa: F401
+    except ImportError:
+        raise error(
+            f"{path}: Parquet files need pyarrow, which is not installed: "
+            'pip install "thermicon[parquet]", or use a .csv file'
+        ) from None
+
+
 def read_toml(text: str, where: str, error: type[InputError] = InputError) -> dict[str, Any]:
     """Return a TOML text as a dictionary, or raise `error` that says which line is wrong.
 

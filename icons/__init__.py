@@ -7,7 +7,7 @@ from .model.check import ASSUMED_BASELINE_C
 from .model.corners import Corners
 from .pictures.draw import plot_icon
 from .model.errors import CueError, CueErrors
-from .model.frame import Frame, Metadata
+from .model.context import Context, Metadata
 from .model.parameter import Parameter
 from .model.icon import Icon
 from .model.family import Family
@@ -21,9 +21,9 @@ from .files.exchange import from_json, to_json
 from .files.hjif import to_hjif
 from .recordings.recorded import from_csv
 from .papers.cite import bibtex, methods
-from .model.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from .model.statements import Ramp, Current, Hold, Play, Repeat, Rest, Return, Statement, Total
 from .model.shapes import Pulse, Step, Wave
-from .model.builders import back, cool, drive, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
+from .model.builders import back, cool, current, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
 from .model.builders import total, triangle, warm
 
 # In the order of the flow, not of the alphabet.
@@ -49,11 +49,11 @@ __all__ = [
     "Family",
     "Parameter",
     "Slot",
-    "Frame",
+    "Context",
     "Metadata",
     "Statement",
-    "Change",
-    "Drive",
+    "Ramp",
+    "Current",
     "Hold",
     "Rest",
     "Return",
@@ -66,7 +66,7 @@ __all__ = [
     "cool",
     "warm",
     "ramp",
-    "drive",
+    "current",
     "hold",
     "rest",
     "back",

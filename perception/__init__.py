@@ -19,17 +19,17 @@ from .sensation.detection import Detection, criterion_of, detect, false_alarms, 
 from .sensation.percept import Percept, perceive, perceive_many
 from .identification.distance import (
     back_to_back_dprime,
-    difference,
+    percept_distance,
     difference_trace,
-    differences,
+    percept_distances,
     identification_dprime,
 )
-from .identification.confusion import Confusion, confuse, equal_percent_correct
-from .identification.measures import Plugin, information_bits, percent_correct, plugin_bits
+from .identification.confusion import Confusion, confuse, equal_proportion_correct
+from .identification.measures import PluginInformation, information_bits, proportion_correct, plugin_bits
 from .observer.people import People, age_factor, draw_people, people_records
-from .sensation.bench import Bench, Stimuli
+from .sensation.bench import Bench, Stimulus
 from .sensation.first_passage import ResponseTimes, response_times
-from .validation.measured import Measured
+from .validation.measured import Measurement
 from .validation.procedures import (
     choice_reaction_time,
     forced_choice,
@@ -41,24 +41,23 @@ from .sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, p
 from .comparison.rules import RuleResult, icon_rules, load_rules, pair_rules, rig_rules
 from .sensation.coverage import load_coverage, outside_data
 from .comparison.reasons import Reason, largest_difference, pair_reasons
-from .comparison.distance_components import Part, distance_parts
-from .sensation.parameters import Parameter, observer_at, observer_parameters
+from .comparison.distance_components import DistanceComponent, distance_components
+from .sensation.parameters import ObserverParameter, observer_at, observer_parameters
 from .identification.intervals import ParameterIntervals
 from .selection.appraise import Appraisal, appraise
-from .selection.request import ChoiceError, Choosing, energy_J
+from .selection.request import ChoiceError, Selection, energy_J
 from .selection.choose import Choice, choose
 from .selection.edit import Edit, NoEdit, cheapest_edit
-from .selection.search import Searched, search
-from .selection.robust import Duel, Survival, beats, survives
+from .selection.search import SearchResult, search
+from .selection.robust import SetComparison, SetRobustness, compare_sets, best_set_probability
 from .ranking.ranking import IconScore, PairScore, Ranking
 from .identification.task import Task
 from .identification.carry_over import CarryOver, carry_over
 from .ranking.rank import rank
 from .identification.map import PerceptualMap, map_of, perceptual_map
-from .sensitivity.designs import MissingError
 from .sensitivity.sensitivity import Effect, Sensitivity, sensitivity
 from .validation.validate import ValidationReport, validate
-from .identification.delivered import Change, FeltChange, judge_delivered
+from .identification.delivered import DeliveredChange, PerceivedChange, judge_delivered
 
 # The order is that of the flow, which is not the alphabet's.
 __all__ = [
@@ -87,30 +86,30 @@ __all__ = [
     "perceive",
     "perceive_many",
     "Percept",
-    "difference",
+    "percept_distance",
     "difference_trace",
-    "differences",
+    "percept_distances",
     "identification_dprime",
     "back_to_back_dprime",
     "confuse",
     "Confusion",
-    "equal_percent_correct",
-    "percent_correct",
+    "equal_proportion_correct",
+    "proportion_correct",
     "information_bits",
     "plugin_bits",
-    "Plugin",
+    "PluginInformation",
     "draw_people",
     "age_factor",
     "people_records",
     "People",
     "Bench",
-    "Stimuli",
+    "Stimulus",
     "forced_choice",
     "yes_no",
     "method_of_limits",
     "method_of_levels",
     "choice_reaction_time",
-    "Measured",
+    "Measurement",
     "response_times",
     "ResponseTimes",
     "peak_change_K",
@@ -128,15 +127,15 @@ __all__ = [
     "pair_reasons",
     "largest_difference",
     "Reason",
-    "distance_parts",
-    "Part",
-    "Parameter",
+    "distance_components",
+    "DistanceComponent",
+    "ObserverParameter",
     "observer_parameters",
     "observer_at",
     "ParameterIntervals",
     "appraise",
     "Appraisal",
-    "Choosing",
+    "Selection",
     "ChoiceError",
     "energy_J",
     "choose",
@@ -145,11 +144,11 @@ __all__ = [
     "Edit",
     "NoEdit",
     "search",
-    "Searched",
-    "beats",
-    "Duel",
-    "survives",
-    "Survival",
+    "SearchResult",
+    "compare_sets",
+    "SetComparison",
+    "best_set_probability",
+    "SetRobustness",
     "Task",
     "carry_over",
     "CarryOver",
@@ -163,10 +162,9 @@ __all__ = [
     "sensitivity",
     "Sensitivity",
     "Effect",
-    "MissingError",
     "validate",
     "ValidationReport",
-    "Change",
-    "FeltChange",
+    "DeliveredChange",
+    "PerceivedChange",
     "judge_delivered",
 ]

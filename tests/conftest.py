@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import os
+import pickle
 import shutil
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import hypothesis
 import pytest
+
+if TYPE_CHECKING:
+    from thermicon.perception.validation.validate import ValidationReport
 
 # The same examples on every run: a red suite means a changed program. Slow tests may ask for more.
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
@@ -31,3 +36,20 @@ def find_tool(name: str) -> str:
 def tool() -> Callable[[str], str]:
     """``tool("ngspice")`` inside a test gives the path of the program."""
     return find_tool
+
+
+@pytest.fixture(scope="session")
+def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationReport:
+    """One small validation report for all tests and for all processes that run them: it takes long to compute."""
+    from filelock import FileLock
+
+    from thermicon.perception.validation.validate import validate
+
+    if "PYTEST_XDIST_WORKER" not in os.environ:
+        return validate(people=12, draws=8)
+    kept = tmp_path_factory.getbasetemp().parent / "validation_report.pickle"
+    with FileLock(f"{kept}.lock"):
+        if not kept.exists():
+            kept.write_bytes(pickle.dumps(validate(people=12, draws=8)))
+        report: ValidationReport = pickle.loads(kept.read_bytes())
+        return report

@@ -9,7 +9,6 @@ import io
 import os
 import pkgutil
 import re
-import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
@@ -171,11 +170,3 @@ def test_the_version_is_the_same_everywhere() -> None:
     released = [heading for heading in headings if heading != "Unreleased"]
     assert "Unreleased" in headings or released
     assert not released or released[0] == version
-
-
-@pytest.mark.parametrize("command", [["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"]])
-def test_tools_are_content(command: list[str]) -> None:
-    if command[0] == "mypy" and not (ROOT / ".types" / "thermicon" / "icons").is_dir():
-        pytest.skip("this checkout has no symbolic links, which mypy needs to see the namespace package")
-    run = subprocess.run([sys.executable, "-m", *command], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stdout + run.stderr

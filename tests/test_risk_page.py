@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = ("docs/risk.md", "docs/safety.md")
+PAGES = ("docs/explain/risk.md", "docs/explain/safety.md")
 NAMED = re.compile(r"`?(tests/[\w/]+\.py)(?:::(\w+))?")
 FILE = re.compile(r"`((?:icons|circuit|perception|notebooks)/[\w./-]+\.\w+)`")
 
@@ -45,7 +45,7 @@ def test_what_does_not_exist_is_found() -> None:
 
 def test_every_hazard_has_evidence_or_says_that_it_has_none() -> None:
     """Each section of a hazard has the six lines that a reader looks for, and its evidence names a test."""
-    text = (ROOT / "docs/risk.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/explain/risk.md").read_text(encoding="utf-8")
     hazards = re.split(r"^### ", text, flags=re.MULTILINE)[1:]
     assert len(hazards) >= 18
     for hazard in hazards:

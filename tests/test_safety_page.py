@@ -1,4 +1,4 @@
-"""The tables of docs/safety.md are those of the data files; ``python tests/test_safety_page.py`` prints them anew."""
+"""The tables of docs/explain/safety.md are those of the data files; run as a script, this file prints them anew."""
 
 import re
 from pathlib import Path
@@ -13,7 +13,7 @@ from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, LATER_S
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S, RECOVERED_K
 from thermicon.circuit.safety.single_faults import BEYOND_K, INSTANTS, MARGIN, REACTIONS_S, TEST_A, TEST_S
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "safety.md"
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "explain" / "safety.md"
 LIMITS_HEAD = "| limit of | hard or soft | shipped | key in `[safety]` | can be loosened to |"
 UNCERTAINTY_HEAD = "| `[uncertainty]` | shipped | source |"
 

@@ -30,13 +30,13 @@ def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
 
     Raises DeviceError where the cue prescribes a current, or set-points that the thermode cannot take.
     """
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} is a thermode: it takes temperatures, and {icon.name} prescribes a current; use control "
             f"display or control skin, or a device driven by volts, amperes or duty"
         )
     base = baseline_C(icon, rig)
-    end = float(icon.lower(base).duration_s) + tail_s
+    end = float(icon.corners(base).duration_s) + tail_s
     setpoints = closed(device, _setpoints(icon, rig, device, base, end))
     end = max(end, float(setpoints.time_s[-1]))
     step, prompt = display_of(setpoints, device, lagged=False, end_s=end)
@@ -60,7 +60,7 @@ def traces_of_setpoints(
     _, prompt = display_of(setpoints, device, lagged=False, end_s=end_s)
     times: Array = np.arange(len(display), dtype=np.float64) * step
     ideal = target_at(icon, base, times)
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         course_s, course_C = display_for(icon, rig, device, base, min(end_s, setpoints.cue_s))
         ideal = np.interp(times, course_s, course_C)
     if setpoints.closing:
@@ -69,7 +69,7 @@ def traces_of_setpoints(
 
     def traced(display_C: Array) -> Trace:
         return trace_of_display(
-            rig, step, display_C, rows, icon=icon.name, control=icon.frame.control, target_C=target, outcome=None
+            rig, step, display_C, rows, icon=icon.name, control=icon.context.control, target_C=target, outcome=None
         )[0]
 
     return traced(ideal), traced(display), traced(prompt)
@@ -88,10 +88,10 @@ def display_for(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: floa
 
 
 def _setpoints(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: float) -> Setpoints:
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         times, levels = display_for(icon, rig, device, base_C, end_s)
         return setpoints_of(device, times, levels, curve=True)
-    corners = icon.lower(base_C)
+    corners = icon.corners(base_C)
     times, levels = np.array(corners.time_s), np.array(corners.value)
     if end_s > times[-1] + 1e-9:
         times, levels = np.append(times, end_s), np.append(levels, levels[-1])

@@ -31,7 +31,7 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
 
     Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
     """
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         raise DeviceError(
             f"{device.name} takes temperatures, and {icon.name} prescribes a current; use control display or control "
             f"skin, or a device driven by volts, amperes or duty"
@@ -99,8 +99,8 @@ def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float)
 
 def _course(icon: Icon, rig: Rig, end_s: float) -> tuple[Array, Array]:
     """Times in s and the display in °C of a design without any loop: the cue's corners, or what its skin needs."""
-    if icon.frame.control == "display":
-        corners = icon.lower(baseline_C(icon, rig))
+    if icon.context.control == "display":
+        corners = icon.corners(baseline_C(icon, rig))
         return np.array(corners.time_s), np.array(corners.value)
     plan: Design = design_ideal(icon, rig, end_s)
     model = simulate_current(plan.drive, rig, rate_Hz=rig.driver.update_Hz, start_C=plan.start_C)

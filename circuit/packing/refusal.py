@@ -76,7 +76,7 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
     >>> needed_A(load_library("cooling-step-skin")["cooling-step"], Rig.load("shani2021"))
     1.9
     """
-    if icon.frame.control == "current" or rig.controller is not None:
+    if icon.context.control == "current" or rig.controller is not None:
         return None
     most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
 

@@ -61,7 +61,7 @@ def sidecar(
         "drive_sha256": digest(drive),
         "set_files": {name: digest(content) for name, content in set_files.items()},
         "columns": [asdict(column) for column in form.columns(delivery)],
-        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.frame.control},
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
         "rig_sha256": digest(rig.document.encode("utf-8")),
         "rig": {
             "name": rig.name,
@@ -73,7 +73,7 @@ def sidecar(
         "device": device,
         "update_rate_Hz": {"requested": delivery.requested_Hz, "realised": delivery.rate_Hz},
         "played": _played(delivery),
-        "events": [_event(event, icon.frame.control) for event in events_in(delivery)],
+        "events": [_event(event, icon.context.control) for event in events_in(delivery)],
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(delivery),

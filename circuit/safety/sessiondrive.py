@@ -135,7 +135,7 @@ def _tracked(
 
 def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float, Array]:
     """Display temperature in °C at rest, and at the end of every update of an icon."""
-    control, base = icon.frame.control, baseline_C(icon, rig)
+    control, base = icon.context.control, baseline_C(icon, rig)
     if control == "current":
         raise SessionError(
             f"{icon.name} prescribes the current, so there is no display temperature to track; use tracking replay"

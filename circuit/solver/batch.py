@@ -55,7 +55,7 @@ class Batch:
 
 def usual_tracking(icon: Icon) -> str:
     """Default tracking of a cue: `display` for display control, otherwise `replay`."""
-    return "display" if icon.frame.control == "display" else "replay"
+    return "display" if icon.context.control == "display" else "replay"
 
 
 def simulate_many(
@@ -93,7 +93,7 @@ def simulate_many(
     stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
-        groups.setdefault((icon.frame.control, tracking or usual_tracking(icon)), []).append(place)
+        groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
     for (control, way), places in groups.items():
         cues = [icons[place] for place in places]
         if control == "current":

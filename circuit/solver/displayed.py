@@ -54,7 +54,7 @@ class DisplayDesign:
 
 def refuse_current(icon: Icon, who: str) -> None:
     """Raise RigError for a cue that prescribes current, which a thermode does not take."""
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         raise RigError(
             f"{who} is a thermode: it takes temperatures, and {icon.name} prescribes a current; use control display or "
             f"control skin, or a rig and a device with a module"
@@ -76,13 +76,13 @@ def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_
     step = part_of(update, finest_s)
     times: Array = np.arange((len(ticks) - 1) * round(update / step) + 1, dtype=np.float64) * step
     limits = thermode.lowest_C, thermode.highest_C
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         start = modes.display_holding_skin_C(base)
         _check_baseline(start, rig, f" (for {base:g} °C on the skin)")
         wanted = modes.display_for_skin(target_at(icon, base, ticks), update, start, thermode.slew_K_per_s, limits)
     else:
         _check_baseline(base, rig, "")
-        corners = icon.lower(base)
+        corners = icon.corners(base)
         levels = _rounded(np.array(corners.value), thermode.resolution_K)
         wanted = np.clip(np.interp(ticks, corners.time_s, levels), *limits)
     setpoints = np.interp(times, ticks, wanted)
@@ -104,7 +104,7 @@ def judge_display(
     """
     times: Array = np.arange(len(prompt_C), dtype=np.float64) * step_s
     target, reached = target_at(icon, base, times), prompt_C
-    if icon.frame.control == "skin":
+    if icon.context.control == "skin":
         reached = modes.run(prompt_C, step_s, modes.steady(float(prompt_C[0])))[0][SKIN_ROW]
     held = [
         ("range of the thermode", (prompt_C <= limits_C[0] + 1e-9) | (prompt_C >= limits_C[1] - 1e-9)),
@@ -122,7 +122,7 @@ def play_display(
     plan = design_display(icon, rig, float(rows[-1]), 1.0 / max(rate_Hz, 1.0 / FINEST_S))
     target = target_at(icon, baseline_C(icon, rig), rows)
     return trace_of_display(
-        rig, plan.step_s, plan.display_C, rows, icon=icon.name, control=icon.frame.control, target_C=target,
+        rig, plan.step_s, plan.display_C, rows, icon=icon.name, control=icon.context.control, target_C=target,
         outcome=plan.outcome, readings=readings,
     )  # fmt: skip
 

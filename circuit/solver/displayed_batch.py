@@ -32,7 +32,7 @@ def displays_on(
     shared = [design_display(icon, nominal, float(rows[-1]), min(finest, 0.01)) for icon in icons]
     step, displays = shared[0].step_s, np.array([plan.display_C for plan in shared])
     times: Array = np.arange(displays.shape[1], dtype=np.float64) * step
-    anew = [k for k, icon in enumerate(icons) if tracking == "ideal" and icon.frame.control == "skin"]
+    anew = [k for k, icon in enumerate(icons) if tracking == "ideal" and icon.context.control == "skin"]
     aligned = len(rows) <= len(times) and bool(np.abs(times[: len(rows)] - rows).max() < 1e-9)
     for r, rig in enumerate(rigs):
         for k in anew:

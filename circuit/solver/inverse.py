@@ -43,12 +43,12 @@ def periods(rig: Rig, end_s: float) -> Array:
 
 def baseline_C(icon: Icon, rig: Rig) -> float:
     """Baseline of a cue in °C: its own, or the rig's rest."""
-    return rig.skin.rest_C if icon.frame.baseline_C is None else icon.frame.baseline_C
+    return rig.skin.rest_C if icon.context.baseline_C is None else icon.context.baseline_C
 
 
 def target_at(icon: Icon, start: float, times_s: Array) -> Array:
     """What the cue prescribes at times in s: °C, or A under current control; the last level is kept."""
-    corners = icon.lower(start)
+    corners = icon.corners(start)
     return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
 
 
@@ -57,7 +57,7 @@ def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
 
     That is the end of the hold after the step, or the next step where a ramp follows at once: the rig may catch up.
     """
-    corners, found = icon.lower(start), []
+    corners, found = icon.corners(start), []
     times, levels = corners.time_s, corners.value
     begins = [times[place] for place in corners.steps]
     for place, begin, following in zip(corners.steps, begins, [*begins[1:], math.inf][: len(begins)], strict=True):
@@ -88,17 +88,17 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 
     """
     plan = design_ideal(icon, rig, end_s)
-    if rig.controller is None or icon.frame.control == "current":
+    if rig.controller is None or icon.context.control == "current":
         return plan
     return close_loop(rig, plan, icon, target_at(icon, baseline_C(icon, rig), periods(rig, end_s)))
 
 
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
     """As `design`, by the inverse of the module alone, without the rig's own control loop."""
-    control = icon.frame.control
+    control = icon.context.control
     current, state = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     if control == "current":
-        corners = icon.lower(current)
+        corners = icon.corners(current)
         times, values = list(corners.time_s), list(corners.value)
         if end_s > times[-1] + 1e-9:
             times.append(end_s)
@@ -125,11 +125,11 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
     [True, True, True, True, True, True]
     """
-    together = [icon for icon in icons if icon.frame.control != "current" and rig.controller is None]
+    together = [icon for icon in icons if icon.context.control != "current" and rig.controller is None]
     found: dict[int, Design] = {}
     bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
     for control in ("skin", "display"):
-        cues = [icon for icon in together if icon.frame.control == control]
+        cues = [icon for icon in together if icon.context.control == control]
         if not cues:
             continue
         bases = [baseline_C(icon, rig) for icon in cues]
@@ -159,7 +159,7 @@ def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
     """
     bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
-    period, control, base = 1.0 / rig.driver.update_Hz, icon.frame.control, baseline_C(icon, rig)
+    period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
     gains = np.array([gains_of(rig)])
     currents, reached, why = run_regulate(

@@ -81,11 +81,11 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 
 def duration_s(icon: Icon, rig: Rig) -> float:
     """Time in s from a cue's start to its last corner; under current control, it depends on the holding current."""
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
-        return float(icon.lower(steady_state(rig, "display", baseline_C(icon, rig))[0]).duration_s)
-    return float(icon.lower(baseline_C(icon, rig)).duration_s)
+        return float(icon.corners(steady_state(rig, "display", baseline_C(icon, rig))[0]).duration_s)
+    return float(icon.corners(baseline_C(icon, rig)).duration_s)
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
@@ -96,7 +96,7 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     6
     """
     module = rig.thermode is None and rig.controller is None
-    alike = not rig.probes and module and all(icon.frame.control != "current" for icon in icons)
+    alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
         return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
@@ -106,14 +106,14 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     states = bank.states([plan.start_C for plan in plans])
     recorded = run_forward(bank, np.zeros_like(lanes), lanes, intervals, states)
     return tuple(
-        _trace(rig, plan.drive, rows, icon.name, _target(icon, rig, rows), icon.frame.control, plan.outcome,
+        _trace(rig, plan.drive, rows, icon.name, _target(icon, rig, rows), icon.context.control, plan.outcome,
                recorded[:, lane], ())
         for lane, (icon, plan) in enumerate(zip(icons, plans, strict=True))
     )  # fmt: skip
 
 
 def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
-    if icon.frame.control == "current":
+    if icon.context.control == "current":
         return np.full(len(rows), np.nan)
     return target_at(icon, baseline_C(icon, rig), rows)
 
@@ -162,7 +162,7 @@ def _play(
     if rig.thermode is not None:
         return play_display(icon, rig, rows, rate_Hz, readings)
     plan = design(icon, rig, end)
-    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.frame.control,
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.context.control,
                 plan.outcome, readings)  # fmt: skip
 
 

@@ -29,7 +29,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     ()
     """
-    control = icon.frame.control
+    control = icon.context.control
     if rig.thermode is not None:
         return _on_thermode(icon, rig, rig.thermode)
     try:
@@ -38,7 +38,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
         return (f"icon {icon.name}: {problem}",)
     driver, found = rig.driver, []
     if control == "current":
-        corners = icon.lower(start_A)
+        corners = icon.corners(start_A)
         for level in (corners.lowest, corners.highest):
             if not driver.current_min_A <= level <= driver.current_max_A:
                 found.append(
@@ -46,7 +46,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
                     f"{driver.current_max_A:g} A; change the cue or driver.current_limit_A"
                 )
         return tuple(found)
-    corners = icon.lower(baseline_C(icon, rig))
+    corners = icon.corners(baseline_C(icon, rig))
     low, high = _holdable(rig, control)
     for level in (corners.lowest, corners.highest):
         if not low - 1e-9 <= level <= high + 1e-9:
@@ -61,12 +61,12 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
 
 def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
     """As `check_static`, for the range and ramp rate of a thermode; skin levels by the display that holds them."""
-    control, modes, base = icon.frame.control, modes_of(rig), baseline_C(icon, rig)
+    control, modes, base = icon.context.control, modes_of(rig), baseline_C(icon, rig)
     try:
         refuse_current(icon, f"rig {rig.name}")
     except RigError as problem:
         return (f"icon {icon.name}: {problem}",)
-    corners, found = icon.lower(base), []
+    corners, found = icon.corners(base), []
     for level in dict.fromkeys((base, corners.lowest, corners.highest)):
         needed = modes.display_holding_skin_C(level) if control == "skin" else level
         if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:

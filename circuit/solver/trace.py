@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
+from ..inputs import require_pyarrow
 from ..rig.rules import Limits
 from .network import RECORDED
 
@@ -166,12 +167,27 @@ class Trace:
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
-    """Write traces one after the other as `.csv` or `.parquet`; NaN becomes an empty cell."""
+    """Write traces to one table, one after the other; NaN becomes an empty cell.
+
+    Parameters
+    ----------
+    traces
+        One trace or several.
+    path
+        Name of the file; it is written as Parquet if it ends in ``.parquet``, else as CSV.
+
+    Raises
+    ------
+    InputError
+        Parquet is requested and pyarrow, which writes it, is not installed.
+
+    """
     import pandas as pd
 
     frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
     table = pd.concat(frames, ignore_index=True)
     if str(path).endswith(".parquet"):
+        require_pyarrow(path)
         table.to_parquet(path, index=False)
     else:
         table.to_csv(path, index=False, float_format=CSV_FORMAT)

@@ -175,7 +175,7 @@ def mesh_study(
     """
     if way not in WAYS:
         raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")
-    prescribed = isinstance(cue, Icon) and cue.frame.control != "current"
+    prescribed = isinstance(cue, Icon) and cue.context.control != "current"
     if way == "temperature" and not prescribed:
         raise RigError("a drive prescribes no temperature to follow; compare meshes with way='current'")
     meshes = usual_meshes(rig) if meshes is None else tuple(meshes)
@@ -206,7 +206,7 @@ def mesh_study(
 def _name(cue: Icon | Drive) -> str:
     if isinstance(cue, Drive):
         return f"a drive of {cue.current_A.min():g} … {cue.current_A.max():g} A over {cue.time_s[-1]:g} s"
-    return f"{cue.name} ({cue.frame.control})"
+    return f"{cue.name} ({cue.context.control})"
 
 
 def _network(rig: Rig, mesh: Mesh) -> Network:
@@ -232,9 +232,9 @@ class _Currents:
         if isinstance(cue, Drive):
             return _Currents(cue, float(cue.current_A[0]), float(cue.time_s[-1]))
         start = baseline_C(cue, rig)
-        if cue.frame.control == "current":  # such a cue starts from the current that holds its baseline
+        if cue.context.control == "current":  # such a cue starts from the current that holds its baseline
             start = design(cue, rig, 0.0).rest_A
-        end = float(cue.lower(start).duration_s) + tail_s
+        end = float(cue.corners(start).duration_s) + tail_s
         plan = design(cue, rig, end)
         return _Currents(plan.drive, plan.rest_A, end)
 
@@ -245,7 +245,7 @@ class _Currents:
 def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[Drive, Array]:
     """The current that leads one mesh along a cue, and where it starts."""
     assert isinstance(cue, Icon)
-    control, base, ends = cue.frame.control, baseline_C(cue, rig), periods(rig, end_s)
+    control, base, ends = cue.context.control, baseline_C(cue, rig), periods(rig, end_s)
     state = state_under_current(network, holding_current_A(network, control, base))
     bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
     target = target_at(cue, base, ends)[np.newaxis]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from thermicon.icons import Change, Icon, Play, Pulse, Repeat, Return, Statement, Step, Total, Wave
+from thermicon.icons import Icon, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
 from thermicon.icons.model.statements import Broken
 
 from ..rig.rig import Rig
@@ -52,7 +52,7 @@ def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
     'it is reached with its changes 0.8 times as large, in the same time'
     """
-    if icon.frame.control == "current" or _reached(icon, rig):
+    if icon.context.control == "current" or _reached(icon, rig):
         return None
     base = baseline_C(icon, rig)
     slower = _least(lambda by: _reached(changed(icon, base, slower=by), rig), SLOWEST)
@@ -88,7 +88,7 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
             if isinstance(statement, Step) and statement.to_C is not None:
                 return replace(statement, to_C=base_C + smaller * (statement.to_C - base_C))
             return replace(statement, by_K=smaller * (statement.by_K or 0.0))
-        if isinstance(statement, Change):
+        if isinstance(statement, Ramp):
             to = None if statement.to_C is None else base_C + smaller * (statement.to_C - base_C)
             by = None if statement.by_K is None else smaller * statement.by_K
             rate = None if statement.rate_K_per_s is None else statement.rate_K_per_s * smaller / slower

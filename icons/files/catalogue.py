@@ -79,7 +79,7 @@ def explain(code: str) -> str:
 
 
 def page() -> str:
-    """Return the catalogue as Markdown: what docs/errors.md holds."""
+    """Return the catalogue as Markdown: what docs/reference/errors.md holds."""
     lines = [
         "# Errors",
         "",

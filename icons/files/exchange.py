@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
+from ..model.context import Metadata
 from ..model.errors import MOST_ERRORS, CueErrors
 from ..model.family import Family
-from ..model.frame import Metadata
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
@@ -41,12 +41,12 @@ def to_json(icons: IconSet) -> str:
     }
     <BLANKLINE>
     """
-    frame = icons.frame
-    head = {"name": icons.name or None, "title": icons.title or None, "site": frame.site, "control": frame.control}
+    context = icons.context
+    head = {"name": icons.name or None, "title": icons.title or None, "site": context.site, "control": context.control}
     document = {
         "format": "thermicon cue",
         "version": 1,
-        "set": _given({**head, "baseline_C": frame.baseline_C, **_metadata(icons.metadata)}),
+        "set": _given({**head, "baseline_C": context.baseline_C, **_metadata(icons.metadata)}),
         "icons": [_icon(entry) for entry in icons.entries],
     }
     return _laid_out(document, "") + "\n"
@@ -109,12 +109,13 @@ def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path =
     if isinstance(part, Play):
         return {"do": kind, "icon": part.icon.name}
     if isinstance(part, Return) and "rate_per_s" in values:
-        rate = "rate_A_per_s" if owner.frame.control == "current" else "rate_K_per_s"
+        rate = "rate_A_per_s" if owner.context.control == "current" else "rate_K_per_s"
         return {"do": kind, rate: values["rate_per_s"]}
-    if kind == "change":
+    if kind == "ramp":
         return {"do": values.pop("direction"), **values}
     if kind == "wave":
         kind = values.pop("shape")
+    kind = {"current": "drive"}.get(kind, kind)
     if isinstance(part, Hold):
         kind = "hold"
     return {"do": kind, **{name: value for name, value in values.items() if _SAME_AS_LEFT_OUT.get(name) != value}}

@@ -17,7 +17,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from ..model.frame import name_fault, text_fault
+from ..model.context import name_fault, text_fault
 from ..model.parameter import unit_fault
 from ..model.units import LARGEST, SMALLEST, UNITS, Kind
 from ..model.value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, MOST_REPEATS, SHORTEST_S, fault

@@ -58,7 +58,7 @@ def to_hjif(icons: IconSet | Iterable[Icon], date: datetime | None = None) -> st
         icons = icons.icons
     taken = list(islice(icons, MOST_ICONS + 1))
     _check(taken)
-    corners = [icon.lower() for icon in taken]
+    corners = [icon.corners() for icon in taken]
     timescale = ticks_per_second(corners)
     tracks, start = [], 0
     for icon, one in zip(taken, corners, strict=True):
@@ -105,16 +105,16 @@ def _check(icons: list[Icon]) -> None:
     if len(icons) > MOST_ICONS:
         raise HjifError(f"HJIF takes {MOST_ICONS} icons a file at most (profile Main, level 1); choose among them")
     for icon in icons:
-        if icon.frame.control == "current":
+        if icon.context.control == "current":
             help = "write the set with control skin or display, or export the current as a waveform"
             raise HjifError(f"icon {icon.name} prescribes a current in A, HJIF has no such perception; {help}")
-        if icon.frame.baseline_C is None:
+        if icon.context.baseline_C is None:
             help = 'say it in the set block, such as "baseline 32 °C"'
             raise HjifError(f"icon {icon.name} has no baseline, from which HJIF counts temperatures; {help}")
 
 
 def _track(icon: Icon, corners: Corners, timescale: int, start: int) -> _Track:
-    baseline = icon.frame.baseline_C or 0.0
+    baseline = icon.context.baseline_C or 0.0
     changes = [round(value - baseline, 12) for value in corners.value]
     gain = max(map(abs, changes)) or 1.0
     keyframes: list[tuple[int, float]] = []
@@ -129,9 +129,9 @@ def _track(icon: Icon, corners: Corners, timescale: int, start: int) -> _Track:
 
 
 def _perception(place: int, track: _Track) -> dict[str, Any]:
-    icon, frame = track.icon, track.icon.frame
-    level = decimal_text(frame.baseline_C or 0.0)
-    site = f", {frame.site}" if frame.site else ""
+    icon, context = track.icon, track.icon.context
+    level = decimal_text(context.baseline_C or 0.0)
+    site = f", {context.site}" if context.site else ""
     means = f": {icon.metadata.means}" if icon.metadata.means else ""
     effect = {
         "effect_type": "Basis",
@@ -149,7 +149,7 @@ def _perception(place: int, track: _Track) -> dict[str, Any]:
     }
     channel = {
         "id": 0,
-        "description": f"{_PRESCRIBED[frame.control]}{site}: amplitude x gain = K from {level} degC",
+        "description": f"{_PRESCRIBED[context.control]}{site}: amplitude x gain = K from {level} degC",
         "gain": track.gain_K,
         "mixing_coefficient": 1.0,
         "body_part_mask": 0,
@@ -169,7 +169,7 @@ def _perception(place: int, track: _Track) -> dict[str, Any]:
 
 
 def _description(title: str, tracks: list[_Track], corners: list[Corners], timescale: int) -> str:
-    levels = sorted({track.icon.frame.baseline_C or 0.0 for track in tracks})
+    levels = sorted({track.icon.context.baseline_C or 0.0 for track in tracks})
     said = " and ".join(f"{decimal_text(level)} degC" for level in levels)
     parts = [
         f"{title or 'thermal icons'}, written by thermicon; {EXPERIMENTAL}",

@@ -11,16 +11,16 @@ from ..language.assemble import MOST_CORNERS_A_FILE
 from ..language.recover import DEEPEST
 from ..language.source import Finding, Source
 from ..model.check import MOST_CORNERS, corner_count
+from ..model.context import Context, Metadata
 from ..model.errors import CueErrors
 from ..model.expand import HOLE
 from ..model.family import MOST_MEMBERS, Family
-from ..model.frame import Frame, Metadata
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
 from ..model.shapes import Pulse, Step, Wave
 from ..model.slots import Slot, value_fault
-from ..model.statements import Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from ..model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from ..model.units import KIND_WORDS, Kind
 from ..model.words import nearest
 from . import json_schema as model
@@ -49,7 +49,7 @@ class Reader:
         self.places = places
         self.table = table
         self.findings: list[Finding] = []
-        self.frame = Frame(table.set.control, table.set.baseline_C, table.set.site)
+        self.context = Context(table.set.control, table.set.baseline_C, table.set.site)
         self.index: dict[str, int] = {}
         self.done: dict[int, Icon | Family | None] = {}
         self.playing: list[int] = []
@@ -68,7 +68,7 @@ class Reader:
             return None
         table = self.table.set
         try:
-            return IconSet(table.name or "", table.title or "", self.frame, _metadata(table), entries)
+            return IconSet(table.name or "", table.title or "", self.context, _metadata(table), entries)
         except ValueError as error:
             self.add("E012", (), str(error))
             return None
@@ -101,14 +101,14 @@ class Reader:
             return None
         try:
             if table.parameters is None:
-                return Icon(table.name, body, self.frame, _metadata(table))
+                return Icon(table.name, body, self.context, _metadata(table))
             named = tuple(scope.parameters.values())
             self.members += prod(len(each) for each in named)
             if self.members > MOST_MEMBERS:
                 what = f"the families up to here have {self.members:,} members"
                 self.add("E231", (*path, "name"), what, f"a file has at most {MOST_MEMBERS:,}")
                 return None
-            return Family(table.name, named, body, tuple(scope.slots), self.frame, _metadata(table))
+            return Family(table.name, named, body, tuple(scope.slots), self.context, _metadata(table))
         except CueErrors as found:
             for error in found.errors:
                 offset = self.source.starts[error.line - 1] + error.column - 1
@@ -202,9 +202,9 @@ class Reader:
 
     def misfit(self, table: Any, name: str, value: Any, kind: Kind | None) -> tuple[str, str, str] | None:
         """Return code, words and help for a value that does not fit its statement or the control, or None."""
-        wrong, right = ("rate_K_per_s", "A") if self.frame.control == "current" else ("rate_A_per_s", "K")
+        wrong, right = ("rate_K_per_s", "A") if self.context.control == "current" else ("rate_A_per_s", "K")
         if table.do == "return" and name == wrong:
-            return "E210", f"this set controls the {self.frame.control}", f"the key is rate_{right}_per_s"
+            return "E210", f"this set controls the {self.context.control}", f"the key is rate_{right}_per_s"
         if kind == "difference" and isinstance(value, float | int) and value <= 0:
             return "E202", f"{value:g} K: a change has a positive size; its direction is in the word", ""
         if name == "by_A" and isinstance(value, float | int):
@@ -270,9 +270,9 @@ class Reader:
 def _statement(table: Any, values: dict[str, Any], at: tuple[int, int]) -> Statement:
     match table:
         case model.ChangeTable():
-            return Change(table.do, **values, span=at)
+            return Ramp(table.do, **values, span=at)
         case model.DriveTable():
-            return Drive(**values, span=at)
+            return Current(**values, span=at)
         case model.HoldTable():
             return (Hold if table.do == "hold" else Rest)(**values, span=at)
         case model.StepTable():

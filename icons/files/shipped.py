@@ -46,7 +46,7 @@ def read_cue(source: str | Path) -> IconSet:
 
     Raises CueErrors when the file is missing, a folder, unreadable, too large or not a sound cue text or JSON.
 
-    >>> read_cue("six-icons").frame.control
+    >>> read_cue("six-icons").context.control
     'display'
     """
     name = str(source)

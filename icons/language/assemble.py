@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import prod
 from typing import Any, cast
 
 from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_count, problems
+from ..model.context import Context, Metadata
 from ..model.errors import MOST_ERRORS
-from ..model.expand import trusted
-from ..model.family import MOST_MEMBERS, Family
-from ..model.frame import Frame, Metadata
+from ..model.family import FEWER, MOST_MEMBERS, Family
+from ..model.family_check import MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.slots import path_of, statement_at
@@ -22,9 +23,10 @@ from .build import Builder, Place, span
 from .recover import DEEPEST, read
 from .source import Edit, Finding, Source
 
+Body = tuple[Statement, ...]
 MOST_CORNERS_A_FILE = 200_000
-# Members times statements, some two seconds' work.
-MOST_EFFORT = 200_000_000
+# Members times statements that are followed: about ten seconds' work.
+MOST_EFFORT = 500_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +82,10 @@ class _Assembler:
         if findings or more:
             return Analysis(None, tuple(findings), more)
         icons = tuple(icon for icon in made if icon is not None)
-        return Analysis(IconSet(self.name, self.title, self.frame(), self.metadata, icons), (), 0)
+        return Analysis(IconSet(self.name, self.title, self.context(), self.metadata, icons), (), 0)
 
-    def frame(self) -> Frame:
-        return Frame(self.control or "skin", self.baseline, self.site)
+    def context(self) -> Context:
+        return Context(self.control or "skin", self.baseline, self.site)
 
     def version(self, parts: list[Any], kinds: list[str]) -> None:
         help = "the first line of every file is: cue 1"
@@ -241,49 +243,47 @@ class _Assembler:
             self.add(problem, draft)
         if len(self.builder.findings) > before or self.unsound(draft):
             return None
-        values = {"name": draft.name, "statements": draft.body, "frame": self.frame(), "metadata": draft.metadata}
-        return trusted(Icon, values)
+        return Icon(cast(str, draft.name), cast(Body, draft.body), self.context(), draft.metadata)
 
     def family(self, draft: IconDraft, before: int) -> Family | None:
         """Return the family of a draft, every member checked; None, and findings, when one of them cannot be."""
         over = draft.over
         if over is None or over.unread or len(self.builder.findings) > before or self.unsound(draft):
             return None
-        values = {
-            "name": draft.name,
-            "parameters": tuple(over.named.values()),
-            "template": draft.body,
-            "slots": draft.slots,
-            "frame": self.frame(),
-            "metadata": draft.metadata,
-        }
-        family = Family.unproven(values)
-        self.members += len(family)
-        if self.members > MOST_MEMBERS:
-            if self.members - len(family) <= MOST_MEMBERS:
-                what = f"the families up to here have {self.members:,} members"
-                self.builder.add("E231", draft.place, what, f"a file has at most {MOST_MEMBERS:,}")
+        name, parameters, template = cast(str, draft.name), tuple(over.named.values()), cast(Body, draft.body)
+        if "_" in name:  # such a name is refused with those of the other icons
             return None
-        from ..model.sweep import effort, sweep
-
-        self.effort += effort(family)
+        members = prod(map(len, parameters))
+        self.members += members
+        if self.members > MOST_MEMBERS:
+            if self.members - members <= MOST_MEMBERS:
+                what = f"the families up to here have {self.members:,} members"
+                self.builder.add("E231", draft.place, what, f"a file has at most {MOST_MEMBERS:,}: {FEWER}")
+            return None
+        statements = effort(members, template, draft.slots)
+        self.effort += statements
         if self.effort > MOST_EFFORT:
-            if self.effort - effort(family) <= MOST_EFFORT:
-                what = f"{self.members:,} members with so many statements take too long to check"
-                help = "fewer members, statements or repeats; or split the set"
+            if self.effort - statements <= MOST_EFFORT:
+                what = f"{self.members:,} members have {self.effort:,} statements to check"
+                help = f"a file has at most {MOST_EFFORT:,}: fewer members, statements or repeats, or several files"
                 self.builder.add("E231", draft.place, what, help)
             return None
-        found = sweep(family)
-        if found.problem is None:
-            return family
-        problem, which = found.problem, (found.member or "").partition("_")[2].replace("_", ", ")
-        many = f", one of {found.failing:,} such members of {len(family):,}" if found.failing > 1 else ""
+        try:
+            return Family(name, parameters, template, draft.slots, self.context(), draft.metadata)
+        except MemberErrors as error:
+            self.add(self.member_problem(error.failed, members, template), draft)
+        return None
+
+    def member_problem(self, failed: FailedMember, members: int, template: Body) -> Problem:
+        """Return what is wrong with a member as a problem of the template, with the values that it arises for."""
+        which = failed.name.partition("_")[2].replace("_", ", ")
+        least = "at least " if failed.failing == MOST_FAILING else ""
+        many = f", one of {least}{failed.failing:,} such members of {members:,}" if failed.failing > 1 else ""
+        problem = failed.problem
         statement = problem.statement
         if statement is not None:
-            statement = statement_at(family.template, path_of(found.statements, statement))
-        told = replace(problem, statement=statement, what=f"{problem.what} (with {which}{many})", cures=())
-        self.add(told, draft)
-        return None
+            statement = statement_at(template, path_of(failed.statements, statement))
+        return replace(problem, statement=statement, what=f"{problem.what} (with {which}{many})", cures=())
 
     def unsound(self, draft: IconDraft) -> bool:
         """Tell whether a draft cannot be made, although nothing was found to be wrong with what it says itself."""

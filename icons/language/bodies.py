@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+from ..model.context import Metadata
 from ..model.expand import HOLE
-from ..model.frame import Metadata
 from ..model.icon import Icon
 from ..model.parameter import Parameter
 from ..model.shapes import Pulse, Shape, Start, Step, Wave
@@ -13,11 +13,11 @@ from ..model.slots import Path, Slot, value_fault
 from ..model.statements import (
     Bound,
     Broken,
-    Change,
+    Current,
     Direction,
-    Drive,
     Hold,
     Play,
+    Ramp,
     Repeat,
     Rest,
     Return,
@@ -140,9 +140,9 @@ class _Scope:
         direction = cast(Direction, words.get("DIRECTION", "change"))
         match rule:
             case "change" | "shift":
-                return Change(direction, by, to, rate, time, at)
+                return Ramp(direction, by, to, rate, time, at)
             case "drive":
-                return Drive(cast(float, amperes), rate, time, at)
+                return Current(cast(float, amperes), rate, time, at)
             case "return":
                 return Return(rate, time, at)
             case "hold":

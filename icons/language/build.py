@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+from ..model.context import Metadata, text_fault
 from ..model.errors import TITLES
-from ..model.frame import Metadata, text_fault
 from ..model.units import Kind, to_si
 from ..model.value_limits import fault
 from ..model.words import EXAMPLES, nearest

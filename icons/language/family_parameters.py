@@ -5,7 +5,7 @@ from itertools import pairwise
 from math import prod
 from typing import Any
 
-from ..model.family import MOST_MEMBERS
+from ..model.family import FEWER, MOST_MEMBERS
 from ..model.parameter import Parameter, span_fault
 from ..model.units import UNITS, exact_number
 from .build import Builder, Place, rule_of, short, span
@@ -45,7 +45,7 @@ def parameters_of(builder: Builder, tree: Any) -> Over:
     members = prod(len(parameter) for parameter in named.values())
     if members > MOST_MEMBERS:
         what = f"this family has {members:,} members" if members < 10**15 else "this family has more than 10^15 members"
-        builder.add("E231", span(tree), what, f"a family has at most {MOST_MEMBERS:,}")
+        builder.add("E231", span(tree), what, f"a family has at most {MOST_MEMBERS:,}: {FEWER}")
         unread = True
     return Over(named, places, unread)
 

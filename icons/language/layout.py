@@ -74,6 +74,8 @@ class _Layout:
         self.lines: list[str] = []
         self.words: list[Item] = []
         self.header: _Header | None = None
+        # Comments between the name of the set and its brace.
+        self.set_notes: list[str] = []
         self.depth = 0
         # Of the source: nothing but blanks on this line so far, and a blank line passed since the last line written.
         self.fresh, self.gap = True, False
@@ -84,6 +86,8 @@ class _Layout:
         """Take the next item."""
         if self.header is not None and kind != "LBRACE":
             self.header.take(kind, word, own_line=self.fresh)
+        elif self.words and self.words[0][0] == "SET" and kind in ("_NEWLINE", "COMMENT"):
+            self.set_notes += [word] * (kind == "COMMENT")
         elif kind == "_NEWLINE":
             self.finish()
             self.gap |= self.fresh
@@ -124,8 +128,9 @@ class _Layout:
     def open(self) -> None:
         """Write the header of a block."""
         first, *more = self.header.lines() if self.header is not None else [f"{_joined(self.words)} {{"]
-        self.put(first)
-        self.lines += more
+        notes, self.set_notes = self.set_notes, []
+        self.put(f"{first}  {notes[0]}" if notes else first)
+        self.lines += [*more, *(f"  {note}" for note in notes[1:])]
         self.words, self.header = [], None
         self.depth += 1
         self.opened, self.gap = True, False

@@ -18,7 +18,7 @@ def parse(text: str | bytes, file: str = "<text>") -> IconSet:
 
     Raises CueErrors, and nothing else, with everything that is wrong, in the order of the text.
 
-    >>> parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }")["dip"].lower().time_s
+    >>> parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }")["dip"].corners().time_s
     (0.0, 2.0, 6.0, 8.0)
     >>> try:
     ...     parse("cue 1; icon dip { cool by 6 at 3 °C/s }", "dip.cue")

@@ -206,6 +206,14 @@ class _Reader:
             self.fresh = True
             self.jump(at)
             return
+        if not self.blocks and not self.listing and self.takes("LBRACE") and _HEADER.match(self.text, at):
+            end = self.text.rfind("\n", self.begin, at)
+            if end > self.begin:  # the next block begins on a line of its own, before this one was opened
+                place = self.begin, self.begin + len(self.text[self.begin : end].split("\n")[0])
+                what = 'no "{" opens the block after this'
+                self.report(Finding("E114", *place, what, 'statements and settings stand in "{ ... }"'))
+                self.resume(end, "file")
+                return
         braces = self.listing and self.text[at] == "{" and self.takes("LSQB")
         pieces = self.source.pieces(self.begin, at, self.listing, braces)
         stop = self.source.stop_listing(at, braces) if self.listing else self.stop(at)
@@ -284,7 +292,7 @@ class _Reader:
         while not self.takes("BROKEN"):
             state.state_stack.pop()
             state.value_stack.pop()
-        return not self.takes("_NEWLINE")
+        return not self.takes("SEMICOLON")  # headers may go on over line ends, statements end there
 
     def accepts(self) -> frozenset[str]:
         """Return the kinds of tokens that the parser could take now."""

@@ -7,11 +7,11 @@ from .arguments import amperes, given, number, one_of
 from .shapes import Pulse, Shape, Start, Step, Wave
 from .statements import (
     Bound,
-    Change,
+    Current,
     Direction,
-    Drive,
     Hold,
     Play,
+    Ramp,
     Repeat,
     Rest,
     Return,
@@ -25,12 +25,12 @@ if TYPE_CHECKING:
 
 def cool(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
-) -> Change:
+) -> Ramp:
     """Cool by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
 
     Raises ValueError unless one of each pair is given and lies within what the language takes.
 
-    >>> cool(by=6, at=3) == Change("cool", by_K=6, rate_K_per_s=3)
+    >>> cool(by=6, at=3) == Ramp("cool", by_K=6, rate_K_per_s=3)
     True
     """
     return _change("cool", "cool", by, to, at, over)
@@ -38,10 +38,10 @@ def cool(
 
 def warm(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
-) -> Change:
+) -> Ramp:
     """Warm by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s); ValueError as ``cool``.
 
-    >>> warm(to=38, over=2) == Change("warm", to_C=38, duration_s=2)
+    >>> warm(to=38, over=2) == Ramp("warm", to_C=38, duration_s=2)
     True
     """
     return _change("warm", "warm", by, to, at, over)
@@ -49,26 +49,26 @@ def warm(
 
 def ramp(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
-) -> Change:
+) -> Ramp:
     """``change``: by a signed difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
 
     Raises ValueError as ``cool`` does.
 
-    >>> ramp(by=-6, at=3) == Change("change", by_K=-6, rate_K_per_s=3)
+    >>> ramp(by=-6, at=3) == Ramp("change", by_K=-6, rate_K_per_s=3)
     True
     """
     return _change("ramp", "change", by, to, at, over)
 
 
-def drive(*, to: float, at: float | None = None, over: float | None = None) -> Drive:
+def current(*, to: float, at: float | None = None, over: float | None = None) -> Current:
     """``to`` under control current: to a current (A), at a rate (A/s) or over a time (s); ValueError as ``cool``.
 
-    >>> drive(to=0.5, at=1) == Drive(0.5, rate_A_per_s=1)
+    >>> current(to=0.5, at=1) == Current(0.5, rate_A_per_s=1)
     True
     """
-    one_of("drive", {"at": at, "over": over})
-    rate, time = number("drive", "at", at, "current_rate"), number("drive", "over", over, "time")
-    return Drive(given("drive", "to", to, "current"), rate, time)
+    one_of("current", {"at": at, "over": over})
+    rate, time = number("current", "at", at, "current_rate"), number("current", "over", over, "time")
+    return Current(given("current", "to", to, "current"), rate, time)
 
 
 def hold(duration: float) -> Hold:
@@ -237,12 +237,12 @@ def total(duration: float, bound: Bound = "exactly") -> Total:
 
 def _change(
     call: str, direction: Direction, by: float | None, to: float | None, at: float | None, over: float | None
-) -> Change:
+) -> Ramp:
     one_of(call, {"by": by, "to": to})
     one_of(call, {"at": at, "over": over})
     size = number(call, "by", by, "change" if direction == "change" else "difference")
     target = number(call, "to", to, "absolute")
-    return Change(direction, size, target, number(call, "at", at, "rate"), number(call, "over", over, "time"))
+    return Ramp(direction, size, target, number(call, "at", at, "rate"), number(call, "over", over, "time"))
 
 
 def _wave(

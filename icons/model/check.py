@@ -1,18 +1,22 @@
-"""Meaning: run an icon's statements in thought and find what cannot be, without writing repeats out."""
+"""Meaning: follow an icon's statements and find what cannot be played, without writing repeats out."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from .motion import advance, piece_count, reach, whole_periods
-from .shapes import Pulse, Step, Wave
-from .statements import Broken, Change, Drive, Leaf, Play, Repeat, Rest, Return, Statement, Total
+from .motion import advance, amplitude, piece_count, reach, whole_periods
+from .shapes import Pulse, Shape, Step, Wave
+from .statements import Broken, Current, Leaf, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from .units import decimal_text, exact
 from .value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S, Control
 
 MOST_CORNERS = 100_000
 # A bare thenar eminence rests near 32 °C; taken where neither the set nor the caller says what baseline is.
 ASSUMED_BASELINE_C = 32.0
+Played = dict[int, tuple[Fraction | None, Fraction]]
+# The steepest slope of a wave, as a multiple of amplitude over period.
+_STEEPNESS: dict[Shape, float] = {"sine": 2 * math.pi, "triangle": 4.0, "sawtooth": 2.0, "square": 0.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +32,17 @@ class Problem:
     what: str
     help: str = ""
     cures: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What a body does: its problems, duration (s), extreme levels (°C or A) and steepest slope (K/s or A/s)."""
+
+    problems: list[Problem]
+    duration_s: float = 0.0
+    lowest: float = 0.0
+    highest: float = 0.0
+    steepest_per_s: float = 0.0
 
 
 def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | None = None) -> int:
@@ -53,6 +68,16 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
 
 def problems(body: Sequence[Statement | Broken], control: Control, rest: Fraction | None) -> list[Problem]:
     """Return what cannot be in a body that starts at the level ``rest`` (°C or A; None when that is not known)."""
+    return survey(body, control, rest).problems
+
+
+def survey(
+    body: Sequence[Statement | Broken], control: Control, rest: Fraction | None, played: Played | None = None
+) -> Survey:
+    """Return what a body that starts at the level ``rest`` (°C or A; None when that is not known) does.
+
+    ``played`` keeps end and duration of the icons that are played, for further bodies that play them.
+    """
     if (corners := corner_count(body)) > MOST_CORNERS:
         worst = max(
             (part for part in body if isinstance(part, Repeat | Wave | Play)),
@@ -61,10 +86,12 @@ def problems(body: Sequence[Statement | Broken], control: Control, rest: Fractio
         )
         what = f"written out, this icon has {_count(corners)} corners"
         part = "count" if isinstance(worst, Repeat) else "whole"
-        return [Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")]
-    walker = _Walker(control, rest)
+        return Survey([Problem(worst, "E220", part, what, f"an icon has at most {MOST_CORNERS:,} corners")])
+    walker = _Walker(control, rest, played={} if played is None else played)
+    if rest is not None:
+        walker.lowest = walker.highest = float(rest)
     _, duration = walker.run(body, rest)
-    if duration > Fraction(LONGEST_S):
+    if duration > LONGEST_S:
         what = f"this icon lasts {float(duration):,.6g} s"
         walker.found.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
     if walker.timed and duration == 0 and body and not walker.found:
@@ -72,7 +99,7 @@ def problems(body: Sequence[Statement | Broken], control: Control, rest: Fractio
         walker.found.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
     if walker.timed:
         walker.totals(body, duration)
-    return walker.found
+    return Survey(walker.found, float(duration), walker.lowest, walker.highest, walker.steepest_per_s)
 
 
 @dataclass(slots=True)
@@ -81,9 +108,12 @@ class _Walker:
     rest: Fraction | None
     found: list[Problem] = field(default_factory=list)
     blamed: set[int] = field(default_factory=set)
-    played: dict[int, tuple[Fraction | None, Fraction]] = field(default_factory=dict)
+    played: Played = field(default_factory=dict)
     # Behind a statement that could not be read, nobody knows how long the icon lasts.
     timed: bool = True
+    lowest: float = math.inf
+    highest: float = -math.inf
+    steepest_per_s: float = 0.0
 
     def run(self, body: Sequence[Statement | Broken], level: Fraction | None) -> tuple[Fraction | None, Fraction]:
         total = Fraction(0)
@@ -133,25 +163,37 @@ class _Walker:
         self.side(part, level, self.rest)
         target, duration = advance(part, level, self.rest)
         low, high = (-HIGHEST_A, HIGHEST_A) if self.control == "current" else (LOWEST_C, HIGHEST_C)
-        least, most = reach(part, level, self.rest)
-        if least < low or most > high:
-            beyond = least if least < low else most
+        if isinstance(part, Wave | Pulse):
+            least, most = reach(part, level, self.rest)
+        else:
+            least, most = level, target
+        # Fractions are compared only where floats leave a doubt: that takes most of the time of a family.
+        bottom, top, seconds = float(least), float(most), float(duration)
+        bottom, top = min(bottom, top), max(bottom, top)
+        self.lowest, self.highest = min(self.lowest, bottom), max(self.highest, top)
+        if isinstance(part, Wave):
+            slope = _STEEPNESS[part.shape] * float(amplitude(part)) / part.period_s
+        else:
+            slope = (top - bottom) / seconds if seconds and not isinstance(part, Pulse) else 0.0
+        self.steepest_per_s = max(self.steepest_per_s, slope)
+        if (bottom <= low or top >= high) and (min(least, most) < low or max(least, most) > high):
+            beyond = bottom if bottom < low else top
             unit = "A" if self.control == "current" else "°C"
             help = f"the language allows {low:g} to {high:g} {unit}; a rig may allow less"
-            self.blame(part, "E219", "target", f"this leads to {float(beyond):.6g} {unit}", help)
-        if 0 < duration < Fraction(SHORTEST_S):
+            self.blame(part, "E219", "target", f"this leads to {beyond:.6g} {unit}", help)
+        if 0 < seconds < 2 * SHORTEST_S and duration < Fraction(SHORTEST_S):
             self.blame(part, "E203", "pace", "this takes less than a microsecond", "take a smaller rate")
         return target, duration
 
     def fits(self, part: Leaf) -> bool:
         """Tell whether a statement moves what the set controls; blame it when not."""
         current = self.control == "current"
-        if current and isinstance(part, Change):
+        if current and isinstance(part, Ramp):
             help = 'prescribe the current, for example: "to 0.5 A at 1 A/s"'
             what = f'"{part.direction}" moves a temperature; this set controls the current'
             self.blame(part, "E208", "word", what, help)
             return False
-        if not current and isinstance(part, Drive):
+        if not current and isinstance(part, Current):
             help = 'say "warm" or "cool", or put "control current" into the set'
             self.blame(part, "E209", "word", f'"to" alone moves a current; this set controls the {self.control}', help)
             return False
@@ -186,7 +228,7 @@ class _Walker:
     def side(self, part: Leaf, level: Fraction, rest: Fraction) -> None:
         unit = "A" if self.control == "current" else "°C"
         now = self.say(level)
-        if isinstance(part, Change | Step) and part.to_C is not None:
+        if isinstance(part, Ramp | Step) and part.to_C is not None:
             target = exact(part.to_C, "absolute")
             if target == level:
                 self.blame(part, "E201", "target", f"the level is {now} already", 'to stay there, write "hold for 2 s"')
@@ -196,7 +238,7 @@ class _Walker:
                 what = f"{part.to_C:.6g} °C is {side} the {now} reached so far"
                 help = f'"{part.direction}" leads the other way; for a change of level, write "by"'
                 self.blame(part, "E201", "target", what, help, ("direction", other))
-        elif isinstance(part, Drive | Step) and absolute([part]) and advance_blind(part) == level:
+        elif isinstance(part, Current | Step) and absolute([part]) and advance_blind(part) == level:
             self.blame(part, "E201", "target", f"the current is {now} already", 'to stay there, write "hold for 2 s"')
         elif isinstance(part, Rest) and level != rest:
             what = f"the level is {now} here, baseline is {float(rest):.6g} {unit}"
@@ -216,11 +258,6 @@ class _Walker:
             self.found.append(Problem(part, code, where, what, help, cures))
 
 
-def fits(part: Leaf, control: Control) -> bool:
-    """Tell whether a statement moves what the set controls."""
-    return _Walker(control, None).fits(part)
-
-
 def advance_blind(part: Leaf) -> Fraction:
     """Return the absolute target of a statement that has one, in °C or A, exact."""
     return advance(part, Fraction(0), Fraction(0))[0]
@@ -229,8 +266,8 @@ def advance_blind(part: Leaf) -> Fraction:
 def absolute(body: Sequence[Statement | Broken]) -> bool:
     """Tell whether a body holds a statement that leads to a level of its own, wherever it begins."""
     return any(
-        isinstance(part, Return | Drive | Play)
-        or (isinstance(part, Change | Step) and part.to_C is not None)
+        isinstance(part, Return | Current | Play)
+        or (isinstance(part, Ramp | Step) and part.to_C is not None)
         or (isinstance(part, Step) and part.to_A is not None)
         or (isinstance(part, Repeat) and absolute(part.body))
         for part in body

@@ -122,7 +122,7 @@ def written_out(body: Sequence[Statement | Broken]) -> Iterator[Leaf]:
             yield part
 
 
-def lower(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolerance: float = TOLERANCE) -> Corners:
+def corners(body: Sequence[Statement], start: Fraction, quantity: Quantity, tolerance: float = TOLERANCE) -> Corners:
     """Return the corner points of a checked body that starts at, and rests at, the level ``start`` (°C or A).
 
     Times and levels add up as exact fractions; neighbours on one straight line are merged. A sine is followed to

@@ -1,11 +1,12 @@
-"""Members of a family made one by one and fast: what was proven of the whole family is not proven again."""
+"""Members of a family made one by one; statements that several members have in common are made once."""
 
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import fields
+from math import prod
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from .frame import Metadata
+from .context import Metadata
 from .parameter import Parameter
 from .statements import Repeat, Statement
 
@@ -19,24 +20,18 @@ Made = TypeVar("Made")
 _MOST_KEPT = 65_536
 
 
-def trusted(made: type[Made], values: dict[str, Any]) -> Made:
-    """Return a frozen object with these fields, without the proofs of its construction."""
-    new = object.__new__(made)
-    for name, value in values.items():
-        object.__setattr__(new, name, value)
-    return new
-
-
 class Expander:
     """Makes the statements, name and metadata of a member from the places of its values in the parameters."""
 
     def __init__(
         self,
+        family: str,
         parameters: tuple[Parameter, ...],
         template: tuple[Statement, ...],
         slots: "tuple[Slot, ...]",
         metadata: Metadata,
     ) -> None:
+        self.family = family
         self.parameters = parameters
         self.order = {parameter.name: place for place, parameter in enumerate(parameters)}
         self.slots: dict[tuple[int, ...], list[Slot]] = {}
@@ -45,6 +40,9 @@ class Expander:
         self.makers = [self.kept(*self.maker(part, (place,))) for place, part in enumerate(template)]
         self.metadata = self.intent(metadata)
         self.labels = [self.kept(self.label(place), (place,)) for place in range(len(parameters))]
+
+    def __len__(self) -> int:
+        return prod(len(parameter) for parameter in self.parameters)
 
     def places(self, index: int) -> list[int]:
         """Return the place of each parameter's value in the member at an index; the last parameter runs fastest."""
@@ -58,9 +56,9 @@ class Expander:
         """Return the statements of a member."""
         return tuple([make(places) for make in self.makers])
 
-    def suffix(self, places: Places) -> str:
-        """Return what distinguishes a member's name, for example ``_amount=-6_rate=1``."""
-        return "".join([label(places) for label in self.labels])
+    def name(self, places: Places) -> str:
+        """Return the name of a member, for example ``ramp_amount=-6_rate=1``."""
+        return "".join([self.family, *(label(places) for label in self.labels)])
 
     def label(self, place: int) -> Callable[[Places], str]:
         """Return a maker of one parameter's part of a name."""
@@ -77,7 +75,7 @@ class Expander:
 
         def make(places: Places) -> Metadata:
             words = [piece if isinstance(piece, str) else self.quantity(piece, places[piece]) for piece in pieces]
-            return trusted(Metadata, {**values, "means": "".join(words) or None})
+            return Metadata(**{**values, "means": "".join(words) or None})
 
         return self.kept(make, used)
 
@@ -109,7 +107,7 @@ class Expander:
                 own[name] = int(value) if kind == "count" else value
             if inner:
                 own["body"] = tuple([make(places) for make in inner])
-            return trusted(cls, own)
+            return cls(**own)
 
         return make_one, tuple(sorted(used))
 

@@ -4,12 +4,12 @@ import random
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from .errors import CueErrors
-from .expand import HOLE, Expander, trusted
-from .frame import Frame, Metadata, name_fault
-from .icon import Icon, problem_error
+from .context import Context, Metadata, name_fault
+from .expand import HOLE, Expander
+from .family_check import Summary, check_family
+from .icon import Icon
 from .parameter import Parameter
 from .slots import Slot, in_order, slot_fault
 from .statements import Statement
@@ -17,21 +17,9 @@ from .statements import Statement
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_MEMBERS = 10_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class Summary:
-    """Over all members: durations (s), levels (°C or A) and the steepest rate (K/s or A/s) that is no step.
-
-    The rate of a sine is that of the curve, and a level between two steps in one moment counts.
-    """
-
-    shortest_s: float
-    longest_s: float
-    lowest: float
-    highest: float
-    steepest_per_s: float
+MOST_MEMBERS = 100_000
+"""Members of a family, and of all families of a file: each is checked exactly."""
+FEWER = "take larger steps or fewer parameters, or split the family over several files"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -55,7 +43,7 @@ class Family:
     parameters: tuple[Parameter, ...]
     template: tuple[Statement, ...]
     slots: tuple[Slot, ...]
-    frame: Frame = field(default_factory=Frame)
+    context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
     _expander: Expander = field(init=False, compare=False, repr=False)
 
@@ -68,32 +56,22 @@ class Family:
             raise ValueError(f"family: {wrong}")
         if wrong := self._fault():
             raise ValueError(f"family {self.name}: {wrong}")
-        object.__setattr__(self, "_expander", Expander(self.parameters, self.template, self.slots, self.metadata))
-        from .sweep import sweep
-
-        found = sweep(self)
-        if found.problem is not None:
-            raise CueErrors((problem_error(found.problem, self.name, self.frame),))
-
-    @classmethod
-    def unproven(cls, values: dict[str, Any]) -> "Family":
-        """Return a family of these fields without its proof, which the caller runs."""
-        slots = in_order(values["slots"])
-        made = Expander(values["parameters"], values["template"], slots, values["metadata"])
-        return trusted(cls, {**values, "slots": slots, "_expander": made})
+        members = Expander(self.name, self.parameters, self.template, self.slots, self.metadata)
+        object.__setattr__(self, "_expander", members)
+        check_family(members, self.context)
 
     def _fault(self) -> str | None:
         names = [parameter.name for parameter in self.parameters]
         if not names or len(set(names)) < len(names):
             return "parameters are needed, each with a name of its own"
         if len(self) > MOST_MEMBERS:
-            return f"{len(self):,} members; a family has at most {MOST_MEMBERS:,}"
+            return f"{len(self):,} members; a family has at most {MOST_MEMBERS:,}: {FEWER}"
         for parameter in self.parameters:
             slots = [slot for slot in self.slots if slot.parameter == parameter.name]
             if not slots:
                 return f"parameter {parameter.name} is never used"
             for slot in slots:
-                if wrong := slot_fault(self.template, slot, parameter, self.frame.control):
+                if wrong := slot_fault(self.template, slot, parameter, self.context.control):
                     return f"parameter {parameter.name}: {wrong}"
         if unknown := next((slot.parameter for slot in self.slots if slot.parameter not in names), None):
             return f"no parameter is called {unknown}, which a slot names"
@@ -113,18 +91,7 @@ class Family:
         return self._at(self._expander.places(index % count))
 
     def __iter__(self) -> Iterator[Icon]:
-        frame, made, name = self.frame, self._expander, self.name
-        for index in range(len(self)):
-            places = made.places(index)
-            yield trusted(
-                Icon,
-                {
-                    "name": name + made.suffix(places),
-                    "statements": made.statements(places),
-                    "frame": frame,
-                    "metadata": made.metadata(places),
-                },
-            )
+        return (self[index] for index in range(len(self)))
 
     def __contains__(self, item: object) -> bool:
         name = item.name if isinstance(item, Icon) else item
@@ -154,6 +121,16 @@ class Family:
             places.append(place)
         return self._at(places)
 
+    def variant(self, values: Mapping[str, float]) -> Icon:
+        """Return the icon with these values, each in its parameter's unit, which need not be values of the family.
+
+        Raises CueErrors or ValueError when it cannot be played.
+        """
+        parameters = tuple(Parameter(own.name, own.unit, listed=(values[own.name],)) for own in self.parameters)
+        one = Expander(self.name, parameters, self.template, self.slots, self.metadata)
+        places = one.places(0)
+        return Icon(one.name(places), one.statements(places), self.context, one.metadata(places))
+
     def sample(self, count: int, seed: int = 0) -> tuple[Icon, ...]:
         """Return ``count`` different members drawn at random, in the family's order; all where it has no more."""
         size = len(self)
@@ -161,13 +138,8 @@ class Family:
         return tuple(self[index] for index in drawn)
 
     def summary(self, start: float | None = None) -> Summary:
-        """Return durations, extremes and steepest rate over all members; ``start`` and errors as in ``Icon.lower``."""
-        from .sweep import sweep
-
-        found = sweep(self, start)
-        if found.problem is not None:
-            raise CueErrors((problem_error(found.problem, found.member or self.name, self.frame),))
-        return found.summary
+        """Return durations, extremes and steepest rate over all members; ``start``, errors: see ``Icon.corners``."""
+        return check_family(self._expander, self.context, start)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw up to 24 members, evenly chosen, over one another; returns the Axes."""
@@ -182,7 +154,7 @@ class Family:
 
     def __repr__(self) -> str:
         over = ", ".join(map(str, self.parameters))
-        return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.frame.control}>"
+        return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.context.control}>"
 
     def _repr_html_(self) -> str:
         from ..pictures.picture import picture
@@ -190,9 +162,8 @@ class Family:
         return picture(self)
 
     def _at(self, places: list[int]) -> Icon:
-        made = self._expander
-        values = {"name": self.name + made.suffix(places), "statements": made.statements(places)}
-        return trusted(Icon, {**values, "frame": self.frame, "metadata": made.metadata(places)})
+        members = self._expander
+        return Icon(members.name(places), members.statements(places), self.context, members.metadata(places))
 
     def __reduce__(self) -> tuple[object, ...]:
-        return Family, (self.name, self.parameters, self.template, self.slots, self.frame, self.metadata)
+        return Family, (self.name, self.parameters, self.template, self.slots, self.context, self.metadata)

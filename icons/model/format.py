@@ -4,13 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .shapes import Pulse, Step, Wave
-from .statements import Broken, Change, Drive, Hold, Play, Repeat, Rest, Statement, Total
+from .statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Statement, Total
 from .units import Kind, quantity
 from .value_limits import Control
 
 if TYPE_CHECKING:
+    from .context import Context, Metadata
     from .family import Family
-    from .frame import Frame, Metadata
     from .icon import Icon
     from .iconset import IconSet
 
@@ -34,7 +34,7 @@ def statement_text(
     ``holes`` names the parameter that stands in a field of the statement at a path; ``path`` is this statement's.
 
     >>> from thermicon.icons.model.statements import Return
-    >>> statement_text(Repeat(2, (Change("warm", by_K=1, duration_s=0.5), Return(1))), "skin")
+    >>> statement_text(Repeat(2, (Ramp("warm", by_K=1, duration_s=0.5), Return(1))), "skin")
     'repeat 2 {\\n  warm by 1 °C over 0.5 s\\n  return at 1 °C/s\\n}'
     """
     writer = _Writer(control, holes or {})
@@ -81,9 +81,9 @@ class _Writer(Wording):
 
     def line(self, part: Statement | Broken, path: Path) -> str:
         match part:
-            case Change(direction=word):
+            case Ramp(direction=word):
                 return f"{word} {self.goal(part, path)} {self.pace(part, path)}"
-            case Drive():
+            case Current():
                 return f"{self.goal(part, path)} {self.pace(part, path)}"
             case Hold():
                 return f"hold for {self.value(part, path, 'duration_s', 'time')}"
@@ -111,12 +111,12 @@ class _Writer(Wording):
 
 def icon_text(icon: "Icon | Family") -> str:
     """Return the complete text of a file that holds this icon or family, after the icons that it plays."""
-    return _file(_set_lines("", "", icon.frame, None), [*_needed(icon, {}).values(), icon])
+    return _file(_set_lines("", "", icon.context, None), [*_needed(icon, {}).values(), icon])
 
 
 def set_text(icons: "IconSet") -> str:
     """Return the complete text of the file of a set."""
-    return _file(_set_lines(icons.name, icons.title, icons.frame, icons.metadata), icons.entries)
+    return _file(_set_lines(icons.name, icons.title, icons.context, icons.metadata), icons.entries)
 
 
 def quoted(text: str) -> str:
@@ -155,7 +155,7 @@ def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
         parameters = list(map(str, getattr(icon, "parameters", ())))
         header = header_lines(f"icon {icon.name}", parameters, metadata_texts(icon.metadata))
         holes = {(slot.path, slot.field): slot.parameter for slot in slots}
-        body = [statement_text(part, icon.frame.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
+        body = [statement_text(part, icon.context.control, "  ", holes, (n,)) for n, part in enumerate(_body(icon))]
         blocks.append("\n".join([*header, *body, "}"]))
     return "\n\n".join(blocks) + "\n"
 
@@ -178,12 +178,12 @@ def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> l
     return [*rows[:-1], f"{rows[-1]} {{"]
 
 
-def _set_lines(name: str, title: str, frame: "Frame", metadata: "Metadata | None") -> list[str]:
-    lines = [f"  site {frame.site}"] if frame.site is not None else []
-    if frame.control != "skin":
-        lines.append(f"  control {frame.control}")
-    if frame.baseline_C is not None:
-        lines.append(f"  baseline {quantity(frame.baseline_C, 'absolute')}")
+def _set_lines(name: str, title: str, context: "Context", metadata: "Metadata | None") -> list[str]:
+    lines = [f"  site {context.site}"] if context.site is not None else []
+    if context.control != "skin":
+        lines.append(f"  control {context.control}")
+    if context.baseline_C is not None:
+        lines.append(f"  baseline {quantity(context.baseline_C, 'absolute')}")
     lines += [f"  {line}" for line in metadata_texts(metadata)] if metadata else []
     if not (lines or name or title):
         return []

@@ -1,4 +1,4 @@
-"""An icon: a name, statements, the frame they are meant in and metadata, proven on construction."""
+"""An icon: a name, statements, the context they are meant in and metadata, proven on construction."""
 
 import hashlib
 from collections.abc import Iterator
@@ -7,10 +7,10 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from .check import ASSUMED_BASELINE_C, Problem, problems
-from .corners import Corners, lower
+from .context import Context, Metadata, name_fault
+from .corners import Corners, corners
 from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
-from .frame import Frame, Metadata, name_fault
 from .motion import TOLERANCE
 from .statements import LEAVES, Play, Repeat, Statement
 from .units import exact
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Icon:
-    """A thermal icon: a name, statements that run from baseline, the frame they are meant in, and metadata.
+    """A thermal icon: a name, statements that run from baseline, the context they are meant in, and metadata.
 
     Raises ValueError for a bad name or no statements, and CueErrors when the statements cannot be run, for example
-    a rest away from baseline. A frame without baseline is tried with 32 °C.
+    a rest away from baseline. A context without baseline is tried with 32 °C.
 
-    >>> from thermicon.icons import Change, Hold, Icon, Return
-    >>> Icon("dip", (Change("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
+    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
     <Icon dip: 8 s, 26 to 32 °C, at most 3 °C/s, control skin, baseline 32 °C assumed>
     """
 
     name: str
     statements: tuple[Statement, ...]
-    frame: Frame = field(default_factory=Frame)
+    context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
 
     def __post_init__(self) -> None:
@@ -45,31 +45,31 @@ class Icon:
             raise ValueError(f"icon {self.name} needs at least one statement, and nothing but statements")
         known = {self.name: self}
         for played in all_played(self.statements):
-            if played.frame != self.frame:
-                raise ValueError(f"icon {self.name} plays {played.name}, whose frame differs: {played.frame}")
+            if played.context != self.context:
+                raise ValueError(f"icon {self.name} plays {played.name}, whose context differs: {played.context}")
             if known.setdefault(played.name, played) != played:
                 raise ValueError(f"icon {self.name} plays two different icons that are both called {played.name}")
-        self._prove(rest_level(self.frame))
+        self._prove(rest_level(self.context))
 
-    def lower(self, start: float | None = None, tolerance: float = TOLERANCE) -> Corners:
+    def corners(self, start: float | None = None, tolerance: float = TOLERANCE) -> Corners:
         """Return the corner points, in °C, or in A under control current: exact, but for sines.
 
-        ``start`` (°C) is the baseline when the frame gives none; 32 °C is taken when neither does. Under control
+        ``start`` (°C) is the baseline when the context gives none; 32 °C is taken when neither does. Under control
         current it is the holding current in A, 0 by default. A sine lies within ``tolerance`` (K or A) of its straight
         pieces. Raises CueErrors when a target then lies on the wrong side, and ValueError when ``start`` or
         ``tolerance`` is out of range.
 
         >>> from thermicon.icons import read_cue
-        >>> read_cue("six-icons")["cooling-step"].lower().value
+        >>> read_cue("six-icons")["cooling-step"].corners().value
         (32.0, 26.0, 26.0, 32.0)
         """
         if not 0 < tolerance < 10:
             raise ValueError(f"tolerance = {tolerance!r} must lie above 0 and below 10")
-        level = rest_level(self.frame, start)
-        if level != rest_level(self.frame):
+        level = rest_level(self.context, start)
+        if level != rest_level(self.context):
             self._prove(level)
-        quantity = "current_A" if self.frame.control == "current" else "temperature_C"
-        return lower(self.statements, level, quantity, tolerance)  # type: ignore[arg-type]
+        quantity = "current_A" if self.context.control == "current" else "temperature_C"
+        return corners(self.statements, level, quantity, tolerance)  # type: ignore[arg-type]
 
     @property
     def content_hash(self) -> str:
@@ -86,12 +86,12 @@ class Icon:
         return icon_text(self)
 
     def __repr__(self) -> str:
-        corners = self.lower()
-        unit = "A" if self.frame.control == "current" else "°C"
-        assumed = ", baseline 32 °C assumed" if unit == "°C" and self.frame.baseline_C is None else ""
+        corners = self.corners()
+        unit = "A" if self.context.control == "current" else "°C"
+        assumed = ", baseline 32 °C assumed" if unit == "°C" and self.context.baseline_C is None else ""
         return (
             f"<Icon {self.name}: {corners.duration_s:.6g} s, {corners.lowest:.6g} to {corners.highest:.6g} {unit}, "
-            f"at most {corners.steepest_per_s:.6g} {unit}/s, control {self.frame.control}{assumed}>"
+            f"at most {corners.steepest_per_s:.6g} {unit}/s, control {self.context.control}{assumed}>"
         )
 
     def _repr_html_(self) -> str:
@@ -100,29 +100,29 @@ class Icon:
         return picture(self)
 
     def _prove(self, level: Fraction) -> None:
-        found = problems(self.statements, self.frame.control, level)
+        found = problems(self.statements, self.context.control, level)
         if found:
-            raise CueErrors(tuple(problem_error(problem, self.name, self.frame) for problem in found))
+            raise CueErrors(tuple(problem_error(problem, self.name, self.context) for problem in found))
 
 
-def rest_level(frame: Frame, start: float | None = None) -> Fraction:
-    """Return the exact level at which icons begin: the frame's, ``start``, or 32 °C (0 A); ValueError out of range."""
-    if frame.control == "current":
+def rest_level(context: Context, start: float | None = None) -> Fraction:
+    """Return the exact level at which icons begin: in the context, ``start`` or 32 °C (0 A); ValueError beyond."""
+    if context.control == "current":
         level, wrong = start or 0.0, fault(start or 0.0, "current")
     else:
         assumed = ASSUMED_BASELINE_C if start is None else start
-        level = assumed if frame.baseline_C is None else frame.baseline_C
+        level = assumed if context.baseline_C is None else context.baseline_C
         wrong = fault(level, "absolute")
     if wrong:
         raise ValueError(f"start: {wrong[1]}")
-    return exact(float(level), "current" if frame.control == "current" else "absolute")
+    return exact(float(level), "current" if context.control == "current" else "absolute")
 
 
-def problem_error(problem: Problem, name: str, frame: Frame) -> CueError:
+def problem_error(problem: Problem, name: str, context: Context) -> CueError:
     """Return a problem as an error; without the file at hand, the canonical text of the statement is its line."""
     part = problem.statement
     line, column = (part.span if part else None) or (1, 1)
-    text = statement_text(part, frame.control).split("\n")[0] if part else f"icon {name} {{"
+    text = statement_text(part, context.control).split("\n")[0] if part else f"icon {name} {{"
     source = " " * (column - 1) + text
     return CueError(problem.code, f"<icon {name}>", line, column, len(text), source, problem.what, problem.help)
 

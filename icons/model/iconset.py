@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import TYPE_CHECKING, overload
 
-from .family import Family, Summary
+from .context import Context, Metadata, name_fault, text_fault
+from .family import Family
+from .family_check import Summary, joined
 from .format import set_text
-from .frame import Frame, Metadata, name_fault, text_fault
 from .icon import Icon, content_hash, played_icons
 from .units import quantity
 from .words import nearest
@@ -58,11 +60,11 @@ class Members(Sequence[Icon]):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class IconSet:
-    """Icons and families with the frame they share; ``set["name"]`` is one of them, or a member of a family.
+    """Icons and families with the context they share; ``set["name"]`` is one of them, or a member of a family.
 
     ``entries`` is what the file lists, ``icons`` every icon with the members of families, ``families`` the families.
-    Raises ValueError without icons, for two of one name, when a frame is not the set's, or when an icon plays one that
-    the set does not have.
+    Raises ValueError without icons, for two of one name, for a context other than that of the set, and for an icon that
+    plays one that the set does not have.
 
     >>> from thermicon.icons import read_cue
     >>> read_cue("cooling-step-skin")
@@ -71,7 +73,7 @@ class IconSet:
 
     name: str
     title: str
-    frame: Frame
+    context: Context
     metadata: Metadata
     entries: tuple[Icon | Family, ...]
 
@@ -87,9 +89,9 @@ class IconSet:
         for entry in self.entries:
             if entry.name in known:
                 raise ValueError(f"two icons are called {entry.name}")
-            if entry.frame != self.frame:
+            if entry.context != self.context:
                 raise ValueError(
-                    f"the frame of icon {entry.name} is not that of the set: {entry.frame} and {self.frame}"
+                    f"the context of icon {entry.name} is not that of the set: {entry.context} and {self.context}"
                 )
             known[entry.name] = entry
         for entry in self.entries:
@@ -117,21 +119,15 @@ class IconSet:
         return content_hash(str(self))
 
     def summary(self, start: float | None = None) -> Summary:
-        """Return durations, extremes and steepest rate over all icons; ``start`` as in ``Icon.lower``."""
+        """Return durations, extremes and steepest rate over all icons; ``start`` as in ``Icon.corners``."""
         found = []
         for entry in self.entries:
             if isinstance(entry, Family):
                 found.append(entry.summary(start))
             else:
-                one = entry.lower(start)
+                one = entry.corners(start)
                 found.append(Summary(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
-        return Summary(
-            min(part.shortest_s for part in found),
-            max(part.longest_s for part in found),
-            min(part.lowest for part in found),
-            max(part.highest for part in found),
-            max(part.steepest_per_s for part in found),
-        )
+        return reduce(joined, found)
 
     def __len__(self) -> int:
         return len(self.icons)
@@ -182,9 +178,9 @@ class IconSet:
         length = f"{found.shortest_s:.6g}"
         if found.longest_s > found.shortest_s:
             length += f" to {found.longest_s:.6g}"
-        baseline = self.frame.baseline_C
+        baseline = self.context.baseline_C
         rest = f", baseline {quantity(baseline, 'absolute')}" if baseline is not None else ""
-        return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.frame.control}{rest}>"
+        return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.context.control}{rest}>"
 
     def _repr_html_(self) -> str:
         from ..pictures.picture import picture

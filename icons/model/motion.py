@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 from itertools import accumulate, pairwise
 
 from .shapes import Pulse, Shape, Step, Wave
-from .statements import Change, Drive, Leaf, Return, Total
+from .statements import Current, Leaf, Ramp, Return, Total
 from .units import exact
 
 TOLERANCE = 1e-3
@@ -15,20 +15,29 @@ TOLERANCE = 1e-3
 
 Point = tuple[Fraction, Fraction]
 _FINE = 10**9
+# Phases behind which a wave that starts upwards has been at its crest and in its trough.
+_CREST: dict[Shape, Fraction] = {
+    **dict.fromkeys(("sine", "triangle"), Fraction(1, 4)),
+    **{"sawtooth": Fraction(1, 2), "square": Fraction(0)},
+}
+_TROUGH: dict[Shape, Fraction] = {
+    **dict.fromkeys(("sine", "triangle"), Fraction(3, 4)),
+    **dict.fromkeys(("sawtooth", "square"), Fraction(1, 2)),
+}
 
 
 def advance(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fraction]:
     """Return the level (°C or A) behind a statement and the time (s) it takes, both exact.
 
-    >>> advance(Change("cool", by_K=6, rate_K_per_s=3), Fraction(32), Fraction(32))
+    >>> advance(Ramp("cool", by_K=6, rate_K_per_s=3), Fraction(32), Fraction(32))
     (Fraction(26, 1), Fraction(2, 1))
     """
     rate: Fraction | None = None
     match leaf:
-        case Change():
+        case Ramp():
             target = _target(leaf, level)
             rate = None if leaf.rate_K_per_s is None else exact(leaf.rate_K_per_s, "rate")
-        case Drive():
+        case Current():
             target = exact(leaf.to_A, "current")
             rate = None if leaf.rate_A_per_s is None else exact(leaf.rate_A_per_s, "current_rate")
         case Return():
@@ -73,9 +82,11 @@ def pieces(leaf: Leaf, level: Fraction, rest: Fraction, tolerance: float = TOLER
 
 def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fraction]:
     """Return the lowest and highest level (°C or A) that a statement comes to, its first level included."""
-    if isinstance(leaf, Wave) and not leaf.cut:
-        size = amplitude(leaf)
-        return level - size, level + size
+    if isinstance(leaf, Wave):
+        least, most = _wave_reach(leaf)
+        size = amplitude(leaf) * leaf.sign
+        ends = level + size * least, level + size * most
+        return min(ends), max(ends)
     levels = [level, *(to for to, _ in pieces(leaf, level, rest))]
     return min(levels), max(levels)
 
@@ -83,7 +94,7 @@ def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fracti
 def piece_count(leaf: Leaf, tolerance: float = TOLERANCE) -> int:
     """Return how many straight pieces and steps a statement has, at most."""
     if isinstance(leaf, Wave):
-        return math.ceil(periods_of(leaf)) * len(one_period(leaf.shape, _ratio(leaf, tolerance)))
+        return math.ceil(periods_of(leaf)) * _period_corners(leaf.shape, _ratio(leaf, tolerance))
     return 3 if isinstance(leaf, Pulse) else 1
 
 
@@ -184,6 +195,20 @@ def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
             yield n + phase, value
 
 
+def _period_corners(shape: Shape, ratio: float) -> int:
+    """Corners of one period, at most; those of a sine grow with the root of the amplitude over the tolerance."""
+    return math.ceil(2.1 / math.sqrt(ratio)) + 8 if shape == "sine" else len(one_period(shape, 0.0))
+
+
+def _wave_reach(wave: Wave) -> tuple[Fraction, Fraction]:
+    """Lowest and highest value (±1) of a wave that starts upwards."""
+    periods, value = periods_of(wave), _cut_value(wave)
+    if not wave.cut:
+        return Fraction(-1), Fraction(1)
+    lowest = Fraction(-1) if periods > _TROUGH[wave.shape] else min(Fraction(0), value)
+    return lowest, Fraction(1) if periods > _CREST[wave.shape] else max(Fraction(0), value)
+
+
 def _cut_value(wave: Wave) -> Fraction:
     """Value (±1) at which a wave that starts upwards is cut: 0 behind whole periods, of which nothing is cut."""
     periods = periods_of(wave)
@@ -202,11 +227,11 @@ def _ratio(wave: Wave, tolerance: float) -> float:
     return tolerance / float(amplitude(wave))
 
 
-def _target(leaf: Change | Step | Pulse, level: Fraction) -> Fraction:
+def _target(leaf: Ramp | Step | Pulse, level: Fraction) -> Fraction:
     sign = -1 if leaf.direction == "cool" else 1
     if leaf.by_K is not None:
         return level + sign * exact(leaf.by_K, "change")
-    if not isinstance(leaf, Change) and leaf.by_A is not None:
+    if not isinstance(leaf, Ramp) and leaf.by_A is not None:
         return level + exact(leaf.by_A, "current")
     if not isinstance(leaf, Pulse) and leaf.to_C is not None:
         return exact(leaf.to_C, "absolute")

@@ -3,16 +3,11 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
-from .frame import name_fault
+from .context import name_fault
 from .units import UNITS, Kind, decimal_text, exact_number
 
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-MOST_VALUES = 10_000_000
+MOST_VALUES = 100_000
 
 
 def unit_fault(unit: str) -> str | None:
@@ -102,16 +97,6 @@ class Parameter:
         factor: Fraction = UNITS[kind][self.unit]
         number = whole[place] if self.span is None else whole[0] + place * whole[2]
         return number * factor.numerator / (power * factor.denominator)
-
-    def si_array(self, places: "NDArray[np.int64]", kind: Kind) -> "NDArray[np.float64]":
-        """Return the values at many places in SI, to the last digit or two of a float."""
-        import numpy as np
-
-        whole, power, _ = self.numbers
-        factor = UNITS[kind][self.unit]
-        if self.span is None:
-            return np.array([number / power for number in whole])[places] * float(factor)
-        return np.asarray((whole[0] / power + places * (whole[2] / power)) * float(factor), dtype=np.float64)
 
     def place(self, text: str) -> int | None:
         """Return the place of a value given as decimal text, or None when the parameter does not take it."""

@@ -14,14 +14,14 @@ Bound = Literal["exactly", "at most", "at least"]
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class Ramp:
     """``warm``, ``cool``, ``change``: by a difference (K) or to a temperature (°C), at a rate (K/s) or over a time (s).
 
     The difference is signed for ``change``, which takes both directions, and positive for the others. Raises
     ValueError for a value outside the language's range.
 
-    >>> Change("cool", by_K=6, rate_K_per_s=3)
-    Change(direction='cool', by_K=6.0, to_C=None, rate_K_per_s=3.0, duration_s=None)
+    >>> Ramp("cool", by_K=6, rate_K_per_s=3)
+    Ramp(direction='cool', by_K=6.0, to_C=None, rate_K_per_s=3.0, duration_s=None)
     """
 
     direction: Direction
@@ -33,7 +33,7 @@ class Change:
 
     def __post_init__(self) -> None:
         if self.direction not in ("warm", "cool", "change"):
-            raise ValueError(f'Change.direction must be "warm", "cool" or "change", not {self.direction!r}')
+            raise ValueError(f'Ramp.direction must be "warm", "cool" or "change", not {self.direction!r}')
         prove_one_of(self, "by_K", "to_C")
         prove_one_of(self, "rate_K_per_s", "duration_s")
         prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
@@ -43,11 +43,11 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class Current:
     """``to`` under control current: to a current (A), at a rate (A/s) or over a time (s); ValueError when out of range.
 
-    >>> Drive(0.5, rate_A_per_s=1)
-    Drive(to_A=0.5, rate_A_per_s=1.0, duration_s=None)
+    >>> Current(0.5, rate_A_per_s=1)
+    Current(to_A=0.5, rate_A_per_s=1.0, duration_s=None)
     """
 
     to_A: float
@@ -141,7 +141,7 @@ class Play:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if not hasattr(self.icon, "statements") or not hasattr(self.icon, "lower"):
+        if not hasattr(self.icon, "statements") or not hasattr(self.icon, "corners"):
             raise ValueError(f"Play.icon must be an Icon, not {self.icon!r}")
 
 
@@ -175,6 +175,6 @@ class Repeat:
         object.__setattr__(self, "body", body)
 
 
-LEAVES = (Change, Drive, Hold, Rest, Return, Total, Step, Pulse, Wave)
-Leaf = Change | Drive | Hold | Rest | Return | Total | Step | Pulse | Wave
+LEAVES = (Ramp, Current, Hold, Rest, Return, Total, Step, Pulse, Wave)
+Leaf = Ramp | Current | Hold | Rest | Return | Total | Step | Pulse | Wave
 Statement = Leaf | Repeat | Play

@@ -41,6 +41,7 @@ KIND_WORDS: dict[Kind, str] = {
 # The range of sizes that a number other than zero may have: wide for any skin, narrow enough for exact sums.
 SMALLEST, LARGEST = 1e-9, 1e9
 LONGEST_NUMBER = 40
+_FEW_DIGITS = 12
 
 
 def to_si(number: str, unit: str, kind: Kind) -> float:
@@ -120,5 +121,8 @@ def exact(value: float, kind: Kind) -> Fraction:
     >>> exact(0.1, "time") * 30
     Fraction(3, 1)
     """
+    plain = decimal_text(value)
+    if len(plain) <= _FEW_DIGITS:  # so few digits state one value, whatever unit they are written in
+        return Fraction(plain)
     number, unit = written(value, kind)
     return exact_number(number) * UNITS[kind][unit]

@@ -3,7 +3,8 @@
 import re
 from importlib.metadata import version
 
-from ..model.family import Family, Summary
+from ..model.family import Family
+from ..model.family_check import Summary
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
@@ -33,13 +34,13 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     One thermal icon was used. It prescribes the temperature of the skin surface. It lasts 4 s. Its course, from \
 baseline: dip, cooling by 6 °C at 3 °C/s and a return to baseline at 3 °C/s (4 s).
     """
-    many = len(icons) > 1
+    many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""
     count = counted(len(icons), "thermal icon")
-    site = f" at the site “{icons.frame.site}”" if icons.frame.site else ""
+    site = f" at the site “{icons.context.site}”" if icons.context.site else ""
     said = [
         f"{count[:1].upper()}{count[1:]}{title} {'were' if many else 'was'} used.",
-        f"{'They prescribe' if many else 'It prescribes'} {_PRESCRIBED[icons.frame.control]}{site}{_baseline(icons)}.",
+        f"{'They prescribe' if many else 'It prescribes'} {_PRESCRIBED[control]}{site}{_baseline(icons)}.",
         f"{'They last' if many else 'It lasts'} {_lengths(icons)}.",
         f"{'Their courses' if many else 'Its course'}, from baseline: {'; '.join(map(_entry, icons.entries))}.",
     ]
@@ -86,10 +87,10 @@ def _entry(entry: Icon | Family) -> str:
     means = f" (“{entry.metadata.means}”)" if entry.metadata.means else ""
     tags = f", tagged {listed([f'“{tag}”' for tag in entry.metadata.tags])}" if entry.metadata.tags else ""
     if isinstance(entry, Icon):
-        words = course(entry.statements, entry.frame.control)
-        return f"{entry.name}{means}, {words} ({round(entry.lower().duration_s, 2):g} s{tags})"
+        words = course(entry.statements, entry.context.control)
+        return f"{entry.name}{means}, {words} ({round(entry.corners().duration_s, 2):g} s{tags})"
     holes = {(slot.path, slot.field): slot.parameter for slot in entry.slots}
-    words = course(entry.template, entry.frame.control, holes)
+    words = course(entry.template, entry.context.control, holes)
     over = listed([_values(parameter) for parameter in entry.parameters])
     found = entry.summary()
     size = counted(len(entry), "icon")
@@ -112,19 +113,19 @@ def _span(found: Summary) -> str:
 
 
 def _baseline(icons: IconSet) -> str:
-    level = icons.frame.baseline_C
+    level = icons.context.baseline_C
     if level is None:
         return ""
     rest = f"a baseline of {quantity(level, 'absolute')}"
-    return f", on a display that rests at {rest}" if icons.frame.control == "current" else f", from {rest}"
+    return f", on a display that rests at {rest}" if icons.context.control == "current" else f", from {rest}"
 
 
 def _lengths(icons: IconSet) -> str:
     found = icons.summary()
     length = _span(found)
-    if icons.frame.control != "current" and icons.frame.baseline_C is None:
+    if icons.context.control != "current" and icons.context.baseline_C is None:
         return length
-    unit = "A" if icons.frame.control == "current" else "°C"
+    unit = "A" if icons.context.control == "current" else "°C"
     levels = re.sub(_MINUS, "−", f"{round(found.lowest, 2):g} to {round(found.highest, 2):g} {unit}")
     steep = f", at rates of up to {round(found.steepest_per_s, 2):g} {unit}/s" if found.steepest_per_s else ""
     return f"{length} and lie within {levels}{steep}" if len(icons) > 1 else f"{length} within {levels}{steep}"

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ..model.format import Holes, Path, Wording
 from ..model.shapes import Pulse, Step, Wave
-from ..model.statements import Broken, Change, Drive, Hold, Play, Repeat, Rest, Return, Statement, Total
+from ..model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from ..model.units import Kind
 from ..model.value_limits import Control
 
@@ -16,7 +16,7 @@ _COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 def course(body: Sequence[Statement], control: Control, holes: Holes | None = None, path: Path = ()) -> str:
     """Return statements as one phrase; ``holes`` names the parameter that stands in a field, as in ``format``.
 
-    >>> course((Change("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)), "skin")
+    >>> course((Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)), "skin")
     'cooling by 6 °C at 3 °C/s, a hold of 4 s and a return to baseline at 3 °C/s'
     """
     teller = _Teller(control, holes or {})
@@ -49,9 +49,9 @@ class _Teller(Wording):
 
     def phrase(self, part: Statement | Broken, path: Path) -> str:
         match part:
-            case Change(direction=word):
+            case Ramp(direction=word):
                 return f"{_RAMPS[word]} {self.goal(part, path)} {self.pace(part, path)}"
-            case Drive():
+            case Current():
                 return f"a ramp {self.goal(part, path)} {self.pace(part, path)}"
             case Hold():
                 return f"a hold of {self.value(part, path, 'duration_s', 'time')}"

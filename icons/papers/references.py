@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from functools import cache
 from importlib import resources
 
-from ..model.frame import Metadata
+from ..model.context import Metadata
 from ..model.iconset import IconSet
 from ..model.words import nearest
 

@@ -41,7 +41,7 @@ def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
 
     if ax is None:
         ax = Figure(figsize=(5, 3), layout="constrained").add_subplot()
-    corners = icon.lower()
+    corners = icon.corners()
     _rest(ax, [corners])
     _directed(ax, corners, 2.5, 1.0)
     _finish(ax, [icon], [corners], icon.name)
@@ -86,13 +86,13 @@ def _overlay(icons: "Sequence[Icon]", labels: Sequence[str], title: str, ax: "Ax
 
     if not icons:
         raise ValueError("there are no icons to draw")
-    if len({icon.frame.control == "current" for icon in icons}) > 1:
+    if len({icon.context.control == "current" for icon in icons}) > 1:
         raise ValueError("icons under control current are in A, the others in °C: draw them on axes of their own")
     named = len(icons) <= MOST_NAMED
     own = ax is None
     if ax is None:
         ax = Figure(figsize=(7, 3.4) if named else (6, 3.6), layout="constrained").add_subplot()
-    all_corners = [icon.lower() for icon in icons]
+    all_corners = [icon.corners() for icon in icons]
     _rest(ax, all_corners)
     for place, (corners, label) in enumerate(zip(all_corners, labels, strict=True)):
         if named:  # later lines are thinner, so that those which they cover still show
@@ -133,7 +133,7 @@ def _rest(ax: "Axes", all_corners: "Sequence[Corners]") -> None:
 
 def _finish(ax: "Axes", icons: "Sequence[Icon]", all_corners: "Sequence[Corners]", title: str) -> None:
     low, high = min(corners.lowest for corners in all_corners), max(corners.highest for corners in all_corners)
-    controls = {icon.frame.control for icon in icons}
+    controls = {icon.context.control for icon in icons}
     half = max(0.6 * (high - low), 0.1 if controls == {"current"} else 1.0)
     longest = max(corners.duration_s for corners in all_corners)
     ax.set_xlim(-0.015 * longest, 1.015 * longest)  # room for steps at either end

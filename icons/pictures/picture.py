@@ -78,12 +78,12 @@ def _grid(icons: IconSet) -> str:
     # Few curves a family when there are many families, so that a picture of a set stays small.
     all_curves = _alike([_curves(entry, max(3, MOST_MEMBERS // max(1, families))) for entry in entries])
     found = icons.summary()
-    unit = "A" if icons.frame.control == "current" else "°C"
+    unit = "A" if icons.context.control == "current" else "°C"
     count = f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}"
-    control = f"control {icons.frame.control}"
-    baseline = "baseline not given, 32 °C assumed" if icons.frame.control != "current" else "rest 0 A"
-    if icons.frame.baseline_C is not None:
-        baseline = f"baseline {shown(icons.frame.baseline_C)} °C"
+    control = f"control {icons.context.control}"
+    baseline = "baseline not given, 32 °C assumed" if icons.context.control != "current" else "rest 0 A"
+    if icons.context.baseline_C is not None:
+        baseline = f"baseline {shown(icons.context.baseline_C)} °C"
     times, levels = spread(found.shortest_s, found.longest_s, "s"), spread(found.lowest, found.highest, unit)
     facts = [icons.name if icons.title else "", count, times, levels, control, baseline]
     columns = min(_COLUMNS, len(entries))
@@ -115,7 +115,7 @@ def _alike(all_curves: list[Curves]) -> list[Curves]:
 
 
 def _curves(entry: Icon | Family, most: int, alone: bool = False) -> Curves:
-    frame, means = entry.frame, entry.metadata.means
+    frame, means = entry.context, entry.metadata.means
     lines = [means] if means else []
     axis = "current (A)" if frame.control == "current" else f"{frame.control} (°C)"
     if alone and frame.control != "current" and frame.baseline_C is None:
@@ -134,9 +134,9 @@ def _curves(entry: Icon | Family, most: int, alone: bool = False) -> Curves:
 
 def _fine(icon: Icon) -> Corners:
     """Corners that follow a sine to half a pixel."""
-    rough = icon.lower(tolerance=0.5)
+    rough = icon.corners(tolerance=0.5)
     size = rough.highest - rough.lowest
-    return icon.lower(tolerance=size / 140) if len(rough) > 4 and size > 0 else rough
+    return icon.corners(tolerance=size / 140) if len(rough) > 4 and size > 0 else rough
 
 
 @dataclass(frozen=True, slots=True)

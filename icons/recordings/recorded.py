@@ -7,11 +7,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
+from ..model.context import Context, name_fault
 from ..model.errors import whole_file
-from ..model.frame import Frame, name_fault
 from ..model.icon import Icon
 from ..model.shapes import Step
-from ..model.statements import Change, Hold, Rest, Return, Statement
+from ..model.statements import Hold, Ramp, Rest, Return, Statement
 from ..model.value_limits import fault
 from .readings import CONTROL_OF, read_readings
 
@@ -39,7 +39,7 @@ def from_csv(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "dip.csv"
     ...     _ = path.write_text("time_s,skin_C\\n0,32\\n2,26\\n4,26.02\\n6,25.98\\n8,32\\n")
-    ...     from_csv(path).lower().value
+    ...     from_csv(path).corners().value
     (32.0, 26.0, 26.0, 32.0)
     """
     if control not in ("display", "skin"):
@@ -64,8 +64,8 @@ def from_csv(
     except ValueError as problem:
         help = "give a larger tolerance (--tolerance, in Python tolerance_K), or smooth or cut the recording"
         raise whole_file("E220", read.file, str(problem), help) from None
-    frame = Frame(CONTROL_OF.get(read.column) or control, corners[1][0])
-    return Icon(name or _name(Path(path)), tuple(_statements(*corners)), frame)
+    context = Context(CONTROL_OF.get(read.column) or control, corners[1][0])
+    return Icon(name or _name(Path(path)), tuple(_statements(*corners)), context)
 
 
 def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Statement]:
@@ -79,7 +79,7 @@ def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Sta
         elif after == baseline:
             yield Return(duration_s=duration)
         else:
-            yield Change("warm" if after > before else "cool", to_C=after, duration_s=duration)
+            yield Ramp("warm" if after > before else "cool", to_C=after, duration_s=duration)
 
 
 def _at_once(before: float, after: float) -> Statement:

@@ -23,7 +23,11 @@ class Editor {
       onkeydown: (event) => this.onKey(event),
       onkeyup: () => this.stayLeft(),
     });
-    this.gutter = make("div", { class: "tm-numbers", "aria-hidden": true });
+    // A click on a line number keeps the focus in the text: elsewhere, JupyterLab takes letters as commands on cells.
+    this.gutter = make("div", {
+      class: "tm-numbers", "aria-hidden": true,
+      onmousedown: (event) => { event.preventDefault(); this.area.focus({ preventScroll: true }); },
+    });
     this.backdrop = make("div", { class: "tm-backdrop", "aria-hidden": true });
     const page = make("div", { class: "tm-page" }, this.backdrop, this.area, this.troubles.element);
     this.scroller = make("div", { class: "tm-scroller" }, this.gutter, page);

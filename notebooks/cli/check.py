@@ -1,4 +1,4 @@
-"""``thermicon check``: all that is wrong with some cue files, or one line a file."""
+"""``thermicon check``: every error in some cue files, or one line per file."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
 START_C = 32.0
-"""Where an icon starts when neither its file nor a rig says: the rest of the default rig."""
+"""Initial temperature without a baseline or a rig: the resting temperature of the default rig."""
 
 
 def check(files: Sequence[str], rig: Rig | None = None) -> None:
-    """Print one line a file, or every error of every file and exit with 1; with a rig, its static limits count too."""
+    """Print one line per file, or every error of every file and exit with 1; with a rig, check its limits too."""
     from thermicon.icons import CueErrors, read_cue
 
     problems: list[str] = []
@@ -46,7 +46,7 @@ def check(files: Sequence[str], rig: Rig | None = None) -> None:
 
 
 def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
-    """What the rig cannot do of this set, a message each; another site is only a warning, told on stderr."""
+    """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
     from thermicon.circuit import check_static
 
     warn_of_site(file, icons, rig)
@@ -54,13 +54,13 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     chosen: Sequence[Icon] = icons.icons
     if count > MOST_ICONS:
         chosen = [chosen[place * count // MOST_ICONS] for place in range(MOST_ICONS)]
-        note(f"{file}: {MOST_ICONS:,} of its {count:,} icons, evenly chosen, were held against the rig")
+        note(f"{file}: {MOST_ICONS:,} of its {count:,} icons, evenly spaced, were checked against the rig")
     return [f"{file}: {message}" for icon in chosen for message in check_static(icon, rig)]
 
 
 def summary(icons: IconSet, start_C: float) -> str:
-    """Say how many icons there are, how long, from what to what and how steep, for example ``2 icons, 8–10 s, …``."""
-    current = icons.frame.control == "current"
+    """Summarise number, durations, levels and steepest slope of the icons, as in ``2 icons, 8–10 s, …``."""
+    current = icons.context.control == "current"
     unit, digits = ("A", 2) if current else ("°C", 1)
     found = icons.summary(0.0 if current else start_C)
     parts = [

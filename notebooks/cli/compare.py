@@ -10,31 +10,34 @@ from ..figures.differences import Aligned, align, differences, quantity, with_un
 from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.messages import load_rig, note, usage
+from ..text.number_text import number, percent
 from ..text.tables import show, table
+from .compare_inputs import Request, check_request, kind_of_both
 from .cues import pick, read_set
-from .duel import duel_of
-from .sides import Request, check_request, kind_of_both
 from .simulate import headline
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
+    from thermicon.icons import Icon, IconSet
+    from thermicon.perception import SetComparison
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
+MOST_IN_A_SET = 30
+"""Larger sets are compared icon by icon alone; `thermicon.perception.compare_sets` takes them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """One pair of curves with a title, how A and B went, and what is said after the table."""
+    """One pair of curves with a title, the outcomes of A and B, and a closing sentence."""
 
     title: str
     both: Aligned
-    told: tuple[str, str] = ("", "")
+    outcomes: tuple[str, str] = ("", "")
     after: str = ""
 
 
 def compare(first: str, second: str, request: Request, figure: Path | None) -> None:
-    """Compare two things of one kind: a table for each pair on stdout, and a figure where it was asked for."""
+    """Compare two rigs, icons, sets or tables: one table per pair on stdout, and a figure on request."""
     kind = kind_of_both(first, second)
     check_request(kind, request)
     if figure is not None:
@@ -54,14 +57,14 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
 
 
 def show_comparison(made: Comparison) -> None:
-    """Print one table of differences with what is A, what is B, and at which times they were compared."""
+    """Print one table of differences with the meaning of A and B and the times of the comparison."""
     both = made.both
     rows = table("B − A", "largest", "at", "rms", "mean", numbers=("largest", "at", "rms", "mean"))
     for _, row in differences(both).iterrows():
         written = [with_unit(float(row[name]), row["unit"]) for name in ("largest", "rms", "mean")]
         rows.add_row(quantity(row["column"]), written[0], f"{row['largest_s']:.2f} s", *written[1:])
-    sides = zip("AB", (both.name_a, both.name_b), made.told, strict=True)
-    heads = [f"{letter}  {name}{f': {told}' if told else ''}" for letter, name, told in sides]
+    sides = zip("AB", (both.name_a, both.name_b), made.outcomes, strict=True)
+    heads = [f"{letter}  {name}{f': {outcome}' if outcome else ''}" for letter, name, outcome in sides]
     after = ["", made.after] if made.after else []
     show(*([made.title] if made.title else []), *heads, "", rows, "", both.said, *after)
 
@@ -96,20 +99,20 @@ def _sets(first: str, second: str, request: Request) -> list[Comparison]:
         raise LogError(f"no icon has the same name in both sets: {has}; compare two icons as FILE:ICON")
     alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]
     if alone and request.icon is None:
-        note(f"only in one of the two: {', '.join(alone)}")
+        note(f"only in one of the two sets: {', '.join(alone)}")
     rig = load_rig(request.rig, request.changes)
     pairs = [(pick(sets[0], name)[0], pick(sets[1], name)[0]) for name in common]
     made = [_played(pair[0].name, pair, (rig, rig), (first, second)) for pair in pairs]
-    said = duel_of(sets[0], sets[1], rig) if request.icon is None else None
-    return [*made[:-1], replace(made[-1], after=said or "")]
+    sentence = compare_identification(sets[0], sets[1], rig) if request.icon is None else None
+    return [*made[:-1], replace(made[-1], after=sentence or "")]
 
 
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:
     """Play two icons, the shorter with a tail at its baseline so that both are equally long, and compare."""
     traces = _equally_long(icons, rigs)
-    told = (headline(traces[0]).partition(": ")[2], headline(traces[1]).partition(": ")[2])
+    outcomes = (headline(traces[0]).partition(": ")[2], headline(traces[1]).partition(": ")[2])
     curves = [curves_of(trace, name) for trace, name in zip(traces, _short(names), strict=True)]
-    return Comparison(title, align(curves[0], curves[1]), told)
+    return Comparison(title, align(curves[0], curves[1]), outcomes)
 
 
 def _short(names: tuple[str, str]) -> tuple[str, str]:
@@ -133,5 +136,35 @@ def _tables(first: str, second: str, request: Request) -> list[Comparison]:
     read: list[Curves] = [read_curves(path, request.icon) for path in (first, second)]
     for curves in read:
         if curves.ignored:
-            note(f"{curves.name}: ignored, since no trace has them: {', '.join(curves.ignored)}")
+            note(f"{curves.name}: ignored columns that no trace has: {', '.join(curves.ignored)}")
     return [Comparison("", align(read[0], read[1]))]
+
+
+def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | None:
+    """Return one sentence on which set is identified better; None if one has a single icon or very many."""
+    from thermicon.perception import compare_sets
+
+    if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
+        return None
+    return comparison_line(compare_sets(first, second, rig))
+
+
+def comparison_line(found: SetComparison) -> str:
+    """Report how often A is identified better than B, and by how much.
+
+    >>> from thermicon.perception import SetComparison
+    >>> comparison_line(SetComparison(0.93, 0.02, 0.41, "worst", 100))
+    'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
+and rig; the d′ of its worst pair is larger by 0.4 (median)'
+    """
+    share, better = (found.probability, "A") if found.probability >= 0.5 else (1.0 - found.probability, "B")
+    other = "B" if better == "A" else "A"
+    drawn = f"{found.draws} draws of person, contact, room and rig"
+    if share < 0.5 + 2.0 * found.standard_error:
+        return f"predicted: no difference between A and B in how well their icons are distinguished, within {drawn}"
+    gain = abs(found.gain)
+    return (
+        f"predicted: the icons of {better} are easier to distinguish than those of {other} in {percent(share)} of "
+        f"{drawn}; "
+        f"the d′ of its worst pair is larger by {number(gain)} (median)"
+    )

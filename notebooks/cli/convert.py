@@ -22,7 +22,7 @@ _TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#')
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """How a recording becomes an icon: tolerance in K, name, column and control; None leaves it to ``from_csv``."""
+    """How a recording becomes an icon: tolerance in K, name, column and control; None means the default."""
 
     tolerance_K: float | None = None
     name: str | None = None
@@ -33,10 +33,10 @@ class Recording:
 def convert_file(file: str, output: Path, icon: str | None, recording: Recording) -> None:
     """Read icons from a file of one kind and write them, complete or not at all, as the kind that the ending names."""
     if output == STDOUT:
-        raise OutputError("the ending of the output says what is written: give a name such as icons.json")
+        raise OutputError("the output format follows from the file ending: give a name such as icons.json")
     check_output(output, SUFFIXES, "a set of icons")
     if output.exists() and Path(file).exists() and output.samefile(file):
-        raise OutputError(f"cannot write {output}: it is the file that is read; give another name")
+        raise OutputError(f"cannot write {output}: it is the input file; give another name")
     icons = read(file, recording)
     if icon is not None:
         icons = only_icon(icons, icon)
@@ -51,7 +51,7 @@ def convert_file(file: str, output: Path, icon: str | None, recording: Recording
 
         note(f"{EXPERIMENTAL}; amplitude x gain is written as the change in K from baseline")
     if has_comments(file):
-        note(f"the comments of {Path(file).name} are not carried over")
+        note(f"comments in {Path(file).name} were dropped")
 
 
 def read(file: str, recording: Recording) -> IconSet:
@@ -66,9 +66,9 @@ def read(file: str, recording: Recording) -> IconSet:
         icon = from_csv(file, **given)
     except ValueError as problem:
         fail(str(problem))
-    corners = icon.lower()
+    corners = icon.corners()
     note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
-    return IconSet("", "", icon.frame, Metadata(), (icon,))
+    return IconSet("", "", icon.context, Metadata(), (icon,))
 
 
 def only_icon(icons: IconSet, name: str) -> IconSet:
@@ -93,7 +93,7 @@ def written(icons: IconSet, suffix: str, icon: str | None = None) -> str:
 
 
 def has_comments(file: str) -> bool:
-    """Tell whether a cue file has comments, which no set keeps."""
+    """Whether a cue file has comments, which no set keeps."""
     from thermicon.icons.files.shipped import file_bytes
 
     if Path(file).suffix.lower() in (".json", ".csv") or (data := file_bytes(file)) is None:

@@ -1,4 +1,4 @@
-"""Cue files at the door of a command: one set out of several files, one icon out of a set."""
+"""Cue files as input of a command: several files joined into one set, one icon of a set."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 MOST_ICONS = 2000
-"""More icons at once than anyone reads about; families may have a million."""
+"""More icons at once than anyone reads about; families may have 100,000."""
 
 
 class JoinError(Exception):
-    """Files that cannot be one set, since an icon's name stands in two of them."""
+    """Files that cannot be joined, because two of them have an icon of the same name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,28 +76,28 @@ def read_set(files: Sequence[str]) -> IconSet:
             if icon.name in owner:
                 raise JoinError(
                     f"{file}: the icon {icon.name} is also in {owner[icon.name]}; "
-                    f"names must differ to be ranked together, so rename one of the two"
+                    f"names must differ within a set, so rename one of them"
                 )
             owner[icon.name] = file
     return cast("IconSet", Joined(tuple(sets), tuple(files)))
 
 
 def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> None:
-    """Tell on stderr which of the files are for another site than the rig's, and where their baselines differ."""
+    """Warn on stderr of files for another site than the rig's, and of different baselines."""
     sets = icons.sets if isinstance(icons, Joined) else (icons,)
     levels: dict[float, list[str]] = {}
     for file, each in zip(files, sets, strict=True):
         warn_of_site(file, each, rig)
-        own = each.frame.baseline_C
+        own = each.context.baseline_C
         levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
     if len(levels) > 1:
         told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
-        note(f"warning: baselines differ: {told}; the skin must adapt anew in between, which the model leaves out")
+        note(f"warning: baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
 
 
 def warn_of_site(file: str, icons: IconSet, rig: Rig) -> None:
-    """Tell on stderr when a set is for another site than the rig's."""
-    site = icons.frame.site
+    """Warn on stderr when a set is for another site than the rig's."""
+    site = icons.context.site
     if site is not None and site != rig.site:
         note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
 
@@ -112,7 +112,7 @@ def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]
     if len(icons) > most:
         first = next(iter(icons)).name
         raise usage(
-            f"there are {len(icons):,} icons, at most {most:,} are taken at once; name one, such as {first}", "--icon"
+            f"there are {len(icons):,} icons, and at most {most:,} are allowed; name one, such as {first}", "--icon"
         )
     return list(icons)
 

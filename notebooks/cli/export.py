@@ -1,4 +1,4 @@
-"""``thermicon export``: icons to drive files and sidecars, or the reasons why not."""
+"""``thermicon export``: icons as drive files with sidecars, or the reasons why they are refused."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.export_folder import check_export_folder
-from ..files.exporting import Ready, others, prepare_icons, write
+from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
-from ..text.messages import REFUSED, note
+from ..text.messages import REFUSED, note, progress_bar
 from ..text.number_text import number
-from ..text.progress import progress_bar
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ def export_file(
     folder: Path,
     pause_s: float | None = None,
 ) -> None:
-    """Write the icons of a file (or the one named) as drives for a device; leaves with 3 where that is refused."""
+    """Write the icons of a file (or the one named) as drives for a device; exit code 3 if that is refused."""
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.packing.pack import check_names
 
@@ -52,7 +51,7 @@ def export_file(
         ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
     for warning in ready.warnings:
         note(warning)
-    tell(ready.prepared)
+    report_icons(ready.prepared)
     if refused(ready, force):
         note(CAUTION)
         note("nothing was written")
@@ -62,18 +61,18 @@ def export_file(
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
     note(f"wrote {drives} into {folder}: {', '.join(_shown(written.names))}")
     if written.gone:
-        note(f"removed from {folder}, since their sidecars now describe other drives: {', '.join(written.gone)}")
+        note(f"removed from {folder}, because their sidecars now describe other drives: {', '.join(written.gone)}")
     note(f"to play: {form.how}")
     note(CAUTION)
 
 
-def tell(ready: Sequence[Prepared]) -> None:
-    """Say of every icon how it is played and how far that is from the design; of all, what the gate asks of people.
+def report_icons(ready: Sequence[Prepared]) -> None:
+    """Report how every icon is played and how far that is from the design, and the gate's demands on the hardware.
 
-    Where the drives are played open loop, one more line says what a module that was not measured leaves open.
+    For drives played open loop, one more line gives the uncertainty due to an uncharacterised module.
     """
     for one in ready:
-        for line in told_of(one):
+        for line in icon_lines(one):
             note(line)
     for about, text in gate_words(ready):
         note(f"{about}: {text}")
@@ -83,23 +82,23 @@ def tell(ready: Sequence[Prepared]) -> None:
         note(f"{name}: {widest}")
 
 
-def told_of(one: Prepared) -> Iterator[str]:
-    """How an icon is played and how far that is from the design, then a warning a line."""
+def icon_lines(one: Prepared) -> Iterator[str]:
+    """How an icon is played and how far that is from the design, then one line per warning."""
     delivery = one.delivery
     receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     yield (
         f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {steps_of(delivery)} on "
-        f"{delivery.device.name}, receptors within {number(largest)} mK of the design (rms {number(rms)} mK), "
+        f"{delivery.device.name}, receptors within {number(largest)} mK of the design (RMS {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
     for warning in one.warnings:
         yield f"warning: {delivery.icon.name}: {warning}"
 
 
-def refused(ready: Ready, force: bool) -> bool:
-    """Say why icons are refused, and whether any is."""
+def refused(ready: PreparedExport, force: bool) -> bool:
+    """Report why icons are refused; True if any is."""
     found = ready.against
     for name, refusal in found:
         stops = not (force and refusal.forcible)
@@ -107,12 +106,12 @@ def refused(ready: Ready, force: bool) -> bool:
     final = any(not refusal.forcible for _, refusal in found)
     forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:
-        note("--force exports it as it is, and the sidecar says so")
+        note("--force exports it nevertheless, and the sidecar records that")
     return final or (forcible and not force)
 
 
 def steps_of(delivery: DeliveredDrive) -> str:
-    """How the updates of a drive are told: so many a second, or so many segments."""
+    """Update rate of a drive, or its number of segments."""
     from thermicon.circuit.delivery.setpoints import Setpoints
 
     played = delivery.played

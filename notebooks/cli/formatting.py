@@ -1,4 +1,4 @@
-"""``thermicon fmt``: cue files brought into canonical layout, in place or only told."""
+"""``thermicon fmt``: format cue files in canonical layout, in place, or only list them."""
 
 from __future__ import annotations
 
@@ -62,12 +62,12 @@ def _read(file: str) -> bytes:
     from thermicon.icons.files.shipped import file_bytes, is_json
 
     if is_json(file):
-        raise OutputError(f"{file}: fmt is for cue files; thermicon convert {file} -o FILE.cue makes one of it")
+        raise OutputError(f"{file}: fmt formats cue files only; thermicon convert {file} -o FILE.cue makes one from it")
     data = file_bytes(file)
     if data is None and file in library_names():
-        raise OutputError(f"{file}: this is a shipped set, which stays as it is; give the name of a file of your own")
+        raise OutputError(f"{file}: a shipped set cannot be changed; give the name of your own file")
     if data is None:
-        load_library(file)  # tells that there is no such file, and which name comes near
+        load_library(file)  # raises an error with the nearest name
         raise OutputError(f"{file}: no such file")
     return data
 

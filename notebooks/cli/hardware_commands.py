@@ -1,4 +1,4 @@
-"""The commands for real hardware: ``export`` and ``devices``. They are put on the program in ``cli``."""
+"""The commands for real hardware: ``export`` and ``devices``. ``main`` registers them."""
 
 from __future__ import annotations
 
@@ -18,12 +18,16 @@ def export_command(
         typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.", show_default=False),
     ] = None,
     to: Annotated[
-        str | None, typer.Option("--to", metavar="FORMAT", help="Kind of file; thermicon devices lists them.")
+        str | None, typer.Option("--to", metavar="FORMAT", help="File format; thermicon devices lists them.")
     ] = None,
     folder: Annotated[
         Path | None,
         typer.Option(
-            "-o", "--output", metavar="DIR", readable=False, help="Folder for drives and sidecars, of its own."
+            "-o",
+            "--output",
+            metavar="DIR",
+            readable=False,
+            help="Folder for drives and sidecars; nothing else should be in it.",
         ),
     ] = None,
     device: Annotated[
@@ -34,11 +38,14 @@ def export_command(
     tail: Tail = 0.0,
     pause: Annotated[
         float | None,
-        typer.Option("--pause", metavar="S", help="Time between plays, 0 to 600 s.  [default: the recovery time]"),
+        typer.Option("--pause", metavar="S", help="Seconds between plays, 0 to 600.  [default: the recovery time]"),
     ] = None,
     force: Annotated[
         bool,
-        typer.Option("--force", help="Replace files, and export what is lossy or not reached; never what is unsafe."),
+        typer.Option(
+            "--force",
+            help="Replace files, and export icons that are lossy or not reached; unsafe ones never.",
+        ),
     ] = False,
     rig: RigName = None,
     changes: Changes = None,
@@ -52,18 +59,18 @@ def export_command(
         ),
     ] = None,
 ) -> None:
-    """Write drives for hardware, each with a sidecar that tells what it is and what it will do.
+    """Export drive files for hardware, each with a sidecar that describes it and its predicted effects.
 
-    Every icon is simulated as the device delivers it. What is unsafe, not reached, or loses too much on the device is
-    refused with the reason; then nothing is written, and the exit code is 3.
+    Every icon is simulated as the device delivers it. An icon that is unsafe, not reached, or loses too much on the
+    device is refused with the reason; then nothing is written, and the exit code is 3.
 
-    --verify DIR checks a folder that was exported; the exit code is 1 where something in it does not belong together.
+    --verify DIR checks an exported folder; the exit code is 1 if its files do not belong together.
     """
     if verify is not None:
         options = {"--to": to, "-o": folder, "--device": device, "--icon": icon, "--pause": pause}
         _alone(file, {**options, "--rig": rig, "--set": changes})
         if force or tail:
-            raise usage("needs nothing else but the folder; leave out --force and --tail", "--verify")
+            raise usage("takes no other argument; leave out --force and --tail", "--verify")
         from .verifying import verify_folder
 
         verify_folder(verify)
@@ -86,11 +93,11 @@ def _alone(file: str | None, options: Mapping[str, object]) -> None:
     """Fail with a usage error unless --verify is all that is given."""
     given = ([f"the file {file}"] if file is not None else []) + [name for name, value in options.items() if value]
     if given:
-        raise usage(f"needs nothing else but the folder; leave out {', '.join(given)}", "--verify")
+        raise usage(f"takes no other argument; leave out {', '.join(given)}", "--verify")
 
 
 def devices_command() -> None:
-    """List the devices and the formats that export knows, and whether a device was ever played."""
+    """List the devices and file formats for export, and which devices have been tested on hardware."""
     from .shipped import show_devices
 
     show_devices()

@@ -1,4 +1,4 @@
-"""``thermicon lab``: the notebooks in a folder of your own, opened in JupyterLab, or the workbench served as a page."""
+"""``thermicon lab``: the notebooks copied to a folder and opened in JupyterLab, or the workbench served as a page."""
 
 from __future__ import annotations
 
@@ -52,34 +52,36 @@ class Copied:
         if self.written:
             said.append(f"wrote {_counted(self.written)}")
         if self.current:
-            said.append(f"{_counted(self.current)} there already" if self.written else "nothing to write, all there")
+            said.append(
+                f"{_counted(self.current)} already there"
+                if self.written
+                else "nothing to write, all notebooks are there"
+            )
         return ", ".join(said)
 
 
 def lab_command(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks, made if missing.")
+        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks; it is created if missing.")
     ] = FOLDER,
     page: Annotated[
-        bool, typer.Option("--page", help="Serve the workbench as a page, with Voila, instead of JupyterLab.")
+        bool,
+        typer.Option("--page", help="Serve the workbench as a web page (with Voila) instead of opening JupyterLab."),
     ] = False,
     files_only: Annotated[
-        bool, typer.Option("--files-only", help="Only put the notebooks there, for a Jupyter of your own.")
+        bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
     ] = False,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address and leave the browser to you.")
-    ] = False,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
     port: Annotated[
-        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 for a page]")
+        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 with --page]")
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Also replace notebooks that were changed, by those that are shipped.")
+        bool, typer.Option("--force", help="Also replace notebooks that you changed by the shipped ones.")
     ] = False,
 ) -> None:
-    """Put the notebooks into a folder and open JupyterLab there; Ctrl-C ends it.
+    """Copy the notebooks to a folder and open JupyterLab there; Ctrl-C stops it.
 
-    Notebooks that you changed are kept. Those that were only run, and of which thermicon now has another version, are
-    replaced.
+    Notebooks that you changed are kept. Notebooks that you only ran are replaced if thermicon has a newer version.
     """
     if page and files_only:
         raise usage("opens nothing, so there is no page to serve", "--files-only")
@@ -91,7 +93,7 @@ def lab_command(
     if not files_only and find_spec(program) is None:
         extra = "thermicon[page]" if page else "jupyterlab"
         fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
-    tell(copy_notebooks(folder, force), folder)
+    report_copies(copy_notebooks(folder, force), folder)
     if not files_only:
         serve(command_of(folder, page, no_browser, port), folder, program)
 
@@ -105,7 +107,7 @@ def copy_notebooks(folder: Path, force: bool = False) -> Copied:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as made:
     ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
-    ('wrote 8 notebooks', 'nothing to write, all there')
+    ('wrote 8 notebooks', 'nothing to write, all notebooks are there')
     """
     check_folder(folder)
     shipped = shipped_notebooks()
@@ -130,12 +132,12 @@ def shipped_notebooks() -> dict[str, dict[str, Any]]:
     return {path.name: json.loads(path.read_text("utf-8")) for path in sorted(found, key=lambda path: path.name)}
 
 
-def tell(copied: Copied, folder: Path) -> None:
-    """Say what was written and what was kept."""
+def report_copies(copied: Copied, folder: Path) -> None:
+    """Report what was written and what was kept."""
     if copied.text:
         note(f"{folder}: {copied.text}")
     for name in copied.kept:
-        note(f"{folder / name}: kept, since you changed it; --force replaces it")
+        note(f"{folder / name}: kept because you changed it; --force replaces it")
 
 
 def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> list[str]:
@@ -158,7 +160,7 @@ def serve(command: list[str], folder: Path, program: str) -> None:
     It runs in an empty folder, since servers of Jupyter take settings, which are programs, from where they are started;
     kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
     """
-    note("Ctrl-C ends it")
+    note("press Ctrl-C to stop")
     own = {**os.environ, "PYTHONSAFEPATH": "1"}
     if program == "voila":
         own[VARIABLE] = str(folder.resolve())
@@ -174,7 +176,7 @@ def serve(command: list[str], folder: Path, program: str) -> None:
             _end(server)
             raise interrupted() from None
     if code != 0:
-        fail(f"{program} ended with an error (exit code {code}); what it says is above")
+        fail(f"{program} ended with an error (exit code {code}); its messages are above")
 
 
 def _end(server: subprocess.Popen[bytes]) -> None:

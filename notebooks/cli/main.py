@@ -1,7 +1,7 @@
-"""The command line: ``thermicon check``, ``simulate``, ``rank`` …; ``whatif``, ``handing``, ``hardware`` … hold others.
+"""The command line: every command of ``thermicon``, grouped by job.
 
-Every command imports what it needs when it runs, so that ``check`` answers at once. The work itself is one module a
-command, beside this one.
+A command imports what it needs when it runs, so that ``check`` answers at once. The work of each command is in a module
+of this package.
 """
 
 from __future__ import annotations
@@ -14,12 +14,10 @@ from typing import Annotated
 
 import typer
 
+from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
-from . import hardware_commands as hardware
-from . import lab, searching, session, validation
-from . import text_commands as handing
-from . import whatif_commands as whatif
+from . import hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
 from .app import Commands
 from .options import (
     Bias,
@@ -38,13 +36,17 @@ from .options import (
     check_task,
 )
 
+WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
+PLAY, NOTEBOOKS = "Play on hardware", "Notebooks"
+"""Jobs, as the headings of ``thermicon --help``."""
+
 TRACKING = ("replay", "display", "ideal")
 RANKED_BY = ("model", "rules")
 
 app = typer.Typer(
     name="thermicon",
     cls=Commands,
-    help="Write thermal icons, see what they do to display, skin and receptors, predict which ones people confuse.",
+    help="Design thermal icons, simulate them on display and skin, and predict which ones people confuse.",
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     add_completion=False,
@@ -54,13 +56,17 @@ app = typer.Typer(
 Output = Annotated[
     Path | None,
     typer.Option(
-        "-o", "--output", metavar="OUT", readable=False, help="Write the trace: .csv, .parquet, or - for stdout."
+        "-o",
+        "--output",
+        metavar="OUT",
+        readable=False,
+        help="Write the trace to a .csv or .parquet file, or - for stdout.",
     ),
 ]
-"""Commands look at paths themselves (`readable=False`), so that a bad one is bad input and not bad usage."""
+"""Commands check paths themselves (`readable=False`), so that a bad path is bad input and not bad usage."""
 
 
-def _tell_version(wanted: bool) -> None:
+def _print_version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
@@ -71,24 +77,24 @@ def _tell_version(wanted: bool) -> None:
 @app.callback()
 def thermicon(
     version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Print the version and exit.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Write thermal icons, see what they do to display, skin and receptors, predict which ones people confuse."""
+    """Design thermal icons, simulate them on display and skin, and predict which ones people confuse."""
 
 
-@app.command("check")
+@app.command("check", rich_help_panel=WRITE)
 def check_command(
     files: Files,
     rig: Annotated[
-        str | None, typer.Option("--rig", metavar="RIG", help="Also hold levels and rates against this rig.")
+        str | None, typer.Option("--rig", metavar="RIG", help="Also check levels and rates against this rig.")
     ] = None,
     changes: Changes = None,
 ) -> None:
-    """Read cue files and report everything that is wrong with them, or one line a file when nothing is.
+    """Check cue files and report every error in them, or one line per file when there is none.
 
-    With --rig the icons are also held against the rig's levels, baselines and, under display control, rates;
-    whether a cue is reached in time is for simulate to say.
+    With --rig, levels, baselines and (under display control) rates are also checked against what the rig can do.
+    simulate reports whether the rig reaches the target in time.
     """
     check_changes(changes or [])
     from .check import check
@@ -96,21 +102,23 @@ def check_command(
     check(files, load_rig(rig, changes or []) if rig is not None or changes else None)
 
 
-@app.command("fmt")
+@app.command("fmt", rich_help_panel=WRITE)
 def fmt_command(
     files: CueFiles,
-    check: Annotated[bool, typer.Option("--check", help="Only print the names of files that would change.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Only print the names of the files that would change.")
+    ] = False,
 ) -> None:
-    """Bring cue files into canonical layout, in place; comments, numbers and units stay as they are.
+    """Format cue files in canonical layout, in place; comments, numbers and units stay as they are.
 
-    With --check nothing is written, and the exit code is 1 when a file would change.
+    With --check nothing is written, and the exit code is 1 if a file would change.
     """
     from .formatting import format_files
 
     format_files(files, check)
 
 
-@app.command("simulate")
+@app.command("simulate", rich_help_panel=SIMULATE)
 def simulate_command(
     file: Annotated[
         str | None, typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set.")
@@ -119,28 +127,39 @@ def simulate_command(
     current: Annotated[
         Path | None,
         typer.Option(
-            "--current", metavar="DRIVE.csv", readable=False, help="Play this drive (time_s, current_A) instead."
+            "--current",
+            metavar="DRIVE.csv",
+            readable=False,
+            help="Play this drive current (columns time_s, current_A) instead of icons.",
         ),
     ] = None,
-    hold: Annotated[bool, typer.Option("--hold", help="With --current: hold each row until the next.")] = False,
+    hold: Annotated[
+        bool,
+        typer.Option("--hold", help="With --current: hold each current until the next row instead of interpolating."),
+    ] = False,
     output: Output = None,
-    rate: Annotated[float, typer.Option("--rate", metavar="HZ", help="Rows a second.")] = 100.0,
+    rate: Annotated[float, typer.Option("--rate", metavar="HZ", help="Samples per second.")] = 100.0,
     tail: Annotated[
         float | None,
-        typer.Option("--tail", metavar="S", help="Time after the last corner.  [default: 0; 10 in figures]"),
+        typer.Option(
+            "--tail", metavar="S", help="Seconds simulated after the last corner.  [default: 0; 10 in figures]"
+        ),
     ] = None,
     figure: Annotated[
         Path | None,
         typer.Option(
-            "--figure", metavar="OUT.png", readable=False, help="Draw the overview; several icons give OUT-NAME.png."
+            "--figure",
+            metavar="OUT.png",
+            readable=False,
+            help="Draw an overview; several icons give one file each, OUT-NAME.png.",
         ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Find the current that plays an icon, then follow temperatures and heat flow down to the receptors.
+    """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.
 
-    With --current a given drive is played instead. Without -o a short summary is printed.
+    With --current, a given drive current is simulated instead. Without -o, a short summary is printed.
     """
     check_changes(changes or [])
     if (file is None) == (current is None):
@@ -152,7 +171,7 @@ def simulate_command(
     if current is not None and tail is not None:
         raise usage("belongs to a cue FILE; a drive ends at its last row", "--tail")
     if not (math.isfinite(rate) and rate > 0):
-        raise usage(f"{rate:g} is not a number of rows a second above 0", "--rate")
+        raise usage(f"{rate:g} is not a number of samples per second above 0", "--rate")
     check_tail(tail)
     from .simulate import simulate_drive, simulate_file
 
@@ -162,28 +181,37 @@ def simulate_command(
         simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure)
 
 
-@app.command("rank")
+@app.command("rank", rich_help_panel=PREDICT)
 def rank_command(
     files: Files,
-    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people.")] = 200,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people.")] = 200,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people.")] = 0,
     by: Annotated[
         str,
-        typer.Option("--by", metavar="|".join(RANKED_BY), help="Score by the model, or by rules of thumb alone."),
+        typer.Option("--by", metavar="|".join(RANKED_BY), help="Score with the model, or with rules of thumb alone."),
     ] = "model",
     parameters: Annotated[
         int,
-        typer.Option("--parameters", metavar="N", help="Draws for the interval of the model's parameters; 0: none."),
+        typer.Option(
+            "--parameters",
+            metavar="N",
+            help="Draws of the model's parameters for its uncertainty interval; 0 for none.",
+        ),
     ] = 128,
     tracking: Annotated[
         str | None,
-        typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
+        typer.Option(
+            "--tracking",
+            metavar="|".join(TRACKING),
+            help="What is the same for all people: current, display or target.  [default: by control]",
+        ),
     ] = None,
     norm: Annotated[
-        str, typer.Option("--norm", metavar="NAME", help="How a difference over time counts: max, rms, integral.")
+        str,
+        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
     ] = "max",
     trials: Annotated[
-        int, typer.Option("--trials", metavar="N", help="Trials in all of the experiment foretold.")
+        int, typer.Option("--trials", metavar="N", help="Number of trials of the predicted experiment.")
     ] = 48,
     choose: ChooseCount = None,
     objective: ObjectiveName = None,
@@ -192,7 +220,7 @@ def rank_command(
     most_energy: MostEnergy = None,
     edits: Annotated[
         bool,
-        typer.Option("--edits", help="Find the cheapest edit for every pair that is not apart, not only the worst."),
+        typer.Option("--edits", help="Find the cheapest edit for every indistinguishable pair, not only the worst."),
     ] = False,
     context: Context = 0.0,
     gap: Gap = None,
@@ -201,7 +229,8 @@ def rank_command(
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
     figure: Annotated[
-        Path | None, typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures into DIR.")
+        Path | None,
+        typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures to the folder DIR."),
     ] = None,
     report: ReportPage = None,
     workers: Workers = None,
@@ -210,10 +239,10 @@ def rank_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Predict what people detect, how soon, what they confuse, and how much information the set carries.
+    """Rank a set of icons: predict detection, onset times, confusions and the information that the set carries.
 
-    Several files are joined into one set. With --by rules nothing but rules of thumb counts, and the model only says
-    where it disagrees.
+    Several files are joined into one set. With --by rules, icons are scored by rules of thumb alone, and the model
+    only reports where it disagrees.
     """
     check_changes(changes or [])
     bounds = (
@@ -226,19 +255,19 @@ def rank_command(
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if parameters == 1:
-        raise usage("1 draw has no interval; ask for 2 or more, or 0 for none", "--parameters")
+        raise usage("an interval needs at least 2 draws; give 2 or more, or 0 for none", "--parameters")
     if by not in RANKED_BY:
-        raise usage(f"{by!r} is none of {', '.join(RANKED_BY)}", "--by")
+        raise usage(f"{by!r} is not one of {', '.join(RANKED_BY)}", "--by")
     if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     if workers is not None and cluster is not None:
-        raise usage("is for this machine; a cluster has the workers that it has", "--workers")
+        raise usage("applies to this machine; a cluster brings its own workers", "--workers")
     if workers is not None and not 1 <= workers <= 1024:
         raise usage(f"{workers} is outside 1 to 1024", "--workers")
     check_task(context, gap, bias)
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":
-        raise usage("icons are chosen by the model; leave out --by rules", "--choose")
+        raise usage("icons are chosen with the model; leave out --by rules", "--choose")
     from .ranking import Request, rank_files
 
     request = Request(
@@ -261,40 +290,45 @@ def rank_command(
     rank_files(files, load_rig(rig, changes or []), request, json, figure, report)
 
 
-app.command("sweep")(whatif.sweep_command)
-app.command("compare")(whatif.compare_command)
-app.command("search")(searching.search_command)
-app.command("netlist")(whatif.netlist_command)
-app.command("convert")(handing.convert_command)
-app.command("cite")(handing.cite_command)
-app.command("explain")(handing.explain_command)
-app.command("sensitivity")(whatif.sensitivity_command)
-app.command("validate")(validation.validate_command)
-app.command("export")(hardware.export_command)
-app.command("session")(session.session_command)
-app.command("devices")(hardware.devices_command)
-app.command("lab")(lab.lab_command)
-
-
-@app.command("rigs")
+@app.command("rigs", rich_help_panel=SIMULATE)
 def rigs_command() -> None:
-    """List the rigs that are shipped."""
+    """List the shipped rigs with skin site, resting temperatures and resting heat flow."""
     from .shipped import show_rigs
 
     show_rigs()
 
 
-@app.command("library")
+@app.command("library", rich_help_panel=WRITE)
 def library_command() -> None:
-    """List the icon sets that are shipped, with what they are for and where they come from."""
+    """List the shipped icon sets with the meaning and the source of their icons."""
     from .shipped import show_library
 
     show_library()
 
 
+for _name, _command, _panel in (
+    ("convert", text_commands.convert_command, WRITE),
+    ("cite", text_commands.cite_command, WRITE),
+    ("explain", text_commands.explain_command, WRITE),
+    ("sweep", whatif_commands.sweep_command, SIMULATE),
+    ("compare", whatif_commands.compare_command, SIMULATE),
+    ("netlist", whatif_commands.netlist_command, SIMULATE),
+    ("search", searching.search_command, PREDICT),
+    ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
+    ("validate", validation.validate_command, PREDICT),
+    ("session", session.session_command, PLAY),
+    ("export", hardware_commands.export_command, PLAY),
+    ("devices", hardware_commands.devices_command, PLAY),
+    ("lab", lab.lab_command, NOTEBOOKS),
+):
+    app.command(_name, rich_help_panel=_panel)(_command)
+
+
 def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
     try:
+        if is_command():
+            warn_if_hidden()
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="replace")

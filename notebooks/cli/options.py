@@ -11,7 +11,7 @@ import typer
 from ..text.messages import usage
 
 LONGEST_GAP_S, MOST_BIAS = 600.0, 5.0
-"""The ends of `thermicon.perception.Task`, here without its imports."""
+"""Limits of `thermicon.perception.Task`, repeated here to avoid its imports."""
 
 Files = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")]
 CueFiles = Annotated[list[str], typer.Argument(metavar="FILE", help="Cue files of your own.")]
@@ -21,18 +21,19 @@ RigName = Annotated[
     str | None, typer.Option("--rig", metavar="RIG", help="A shipped rig or a .toml file.  [default: thenar]")
 ]
 Changes = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be repeated.")
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change one key of the rig; may be given several times."),
 ]
 ReportPage = Annotated[
     Path | None,
-    typer.Option("--report", metavar="OUT.html", readable=False, help="Write one page with everything, to mail."),
+    typer.Option("--report", metavar="OUT.html", readable=False, help="Write a self-contained HTML report."),
 ]
 Workers = Annotated[
-    int | None, typer.Option("--workers", metavar="N", help="Cores to work on.  [default: all of this machine]")
+    int | None, typer.Option("--workers", metavar="N", help="Number of CPU cores.  [default: all of this machine]")
 ]
 Cluster = Annotated[
     str | None,
-    typer.Option("--cluster", metavar="ADDRESS", help="Work on a dask cluster instead: its scheduler's address."),
+    typer.Option("--cluster", metavar="ADDRESS", help="Compute on a dask cluster: the address of its scheduler."),
 ]
 Keep = Annotated[
     Path | None,
@@ -40,25 +41,34 @@ Keep = Annotated[
         "--keep",
         metavar="DIR",
         readable=False,
-        help="Keep finished parts in DIR.  [default: in the user's cache, until a long run is done]",
+        help="Folder for finished parts, so that an interrupted run continues.  [default: the user's cache]",
     ),
 ]
 Context = Annotated[
     float,
-    typer.Option("--context", metavar="SHARE", help="Share of memory noise that follows the range of the set, 0 to 1."),
+    typer.Option(
+        "--context", metavar="SHARE", help="Share of the memory noise that grows with the range of the set, 0 to 1."
+    ),
 ]
 Gap = Annotated[
     float | None,
-    typer.Option("--gap", metavar="S", help="Time from one icon to the next.  [default: long, all has faded]"),
+    typer.Option(
+        "--gap",
+        metavar="S",
+        help="Seconds from the end of one icon to the next, 0 to 600.  [default: until carry-over has faded]",
+    ),
 ]
 Bias = Annotated[
-    float, typer.Option("--bias", metavar="SD", help="Spread of how much people favour names (log likelihood).")
+    float,
+    typer.Option(
+        "--bias", metavar="SD", help="Standard deviation of people's response bias, in log likelihood, 0 to 5."
+    ),
 ]
-Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Time after the last corner.")]
+Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Seconds simulated after the last corner.")]
 
 
 def check_task(context: float, gap_s: float | None, bias: float) -> None:
-    """Fail with a usage error where icons cannot be asked for so."""
+    """Fail with a usage error for an impossible identification task."""
     for option, value, most, unit in (
         ("--context", context, 1.0, ""),
         ("--gap", gap_s, LONGEST_GAP_S, " s"),
@@ -69,16 +79,16 @@ def check_task(context: float, gap_s: float | None, bias: float) -> None:
 
 
 def check_tail(tail_s: float | None) -> None:
-    """Fail with a usage error for a tail that is no time."""
+    """Fail with a usage error for a tail that is not a time."""
     if tail_s is not None and not (math.isfinite(tail_s) and tail_s >= 0):
         raise usage(f"{tail_s:g} is not a time in seconds of 0 or more", "--tail")
 
 
 LONGEST_PAUSE_S = 600.0
-"""The longest pause between plays, as in `thermicon.circuit.safety.repeated`, here without its imports."""
+"""The longest pause between plays, as in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
 
 
 def check_pause(pause_s: float | None) -> None:
-    """Fail with a usage error for a pause that is no time between 0 and 10 min."""
+    """Fail with a usage error for a pause outside 0 to 10 min."""
     if pause_s is not None and not 0 <= pause_s <= LONGEST_PAUSE_S:
         raise usage(f"{pause_s:g} is not a time between plays of 0 to {LONGEST_PAUSE_S:g} s", "--pause")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,8 +11,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, complete_or_absent
-from ..text.messages import note, usage
-from ..text.progress import progress_bar
+from ..text.messages import note, progress_bar, usage
 from ..text.rank_text import show_ranking
 from .cache import kept
 from .cues import MOST_ICONS, read_set, warn_of_frames
@@ -20,19 +20,20 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
+PLAIN_OPTIONS = ("people", "seed", "tracking", "norm", "trials", "by", "parameters", "context", "gap", "bias")
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What ``rank`` was asked for: people, seed, tracking (None: by the icons' control), norm, trials, by what.
+    """Options of ``rank``: people, seed, tracking (None: by the icons' control), norm, trials, and what to score by.
 
-    ``parameters`` observers are drawn for the intervals that the observer's parameters leave open; 0 draws none.
-    ``choosing`` asks for the best few, ``edits`` for the cheapest edit of the ``worst`` pair or of ``all`` not apart.
-    ``context``, ``gap`` (s) and ``bias`` say how icons are asked for, as in ``thermicon.perception.Task``.
-    ``workers`` are cores, ``cluster`` is the address of a scheduler to use instead, ``keep`` a folder of done parts.
+    ``parameters`` is the number of observers drawn for the model uncertainty; 0 draws none. ``choosing`` selects the
+    best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all`` indistinguishable pairs.
+    ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
+    number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
     """
 
     people: int = 200
@@ -42,7 +43,7 @@ class Request:
     trials: int = 48
     by: str = "model"
     parameters: int = 128
-    choosing: Choosing | None = None
+    choosing: Selection | None = None
     edits: str = "worst"
     context: float = 0.0
     gap: float | None = None
@@ -60,18 +61,18 @@ def rank_files(
     figures: Path | None,
     report_out: Path | None = None,
 ) -> None:
-    """Rank the joined icons of some files on the rig: the table on stdout, the rest where it was asked for."""
+    """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, Task, rank
     from thermicon.perception.ranking.rank_file import ranking_file
 
     if request.norm not in NORMS:
-        raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
+        raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if json_out is not None:
         check_output(json_out, (), "JSON")
     if report_out is not None:
         check_output(report_out, (".html", ".htm"), "a report")
         if report_out == STDOUT:
-            raise usage("- is no file; give the name of a page, such as report.html", "--report")
+            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
     if figures is not None:
         if not figures.is_dir() and (figures.exists() or figures.suffix.lower() in PICTURES):
             hint = figures.with_suffix("") if figures.suffix else "figures"
@@ -79,8 +80,10 @@ def rank_files(
         check_folder(figures)
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
-        what = f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} are ranked at once"
-        raise usage(f"{what}; narrow a family, or name its best members in a set of their own", "FILE")
+        what = (
+            f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
+        )
+        raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     warn_of_frames(files, icons, rig)
     what = f"{icons}\0{rig.document}\0{request}"
     with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
@@ -113,7 +116,6 @@ def rank_files(
     near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
     if report_out is not None:
         from ..pages.report import report
-        from .command_line import command_text
 
         made = report(ranking, icons, rig, command_text(files, rig, request), near)
         with complete_or_absent(report_out) as draft:
@@ -126,9 +128,31 @@ def rank_files(
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
-    """Return by name how each icon that the rig does not reach could be changed so that it does."""
+    """Return, by name, how each icon that the rig does not reach could be changed so that it is reached."""
     from thermicon.circuit import nearest_reachable
 
     missed = {score.name for score in ranking.icons if not score.reachable}
     near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
     return {name: found.sentence for name, found in near.items() if found is not None}
+
+
+def command_text(files: Sequence[str], rig: Rig, request: Request) -> str:
+    """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.notebooks.cli.ranking import Request
+    >>> command_text(["/home/a/two icons.cue"], Rig.load("thenar"), Request(people=20))
+    "thermicon rank 'two icons.cue' --people 20"
+    """
+    words = ["thermicon", "rank", *(Path(name).name for name in files)]
+    defaults, values = Request(), {name: getattr(request, name) for name in PLAIN_OPTIONS}
+    words += [] if rig.name == "thenar" else ["--rig", rig.name]
+    words += [word for change in rig.changes for word in ("--set", change)]
+    for name, value in values.items():
+        words += [] if value == getattr(defaults, name) else [f"--{name}", str(value)]
+    if (asked := request.choosing) is not None:
+        words += ["--choose", str(asked.count), "--objective", asked.objective]
+        words += [word for icon in asked.must for word in ("--must", icon)]
+        words += [] if asked.most_s is None else ["--most-time", f"{asked.most_s:g}"]
+        words += [] if asked.most_J is None else ["--most-energy", f"{asked.most_J:g}"]
+    return shlex.join(words + ["--edits"] * (request.edits == "all"))

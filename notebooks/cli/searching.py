@@ -1,4 +1,4 @@
-"""``thermicon search``: a better set out of the families of a file, as a cue file and a table of before and after."""
+"""``thermicon search``: improve a set within its families, as a cue file and a table of before and after."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..text.messages import check_changes, load_rig, note, usage
 from .options import Changes, OneFile, RigName
 
 if TYPE_CHECKING:
-    from thermicon.perception import Searched
+    from thermicon.perception import SearchResult
 
 TRACKING = ("replay", "display", "ideal")
 
@@ -22,33 +22,52 @@ def search_command(
     file: OneFile,
     choose: Annotated[
         int | None,
-        typer.Option("--choose", metavar="K", help="So many icons in all, of any family.  [default: one of each]"),
+        typer.Option(
+            "--choose", metavar="K", help="Number of icons to choose, from any family.  [default: one of each]"
+        ),
     ] = None,
     objective: Annotated[
-        str, typer.Option("--objective", metavar="NAME", help="worst (pair), correct, bits, or bits-per-s.")
+        str,
+        typer.Option("--objective", metavar="NAME", help="What to improve: worst (pair), correct, bits or bits-per-s."),
     ] = "worst",
     evaluations: Annotated[
-        int, typer.Option("--evaluations", metavar="N", help="Icons to try: more take longer and find more.")
+        int,
+        typer.Option(
+            "--evaluations", metavar="N", help="Number of icons to try; more take longer and may find a better set."
+        ),
     ] = 2000,
     people: Annotated[
-        int, typer.Option("--people", metavar="N", help="Virtual people that judge what is found.")
+        int, typer.Option("--people", metavar="N", help="Number of virtual people for the final scores.")
     ] = 200,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of search and people.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
     tracking: Annotated[
         str | None,
-        typer.Option("--tracking", metavar="|".join(TRACKING), help="What each person gets.  [default: by control]"),
+        typer.Option(
+            "--tracking",
+            metavar="|".join(TRACKING),
+            help="What is the same for all people: current, display or target.  [default: by control]",
+        ),
     ] = None,
-    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    norm: Annotated[
+        str,
+        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
+    ] = "max",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="OUT.cue", readable=False, help="The found set, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.cue",
+            readable=False,
+            help="Write the improved set to a cue file, or - for stdout.",
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Better a set over the continuous parameters of its families; icons that are no families stay as they are.
+    """Improve a set of icons over the continuous parameters of its families; all other icons stay as they are.
 
-    What is found is the best for the model, which it was searched on: measure it on people before it is used.
+    The result is the best set for the model, with which it was searched: test it with people before you use it.
     """
     check_changes(changes or [])
     bounds = (
@@ -61,16 +80,16 @@ def search_command(
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if objective not in OBJECTIVES:
-        raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
+        raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     if norm not in ("max", "rms", "integral"):
-        raise usage(f"{norm!r} is none of max, rms, integral", "--norm")
+        raise usage(f"{norm!r} is not one of max, rms, integral", "--norm")
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
     from thermicon.perception import search
 
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
     from .cues import read_set, warn_of_frames
 
     icons, where = read_set([file]), load_rig(rig, changes or [])
@@ -98,17 +117,17 @@ def search_command(
     show_search(found, icons.title, people, where.name)
 
 
-def show_search(found: Searched, title: str, people: int, rig: str) -> None:
-    """Print the icons that were found, what they are worth beside the set that the search began with, and the note."""
+def show_search(found: SearchResult, title: str, people: int, rig: str) -> None:
+    """Print the improved set, its scores next to those of the initial set, and the caveat."""
     from ..text.number_text import number, percent
     from ..text.tables import show, table
 
     made = table("", "before", "after", numbers=("before", "after"))
     for what, before, after in (
         ("worst pair, d′", number(found.before.d_prime), number(found.after.d_prime)),
-        ("correct", percent(found.before.percent_correct), percent(found.after.percent_correct)),
-        ("bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
-        ("bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
+        ("proportion correct", percent(found.before.proportion_correct), percent(found.after.proportion_correct)),
+        ("information, bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
+        ("information rate, bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
     ):
         made.add_row(what, before, after)
     crowd = "1 virtual person" if people == 1 else f"{people} virtual people"
@@ -126,8 +145,8 @@ def show_search(found: Searched, title: str, people: int, rig: str) -> None:
         f"After: worst pair {' and '.join(found.after.worst_pair)}",
         began,
         "",
-        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, "
-        f"by {found.objective} (seed {found.seed}); before and after are for {crowd} on the {rig} rig.",
-        "These are predictions of a model, not measurements, and the set was searched for on that same model: "
-        "expect less of it from people than is said here.",
+        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the "
+        f"objective {found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
+        "These are predictions of a model, not measurements, and the set was optimised for that same model: "
+        "expect lower scores from people.",
     )

@@ -1,4 +1,4 @@
-"""``thermicon sensitivity``: which uncertain parameters move the prediction for a set most."""
+"""``thermicon sensitivity``: which uncertain parameters change the prediction for a set most."""
 
 from __future__ import annotations
 
@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
-from ..text.messages import fail, note, usage
+from ..text.messages import fail, note, progress_bar, usage
 from ..text.number_text import percent
-from ..text.progress import progress_bar
 from ..text.tables import show, table
 from .cues import read_set, warn_of_frames
 from .sweep import write_frame
@@ -24,39 +23,38 @@ HOW = {
     "reference area": "the area of the published thresholds; measure thresholds on your own display instead",
     "slope of sensation": "amplitude difference thresholds, at several amplitudes",
     "memory noise": "let people name a few icons from memory and count",
-    "gain control strength": "how much weaker a change is felt after one of the same direction",
-    "lapse rate": "errors on two icons that nobody can mistake",
+    "gain control strength": "how much weaker a change is felt after one in the same direction",
+    "lapse rate": "errors on two icons that are unmistakable",
     "contact resistance": "skin or interface thermistor under your display, then fit the rig to its log",
     "spread of thresholds between people": "thresholds of a dozen people on your own display",
-    "onset uncertainty": "how well people tell two onsets apart in time",
+    "onset uncertainty": "how well people distinguish two onsets in time",
 }
-"""What to do about a parameter whose name does not say it."""
+"""How to measure a parameter whose name does not say it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What ``sensitivity`` was asked for; ``samples`` None leaves their number to the method."""
+    """The options of ``sensitivity``."""
 
     people: int = 24
     seed: int = 0
-    method: str = "sobol"
-    samples: int | None = None
+    samples: int = 64
     norm: str = "max"
 
 
 def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:
-    """Study the icons of a file on the rig: the table on stdout, the rest where it was asked for."""
+    """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, sensitivity
 
     if request.norm not in NORMS:
-        raise usage(f"{request.norm!r} is none of {', '.join(NORMS)}", "--norm")
+        raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     icons = read_set([file])
     if len(icons) < 2:
-        fail(f"{file}: a sensitivity needs at least two icons: one alone is never confused")
+        fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")
     warn_of_frames([file], icons, rig)
     with progress_bar("sensitivity") as progress:
         found = sensitivity(
@@ -64,7 +62,6 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
             rig,
             people=request.people,
             seed=request.seed,
-            method=request.method,
             samples=request.samples,
             norm=request.norm,
             progress=progress,
@@ -85,38 +82,27 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
 
 
 def show_sensitivity(found: Sensitivity, title: str) -> None:
-    """Print a row a parameter, the most important first, and what to measure first."""
+    """Print one row per parameter, the most important first, and what to measure first."""
     made = table(
         "parameter", "interval", "correct", "bits", "correct low–high", numbers=("correct", "bits", "correct low–high")
     )
     for effect in found.effects:
         parameter = effect.parameter
         unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        low, high = effect.percent_correct_ends
+        low, high = effect.proportion_correct_ends
         made.add_row(
             parameter.name,
             f"{parameter.low:.3g}–{parameter.high:.3g}{unit}",
-            size(effect.percent_correct, found.method),
-            size(effect.information_bits, found.method, "bits"),
+            percent(effect.proportion_correct),
+            percent(effect.information_bits),
             f"{percent(low)} – {percent(high)}",
         )
     heading = [title, ""] if title else []
     show(*heading, made, "", *sentences(found))
 
 
-def size(value: float, method: str, unit: str = "%") -> str:
-    """Write a share of variance, or by Morris a mean effect in points or bits.
-
-    >>> size(0.431, "sobol"), size(0.034, "morris"), size(0.12, "morris", "bits")
-    ('43 %', '3.4', '0.12')
-    """
-    if method == "sobol":
-        return percent(value)
-    return f"{100 * value:.1f}" if unit == "%" else f"{value:.2f}"
-
-
 def how(name: str) -> str:
-    """Say behind the name of a parameter what a lab would measure; nothing where the name says it.
+    """Describe how a lab would measure a parameter; nothing where the name says it.
 
     >>> how("memory noise (max)")
     ': let people name a few icons from memory and count'
@@ -126,20 +112,18 @@ def how(name: str) -> str:
 
 
 def sentences(found: Sensitivity) -> list[str]:
-    """Return what the numbers are, what to measure first, and on what it rests."""
+    """Return what to measure first, what the numbers are, and what they were computed from."""
     kind = (
-        "Shares of the variance of per cent correct and of bits, interactions included (total Sobol indices)"
-        if found.method == "sobol"
-        else "Mean effect of a parameter over its interval, in points of per cent correct and in bits (Morris)"
+        "Shares of the variance of the proportion correct and of the bits, interactions included (total Sobol indices)"
     )
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
     crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
-    lead = "Measure these first; the rest moves the prediction less:"
+    lead = "Measure these first; all others influence the prediction less:"
     return [
-        lead if found.first else "None of these moves the prediction.",
+        lead if found.first else "None of these parameters influences the prediction.",
         *(f"  - {name}{how(name)}" for name in found.first),
         "",
-        f"{kind}; beside them per cent correct at the low and at the high end of each interval alone. "
+        f"{kind}; beside them the proportion correct at the low and at the high end of each interval. "
         f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
-        f"{percent(found.percent_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
+        f"{percent(found.proportion_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
     ]

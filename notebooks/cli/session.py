@@ -1,4 +1,4 @@
-"""``thermicon session``: a sequence of icons as one run, one verdict, and what every play does."""
+"""``thermicon session``: a sequence of icons as one run, with one verdict and one row per play."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ CAUTION = (
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What was asked for; `order` None shuffles with `seed`."""
+    """Options of a session; without an `order`, icons are shuffled with `seed`."""
 
     order: Path | None
     repeats: int
@@ -52,40 +52,55 @@ def session_command(
     order: Annotated[
         Path | None,
         typer.Option(
-            "--order", metavar="FILE", readable=False, help="Names of icons in the order of play, one per line."
+            "--order",
+            metavar="FILE",
+            readable=False,
+            help="File with the names of the icons in the order of play, one per line.",
         ),
     ] = None,
-    random: Annotated[bool, typer.Option("--random", help="Every icon --repeats times, in random order.")] = False,
+    random: Annotated[bool, typer.Option("--random", help="Play every icon --repeats times, in random order.")] = False,
     gap: Annotated[
-        float, typer.Option("--gap", metavar="S", help="Time from the end of an icon to the start of the next.")
+        float,
+        typer.Option(
+            "--gap", metavar="S", help="Seconds from the end of one icon to the start of the next, 0 to 3600."
+        ),
     ] = 10.0,
     repeats: Annotated[
         int | None,
-        typer.Option("--repeats", metavar="N", help="Plays of each icon, or of the order.  [default: 8, or 1]"),
+        typer.Option(
+            "--repeats",
+            metavar="N",
+            help="Number of plays of each icon, or of the whole order.  [default: 8 with --random, 1 with --order]",
+        ),
     ] = None,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the random order.")] = 0,
     tracking: Annotated[
         str,
         typer.Option(
-            "--tracking", metavar="|".join(TRACKING), help="Currents open loop, or the display temperature followed."
+            "--tracking",
+            metavar="|".join(TRACKING),
+            help="Replay the currents open loop, or control the display temperature.",
         ),
     ] = "replay",
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
     figure: Annotated[
-        Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session.")
+        Path | None,
+        typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session: .png, .pdf or .svg."),
     ] = None,
     order_out: Annotated[
         Path | None,
-        typer.Option("--order-out", metavar="OUT", readable=False, help="Write the order as a file for --order."),
+        typer.Option(
+            "--order-out", metavar="OUT", readable=False, help="Write the order of play as a file for --order."
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Play a sequence of icons as one run: temperatures, dose, drift of the baseline, one verdict in the worst case.
+    """Simulate a session, a sequence of icons: temperatures, thermal dose, baseline drift and worst-case safety.
 
-    The verdict is a report: the exit code is 0 whatever its colour. Only export refuses.
+    The verdict is only reported: the exit code is 0 whatever its colour. Only export refuses icons.
     """
     check_changes(changes or [])
     if (order is None) == (not random):
@@ -97,19 +112,19 @@ def session_command(
     if not 0 <= seed <= 2**63 - 1:
         raise usage(f"{seed} is outside 0 to {2**63 - 1}", "--seed")
     if tracking not in TRACKING:
-        raise usage(f"{tracking!r} is none of {', '.join(TRACKING)}", "--tracking")
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS
     request = Request(order, count, seed, gap, tracking, json, figure, order_out)
     session_file(file, load_rig(rig, changes or []), request)
 
 
 def session_file(file: str, rig: Rig, request: Request) -> None:
-    """Play a session with the icons of a file; print the report and write what was asked for."""
+    """Simulate a session with the icons of a file; print the report and write the requested files."""
     from thermicon.circuit import play_session
     from thermicon.circuit.safety.sessionplan import order_text
 
     from ..files.outputs import FIGURE_SUFFIXES, check_output, complete_or_absent
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
     from .cues import read_set, warn_of_site
 
     for path, suffixes, what in (
@@ -143,7 +158,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
 
 
 def plan_of(icons: IconSet, request: Request) -> SessionPlan:
-    """The plan that was asked for; SessionError, before anything is played, where it is impossible."""
+    """The requested plan; SessionError for an impossible one, before anything is simulated."""
     from thermicon.circuit import SessionPlan
     from thermicon.circuit.safety.sessionplan import check_repeats, read_order
 
@@ -155,7 +170,7 @@ def plan_of(icons: IconSet, request: Request) -> SessionPlan:
 
 
 def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
-    """The session as JSON text; what does not exist is null."""
+    """The session as JSON text; missing values are null."""
     facts = {
         "thermicon": version("thermicon"),
         "content_hash": icons.content_hash,
@@ -167,7 +182,7 @@ def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
 
 
 def show_session(session: Session) -> None:
-    """Print the verdict, what the session does as a whole, and one row per play."""
+    """Print the verdict, a summary of the session, and one row per play."""
     from ..text.number_text import number, span
     from ..text.tables import show, table
 
@@ -187,21 +202,22 @@ def show_session(session: Session) -> None:
             play.verdict,
         )
     more = len(session.plays) - MOST_SHOWN
-    left = [f"and {more} more plays, which --json lists"] if more > 0 else []
+    left = [f"and {more} more plays; --json lists all"] if more > 0 else []
     show(*summary_lines(session), "", rows, *left)
     note(CAUTION)
 
 
 def summary_lines(session: Session) -> list[str]:
-    """What people want to know of a session first, a line each."""
+    """The summary of a session, line by line."""
     from ..text.number_text import number, span
 
     trace, plan = session.trace, session.plan
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
     shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
     lines = [
-        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, {number(plan.gap_s, 2)} s apart{shuffled}",
-        f"safety {session.verdict} in {session.scenarios} scenarios, over the whole session and after",
+        f"{plays} in {number(session.duration_s, 2)} s on {trace.rig_name}, "
+        f"{number(plan.gap_s, 2)} s between plays{shuffled}",
+        f"safety {session.verdict} in {session.scenarios} scenarios, during the whole session and after it",
         *(f"  - {'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in session.findings),
     ]
     for words, column in (("skin", trace.skin_C), ("display", trace.display_C), ("hot plate", trace.hot_plate_C)):
@@ -209,7 +225,7 @@ def summary_lines(session: Session) -> list[str]:
     after = "more than 10 min" if session.recovery_s is None else f"{number(session.recovery_s)} s"
     lines += [
         *_dose_lines(session),
-        f"  baseline   {number(session.baseline_drift_K, 2)} K at most; back within 0.1 K {after} after the end",
+        f"  baseline   {number(session.baseline_drift_K, 2)} K at most; within 0.1 K again {after} after the end",
         f"  energy     {number(session.energy_J)} J into the module",
     ]
     over = [
@@ -222,7 +238,7 @@ def summary_lines(session: Session) -> list[str]:
 
 
 def _dose_lines(session: Session) -> list[str]:
-    """Dose on the rig as given and in the worst case, beside the limits of a session."""
+    """Thermal dose on the given rig and in the worst case, with the limits of a session."""
     lines = []
     for words, quantity, value, unit in (
         ("dose", "thermal dose", session.dose_cem43_min, " min CEM43"),

@@ -7,7 +7,7 @@ from ..text.tables import show, table
 
 
 def show_rigs() -> None:
-    """Print the shipped rigs: site, temperature at rest, blood temperature and standing heat flow."""
+    """Print the shipped rigs: site, resting temperature, blood temperature and resting heat flow."""
     from thermicon.circuit import Rig, rig_names
 
     numbers = ("rest °C", "blood °C", "flux W/m²")
@@ -18,11 +18,11 @@ def show_rigs() -> None:
         flux = number(rig.resting_flux_W_per_m2, 0)
         made.add_row(name, rig.title, rig.site, number(rig.skin.rest_C), number(rig.blood_C, 2), flux)
         notes += [f"{name}: {warning}" for warning in rig.warnings]
-    show(made, "", "flux: heat flow into bare skin at rest; negative, since skin loses heat.", *notes)
+    show(made, "", "flux: heat flow into bare skin at rest; negative because skin loses heat.", *notes)
 
 
 def show_library() -> None:
-    """Print the shipped icon sets: icons, what they prescribe, what they are for, and their source."""
+    """Print the shipped icon sets: icons with their meanings, what they control, and their source."""
     from thermicon.icons import Family, library_names, load_library
 
     for position, name in enumerate(library_names()):
@@ -37,17 +37,17 @@ def show_library() -> None:
         show(
             *([""] if position else []),
             f"{name}: {icons.title}" if icons.title else name,
-            f"  prescribes {PRESCRIBES[icons.frame.control]}; source: {source or 'not stated'}",
+            f"  controls {PRESCRIBES[icons.context.control]}; source: {source or 'not stated'}",
             made,
         )
 
 
 def show_devices() -> None:
-    """Print the shipped devices with what drives them, range, steps and rate, then the formats and who takes them."""
+    """Print the shipped devices with input, range, resolution and rate, then the file formats."""
     from thermicon.circuit import Device, device_names
     from thermicon.circuit.delivery.formats import format_names, load_format
 
-    made = table("device", "driven by", "range", "steps", "rate")
+    made = table("device", "driven by", "range", "resolution", "rate")
     devices = [Device.load(name) for name in device_names()]
     for device in devices:
         low, high = device.interval("set-point range" if device.unit == "°C" else "output range")
@@ -59,12 +59,12 @@ def show_devices() -> None:
             f"{device.most('tick') * 1e3:g} ms ticks",
         )
         made.add_row(device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest)
-    forms = table("format", "what it is", "without --device")
+    forms = table("format", "content", "default device")
     for name in format_names():
         form = load_format(name)
         forms.add_row(name, form.title, form.device)
     played = [device.name for device in devices if device.played]
-    told = f"Played on hardware: {', '.join(played)}." if played else "None of them was ever played by thermicon."
+    tested = f"Tested on hardware: {', '.join(played)}." if played else "None of them has been tested on hardware yet."
     show(
         made,
         "",
@@ -72,8 +72,8 @@ def show_devices() -> None:
         "",
         forms,
         "",
-        told,
-        "A device of your own is a .toml file like the shipped ones, each number sourced.",
+        tested,
+        "Describe your own device in a .toml file like the shipped ones, with a source for each number.",
     )
 
 
@@ -82,4 +82,4 @@ def _rate(value_Hz: float) -> str:
     return f"{number(value_Hz / size)} {unit}"
 
 
-PRESCRIBES = {"skin": "the skin's surface", "display": "the display's temperature", "current": "the current"}
+PRESCRIBES = {"skin": "the skin surface temperature", "display": "the display temperature", "current": "the current"}

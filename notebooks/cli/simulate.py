@@ -42,7 +42,7 @@ def simulate_file(
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
         draw_overview(played, picture, rig.changes)
-    _tell(traces, rig, output, pictures, [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)])
+    _report(traces, rig, output, pictures, [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)])
 
 
 def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None) -> None:
@@ -56,7 +56,7 @@ def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Pa
     _write([trace], output)
     for picture in pictures:
         draw_overview(simulate_current(played, rig), picture, rig.changes)
-    _tell([trace], rig, output, pictures, [None])
+    _report([trace], rig, output, pictures, [None])
 
 
 def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
@@ -85,18 +85,18 @@ def _check(output: Path | None, pictures: Sequence[Path]) -> None:
 
 
 def _write(traces: Sequence[Trace], output: Path | None) -> None:
-    """Write the traces into their file, before anything is printed that a reader may not wait for."""
+    """Write the traces to their file before printing, since the reader of a pipe may not wait."""
     if output is not None and output != STDOUT:
         write_traces(traces, output)
 
 
-def _tell(
+def _report(
     traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
 ) -> None:
-    """Say on stderr what is to be known and was written, then print on stdout: a summary, or the traces."""
+    """Report warnings and written files on stderr, then print a summary or the traces on stdout."""
     for trace in traces:
         for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
-            if warning not in rig.warnings:  # those were told when the rig was loaded
+            if warning not in rig.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
     if output is not None:
         for trace, better in zip(traces, cures, strict=True):
@@ -112,7 +112,7 @@ def _tell(
 
 
 def unsafe(trace: Trace) -> list[str]:
-    """Return a sentence for every shipped limit of safety that the run passes, the hard ones marked."""
+    """Return a sentence for every shipped safety limit that the run exceeds, with hard limits marked."""
     from thermicon.circuit import judge_safety
 
     findings = judge_safety(trace).findings
@@ -120,7 +120,7 @@ def unsafe(trace: Trace) -> list[str]:
 
 
 def write_traces(traces: Sequence[Trace], output: Path) -> None:
-    """Write the traces below each other, by the suffix of ``output``; ``-`` is CSV on stdout."""
+    """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout."""
     from thermicon.circuit import write_trace
 
     if output == STDOUT:
@@ -141,20 +141,20 @@ def headline(trace: Trace) -> str:
     if not trace.outcome.reached:
         return f"{start}, NOT reached: {trace.outcome.reason}"
     miss = abs(trace.outcome.largest_miss_K)
-    told = "everywhere within 1 mK" if miss < 1e-3 else f"largest miss {number(miss, 3)} K"
+    miss_text = "everywhere within 1 mK" if miss < 1e-3 else f"largest miss {number(miss, 3)} K"
     slowest = trace.outcome.slowest_step_s
     steps = "" if slowest is None else f", slowest step {number(slowest, 2)} s"
-    return f"{start}, reached ({told}{steps})"
+    return f"{start}, reached ({miss_text}{steps})"
 
 
 def _current(trace: Trace) -> str:
     if not trace.has_current:
-        return "none: a thermode follows temperatures in a loop of its own"
+        return "none: the thermode controls its temperature itself"
     return span(float(trace.current_A.min()), float(trace.current_A.max()), "A", 2)
 
 
 def describe(trace: Trace) -> str:
-    """Say what a person wants to know of a run first: outcome, drive, extremes, changes at the receptors."""
+    """Summarise a run: outcome, drive, extremes and changes at the receptors."""
     peaks = []
     for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):
         change = column - column[0]

@@ -1,10 +1,11 @@
-"""``thermicon sweep``: one key of the rig over a range, and every number of a run at each value."""
+"""``thermicon sweep``: one or two keys of the rig over a range, and every number of a run at each value."""
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, complete_or_absent
-from ..text.messages import fail, note, usage
+from ..text.messages import Progress, fail, note, progress_bar, usage
 from ..text.number_text import span
-from ..text.progress import Progress, progress_bar
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
@@ -36,8 +37,20 @@ class Vary:
     log: bool
 
 
+def read_varied(texts: Sequence[str]) -> tuple[Vary, ...]:
+    """Read every ``--vary``: one key, or two for a grid of all their combinations; more are a usage error."""
+    varied = tuple(read_vary(text) for text in texts)
+    if len(varied) > 2:
+        raise usage(f"{len(varied)} keys are given; at most 2 can be varied, and 2 make a grid", "--vary")
+    if len({vary.key for vary in varied}) < len(varied):
+        raise usage(f"{varied[0].key} is given twice; a grid needs two different keys", "--vary")
+    if (count := math.prod(len(vary.values) for vary in varied)) > MOST_VALUES:
+        raise usage(f"{count:,} combinations are more than {MOST_VALUES:,}; use fewer values", "--vary")
+    return varied
+
+
 def read_vary(text: str) -> Vary:
-    """Return what ``--vary`` asks for; a usage error that shows the form where it is not of it.
+    """Read one ``--vary``; a text of another form is a usage error that shows the form.
 
     >>> read_vary("contact.area_cm2=4:9:3").values, read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log").values
     ((4.0, 6.5, 9.0), (0.0001, 0.001, 0.01))
@@ -79,28 +92,63 @@ def sweep(
     key: str,
     values: Sequence[float],
     *,
+    second: tuple[str, Sequence[float]] | None = None,
     tail_s: float = 0.0,
     progress: Progress | None = None,
 ) -> pd.DataFrame:
-    """Play every icon at every value of a key of the rig; a row each, values in the unit of the rig file.
+    """Play every icon at every value of a key of the rig.
+
+    Parameters
+    ----------
+    icons : Iterable[Icon]
+        Icons to play.
+    rig : Rig
+        Rig to change.
+    key, values : str, Sequence[float]
+        Dotted key of the rig file and its values, in the unit of the rig file.
+    second : tuple of key and values, optional
+        A second key; every combination of both keys is played.
+    tail_s : float
+        Time simulated after the last corner, in s.
+    progress : callable, optional
+        Called with the number of runs done and their total.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per icon and value (or combination). Columns: icon, the key or keys, the fields of
+        `thermicon.circuit.Summary`, what the receptors see, and `reason`. Where the rig is impossible or cannot play
+        the icon, the row has only the reason.
+
+    Raises
+    ------
+    RigError
+        For a key that no rig has.
 
     Columns: icon, the key, the fields of a `Summary`, what the receptors see, and `reason`. A value at
     which the rig cannot be, or cannot play the icon, gives a row with only the reason. Raises RigError for a key that
     no rig has.
+
     """
     import pandas as pd
 
     from thermicon.circuit.rig.settings import put
     from thermicon.circuit.safety.summary import Summary
 
-    put(json.loads(rig.document), key, float(values[0]))
-    played, rows = list(icons), []
-    for value in values:
-        rows += [{"icon": icon.name, key: float(value), **_run(icon, rig, key, value, tail_s)} for icon in played]
+    varied = [(key, values), *([second] if second is not None else [])]
+    for name, numbers in varied:
+        put(json.loads(rig.document), name, float(numbers[0]))
+    keys = [name for name, _ in varied]
+    combinations = list(itertools.product(*([float(value) for value in numbers] for _, numbers in varied)))
+    played: list[Icon] = list(icons)
+    rows: list[dict[str, Any]] = []
+    for combination in combinations:
+        changes = dict(zip(keys, combination, strict=True))
+        rows += [{"icon": icon.name, **changes, **_run(icon, rig, changes, tail_s)} for icon in played]
         if progress is not None:
-            progress(len(rows), len(played) * len(values))
-    numbers = [field.name for field in fields(Summary) if field.name != "reason"]
-    frame = pd.DataFrame(rows, columns=["icon", key, *numbers, *RECEPTORS, "reason"])
+            progress(len(rows), len(played) * len(combinations))
+    summary = [field.name for field in fields(Summary) if field.name != "reason"]
+    frame = pd.DataFrame(rows, columns=["icon", *keys, *summary, *RECEPTORS, "reason"])
     words = {"icon": "string", "safety": "string", "reason": "string", "reached": "boolean", "safe": "boolean"}
     kinds: dict[str, Any] = {name: words.get(name, "float64") for name in frame.columns}
     order = {icon.name: place for place, icon in enumerate(played)}
@@ -115,14 +163,14 @@ RECEPTORS = tuple(
 """Columns for what the receptors see: largest change, steepest rate towards it, lag of its half behind the skin's."""
 
 
-def _run(icon: Icon, rig: Rig, key: str, value: float, tail_s: float) -> dict[str, Any]:
+def _run(icon: Icon, rig: Rig, changes: Mapping[str, float], tail_s: float) -> dict[str, Any]:
     import numpy
 
     from thermicon.circuit import InputError, simulate, summarise
 
     try:
         with numpy.errstate(all="ignore"):  # what overflows ends as a reason
-            trace = simulate(icon, rig.with_(**{key: float(value)}), tail_s=tail_s)
+            trace = simulate(icon, rig.with_(**changes), tail_s=tail_s)
     except (InputError, ValueError, ArithmeticError) as problem:
         return {"reason": "; ".join(str(problem).splitlines())}
     return {**summarise(trace).to_dict(), **_receptors(trace)}
@@ -137,34 +185,56 @@ def _receptors(trace: Trace) -> dict[str, float | None]:
 
 
 def sweep_file(
-    file: str, vary: Vary, icon: str | None, rig: Rig, tail_s: float, output: Path, figure: Path | None
+    file: str,
+    varied: Sequence[Vary],
+    icon: str | None,
+    rig: Rig,
+    tail_s: float,
+    output: Path,
+    figure: Path | None,
 ) -> None:
-    """Sweep the icons of a file (or the one named); write the table, draw the figure, tell each icon's outcome."""
+    """Sweep the icons of a file (or the one named); write the table, draw the figure, report each icon's outcome."""
     check_output(output, TRACE_SUFFIXES, "a sweep")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     icons = pick(whole := read_set([file]), icon)
     warn_of_site(file, whole, rig)
+    first, *others = varied
+    second = (others[0].key, others[0].values) if others else None
     with progress_bar("sweep") as progress:
-        frame = sweep(icons, rig, vary.key, vary.values, tail_s=tail_s, progress=progress)
+        frame = sweep(icons, rig, first.key, first.values, second=second, tail_s=tail_s, progress=progress)
+    keys, points = [vary.key for vary in varied], "combinations" if others else "values"
     if frame["duration_s"].isna().all():
-        first = frame["reason"].iloc[0]
-        fail(f"--vary {vary.key}: none of its {len(vary.values)} values can be played; the first: {first}")
+        count = math.prod(len(vary.values) for vary in varied)
+        reason = frame["reason"].iloc[0]
+        fail(f"--vary {' and '.join(keys)}: none of the {count} {points} can be played; the first: {reason}")
     if output != STDOUT:
         with complete_or_absent(output) as draft:
             write_frame(frame, draft)
     if figure is not None:
-        from ..figures.sweep_figure import sweep_figure
-
         with complete_or_absent(figure) as draft:
-            sweep_figure(frame, vary.key, log=vary.log).savefig(draft, dpi=130)
-    for line in (*(headline(frame[frame["icon"] == each.name]) for each in icons), *_impossible(frame, vary.key)):
+            _figure(frame, varied).savefig(draft, dpi=130)
+    lines = [headline(frame[frame["icon"] == each.name], points) for each in icons]
+    for line in (*lines, *_impossible(frame, keys)):
         note(line)
     for written in (output, figure):
         if written not in (None, STDOUT):
             note(f"wrote {written}")
     if output == STDOUT:
         typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
+
+
+def _figure(frame: pd.DataFrame, varied: Sequence[Vary]) -> Figure:
+    """Lines over one key, heat maps over two."""
+    if len(varied) == 1:
+        from ..figures.sweep_figure import sweep_figure
+
+        return sweep_figure(frame, varied[0].key, log=varied[0].log)
+    from ..figures.sweep_map import MOST_ROWS, sweep_map
+
+    if (count := frame["icon"].nunique()) > MOST_ROWS:
+        note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
+    return sweep_map(frame, varied[0].key, varied[1].key)
 
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:
@@ -175,17 +245,17 @@ def write_frame(frame: pd.DataFrame, path: Path) -> None:
         frame.to_csv(path, index=False, float_format="%.9g", lineterminator="\n")
 
 
-def headline(rows: pd.DataFrame) -> str:
-    """Say of one icon's rows at how many values it was reached, and how large its misses are."""
+def headline(rows: pd.DataFrame, points: str = "values") -> str:
+    """Report at how many points one icon was reached, and how large its misses are."""
     ran = rows[rows["duration_s"].notna()]
     judged = ran[ran["reached"].notna()]
     if len(judged):
         miss = judged["largest_miss_K"].abs()
         low, high = float(miss.min()), float(miss.max())
-        said = "everywhere within 1 mK" if high < 1e-3 else f"largest miss {span(low, high, 'K', 3)}"
-        parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} values", said]
+        miss_text = "everywhere within 1 mK" if high < 1e-3 else f"largest miss {span(low, high, 'K', 3)}"
+        parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} {points}", miss_text]
     else:
-        parts = [f"played at {len(ran)} of {len(rows)} values"]
+        parts = [f"played at {len(ran)} of {len(rows)} {points}"]
     if unsafe := int((~ran["safe"]).sum()):
         parts.append(f"NOT SAFE at {unsafe}")
     if len(ran) < len(rows):
@@ -193,7 +263,10 @@ def headline(rows: pd.DataFrame) -> str:
     return f"{rows['icon'].iloc[0]}: {', '.join(parts)}"
 
 
-def _impossible(frame: pd.DataFrame, key: str) -> list[str]:
-    """Return the first reason for which a value could not be played, as a line; none where all could."""
+def _impossible(frame: pd.DataFrame, keys: Sequence[str]) -> list[str]:
+    """Return the first reason why a point could not be played, as a line; none where all could."""
     lost = frame[frame["duration_s"].isna()]
-    return [f"impossible, as at {key} = {row[key]:g}: {row['reason']}" for _, row in lost[:1].iterrows()]
+    return [
+        f"impossible, as at {', '.join(f'{key} = {row[key]:g}' for key in keys)}: {row['reason']}"
+        for _, row in lost[:1].iterrows()
+    ]

@@ -1,15 +1,19 @@
-"""The commands about icons as text: ``convert``, ``cite`` and ``explain``. They are put on the program in ``cli``."""
+"""The commands about icons as text: ``convert``, ``cite`` and ``explain``; ``main`` registers them."""
 
 from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..text.messages import check_changes, load_rig, usage
+from .cues import read_set, warn_of_site
 from .options import Changes, IconName, OneFile
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
 
 CONTROLS = ("skin", "display")
 
@@ -17,12 +21,15 @@ CONTROLS = ("skin", "display")
 def convert_command(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue, .json or .csv file, or a shipped set.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", metavar="OUT", readable=False, help="The file: .cue, .json or .hjif.")
+        Path,
+        typer.Option("-o", "--output", metavar="OUT", readable=False, help="The file to write: .cue, .json or .hjif."),
     ],
     icon: IconName = None,
     tolerance: Annotated[
         float | None,
-        typer.Option("--tolerance", metavar="K", help="For .csv: how far the icon may lie from the recording."),
+        typer.Option(
+            "--tolerance", metavar="K", help="For .csv: largest deviation of the icon from the recording, in K."
+        ),
     ] = None,
     name: Annotated[str | None, typer.Option("--name", metavar="NAME", help="For .csv: the name of the icon.")] = None,
     column: Annotated[
@@ -30,12 +37,16 @@ def convert_command(
     ] = None,
     control: Annotated[
         str | None,
-        typer.Option("--control", metavar="|".join(CONTROLS), help="For .csv: what the temperatures are those of."),
+        typer.Option(
+            "--control",
+            metavar="|".join(CONTROLS),
+            help="For .csv: whether skin or display temperatures were recorded.",
+        ),
     ] = None,
 ) -> None:
-    """Write icons as another kind of file, by its ending: .cue, .json, or .hjif (MPEG haptics, experimental).
+    """Convert icons to another file format, given by the ending: .cue, .json, or .hjif (MPEG haptics, experimental).
 
-    JSON is lossless but for comments. A recording (.csv) becomes an icon of few straight pieces.
+    JSON keeps everything except comments. A recording (.csv) becomes an icon of a few straight pieces.
     """
     if not file.lower().endswith(".csv"):
         for option, value in (
@@ -45,11 +56,11 @@ def convert_command(
             ("--control", control),
         ):
             if value is not None:
-                raise usage("belongs to a recording, a .csv file", option)
+                raise usage("applies only to a recording, a .csv file", option)
     if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
         raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
     if control is not None and control not in CONTROLS:
-        raise usage(f"{control!r} is none of {', '.join(CONTROLS)}", "--control")
+        raise usage(f"{control!r} is not one of {', '.join(CONTROLS)}", "--control")
     from .convert import Recording, convert_file
 
     convert_file(file, output, icon, Recording(tolerance, name, column, control))
@@ -57,25 +68,36 @@ def convert_command(
 
 def cite_command(
     file: OneFile,
-    bibtex: Annotated[bool, typer.Option("--bibtex", help="BibTeX entries for the sources instead.")] = False,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="Print BibTeX entries of the sources instead.")] = False,
     rig: Annotated[
         str | None, typer.Option("--rig", metavar="RIG", help="Also describe this rig in the paragraph.")
     ] = None,
     changes: Changes = None,
 ) -> None:
-    """Print a paragraph for the methods of a paper, or with --bibtex the entries of the sources that the icons name."""
+    """Print a paragraph for the methods section of a paper, or the BibTeX entries of the icons' sources."""
     check_changes(changes or [])
     if bibtex and (rig is not None or changes):
-        raise usage("describes a rig in the paragraph; BibTeX entries have no rig", "--rig" if rig else "--set")
-    from .cite import cite_file
-
+        raise usage("applies to the paragraph; BibTeX entries do not describe a rig", "--rig" if rig else "--set")
     cite_file(file, bibtex, load_rig(rig, changes or []) if rig is not None or changes else None)
+
+
+def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:
+    """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
+    from thermicon.icons.papers.cite import bibtex, methods
+
+    icons = read_set([file])
+    if as_bibtex:
+        typer.echo(bibtex(icons), nl=False)
+        return
+    if rig is not None:
+        warn_of_site(file, icons, rig)
+    typer.echo(methods(icons, None if rig is None else rig.about()))
 
 
 def explain_command(
     code: Annotated[str, typer.Argument(metavar="CODE", help="The code of an error, such as E102, or its title.")],
 ) -> None:
-    """Explain an error of cue files: what it means, an example of it, and the same put right."""
+    """Explain an error in a cue file: its meaning, an example, and the corrected example."""
     from thermicon.icons.files.catalogue import explain
 
     try:

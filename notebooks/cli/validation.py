@@ -1,4 +1,4 @@
-"""``thermicon validate``: every published target, predicted beside reported, as a table or as a report in a folder."""
+"""``thermicon validate``: predicted and published results side by side, as a table or as a report in a folder."""
 
 from __future__ import annotations
 
@@ -27,18 +27,21 @@ PAGE, TEXT, DATA, FIGURES = "validation.html", "validation.md", "validation.json
 def validate_command(
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Write the whole report into this folder."),
+        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Write the whole report to this folder."),
     ] = None,
-    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people.")] = 200,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people.")] = 200,
     draws: Annotated[
-        int, typer.Option("--draws", metavar="N", help="Observers drawn for intervals and trade-offs; 0: none.")
+        int,
+        typer.Option(
+            "--draws", metavar="N", help="Number of observers drawn for intervals and trade-offs; 0 for none."
+        ),
     ] = 64,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
 ) -> None:
-    """Predict every published result that the model was not set on, and show the misses with their size.
+    """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
-    Without -o a table is printed. With -o validation.html, validation.md with its figures, and validation.json are
-    written, from temperature and from heat flow side by side.
+    Without -o, a table is printed. With -o, validation.html, validation.md with its figures, and validation.json are
+    written, with predictions from temperature and from heat flow side by side.
     """
     for option, value, least, most in (
         ("--people", people, 2, 2000),
@@ -48,12 +51,12 @@ def validate_command(
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if draws == 1:
-        raise usage("1 draw has no interval; ask for 2 or more, or 0 for none", "--draws")
+        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if output is not None:
         check_folder(output)
     from thermicon.perception.validation.validate import validate
 
-    from ..text.progress import progress_bar
+    from ..text.messages import progress_bar
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
@@ -66,7 +69,7 @@ def validate_command(
 
 
 def show_report(report: ValidationReport) -> None:
-    """Print every number, published and predicted, and how many hold."""
+    """Print every number, published and predicted, and how many agree."""
     from thermicon.perception.observer.variants import VARIANTS
 
     from ..pages.validation_page import NAMES, number_text, unit_text
@@ -84,20 +87,20 @@ def show_report(report: ValidationReport) -> None:
     counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors that go by temperature; flow: by heat flow; R&dD: impulses of Ring & de Dear. Predictions, "
-        "not measurements; no parameter was set on these results. -o DIR writes sources, intervals, sizes of the "
-        "misses, mechanisms suspected and figures.",
+        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
+        "predictions, not measurements; no parameter was fitted to these results. -o DIR writes sources, intervals, "
+        "sizes of the misses, suspected mechanisms and figures.",
     )
 
 
 def write_report(report: ValidationReport, folder: Path) -> None:
-    """Write the report; nothing is left behind unless all of it is there, and an older report is replaced as a whole.
+    """Write the report completely or not at all; an older report is replaced as a whole.
 
     Raises `OutputError` where the folder cannot be written.
     """
     from thermicon.perception.validation.validate_file import report_file
 
-    from ..pages.pages import as_html, as_markdown
+    from ..pages.blocks import as_html, as_markdown
     from ..pages.validation_page import TITLE, page
 
     blocks, pictures = page(report), draw_pictures(report)

@@ -23,7 +23,7 @@ LARGEST = 2**30
 
 
 def verify_folder(folder: Path) -> None:
-    """Check the files of an export folder and show what belongs together; leaves with 1 where something does not."""
+    """Check the files of an export folder and show which belong together; exit code 1 if some do not."""
     from thermicon.circuit.packing.verify import verify
 
     files, others = _read(folder)
@@ -31,7 +31,7 @@ def verify_folder(folder: Path) -> None:
     if found.pairs:
         _show(found)
     for name, what in others:
-        note(f"note: {_clean(name)} is a {what} and is not looked into")
+        note(f"note: {_clean(name)} is a {what} and was not checked")
     for finding in found.findings:
         if finding.kind == "told":
             note(f"note: {_clean(str(finding))}")

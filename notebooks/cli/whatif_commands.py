@@ -1,16 +1,21 @@
-"""The commands that ask what if: ``netlist``, ``sweep``, ``compare``, ``sensitivity``; ``cli`` puts them in place."""
+"""The commands for studies of a rig: ``netlist``, ``sweep``, ``compare``, ``sensitivity``; ``main`` registers them."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..text.messages import check_changes, load_rig, usage
+from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_output, complete_or_absent
+from ..text.messages import check_changes, load_rig, note, usage
+from .cues import only, read_set, warn_of_site
 from .options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
-METHODS = ("sobol", "morris")
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+METHODS = ("sobol",)
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
@@ -18,35 +23,80 @@ def netlist_command(
     file: OneFile,
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="OUT.cir", readable=False, help="The netlist, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.cir",
+            readable=False,
+            help="Write the netlist to a .cir, .net or .sp file, or - for stdout.",
+        ),
     ],
     icon: IconName = None,
     tail: Tail = 0.0,
     record: Annotated[
         str | None,
-        typer.Option("--ngspice", metavar="OUT.txt", help="Have ngspice -b write all probes there; not for LTspice."),
+        typer.Option(
+            "--ngspice", metavar="OUT.txt", help="Make ngspice -b write all probes to this file; not for LTspice."
+        ),
     ] = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Write driver, module and skin as a circuit that LTspice and ngspice read, with the current that plays an icon."""
+    """Write driver, module and skin as a SPICE netlist for LTspice and ngspice, driven by the current of an icon."""
     check_changes(changes or [])
     check_tail(tail)
-    from .netlist import netlist_file
-
     netlist_file(file, icon, load_rig(rig, changes or []), tail, output, record)
+
+
+def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path, record: str | None) -> None:
+    """Write the circuit of a rig that plays an icon; with ``record``, ngspice writes all probes into that file."""
+    from thermicon.circuit import netlist, simulate
+    from thermicon.circuit.solver.inverse import design
+
+    from .simulate import headline
+
+    check_output(output, NETLIST_SUFFIXES, "a netlist")
+    icons = read_set([file])
+    played = only(icons, icon, file)
+    warn_of_site(file, icons, rig)
+    trace = simulate(played, rig, tail_s=tail_s)
+    plan = design(played, rig, float(trace.time_s[-1]))
+    title = f"{played.name} of {Path(file).name}"
+    text = netlist(rig, plan.drive, rest_A=plan.rest_A, title=title, out_file=record)
+    if output == STDOUT:
+        typer.echo(text, nl=False)
+    else:
+        with complete_or_absent(output) as draft:
+            draft.write_text(text, encoding="ascii", newline="\n")
+    note(headline(trace))
+    if output != STDOUT:
+        note(f"wrote {output}; {_how_to_run(output, record)}")
+
+
+def _how_to_run(output: Path, record: str | None) -> str:
+    if record is not None:
+        return f"ngspice -b {output.name} writes the probes into {record}"
+    return f"open it in LTspice, or run ngspice -b -r {output.stem}.raw {output.name}"
 
 
 def sweep_command(
     file: OneFile,
     vary: Annotated[
-        str,
-        typer.Option("--vary", metavar="KEY=LOW:HIGH:N", help="A key of the rig and N values; Nlog: in equal ratios."),
+        list[str],
+        typer.Option(
+            "--vary",
+            metavar="KEY=LOW:HIGH:N",
+            help="A key of the rig and N values from LOW to HIGH; Nlog for equal ratios. Give it twice for a grid.",
+        ),
     ],
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", metavar="OUT", readable=False, help="The table: .csv, .parquet, or - for stdout."
+            "-o",
+            "--output",
+            metavar="OUT",
+            readable=False,
+            help="Write the table to a .csv or .parquet file, or - for stdout.",
         ),
     ],
     icon: IconName = None,
@@ -55,73 +105,79 @@ def sweep_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Vary one key of the rig and write what every icon then does: misses, extremes, what receptors see, safety."""
+    """Vary one or two keys of the rig and write, for every icon, misses, extremes, receptor changes and safety.
+
+    Two keys make a grid: every combination of their values is played, and the table has one row per icon and
+    combination. Values are in the unit that the key ends with.
+    """
     check_changes(changes or [])
     check_tail(tail)
-    from .sweep import read_vary, sweep_file
+    from .sweep import read_varied, sweep_file
 
-    asked = read_vary(vary)
-    sweep_file(file, asked, icon, load_rig(rig, changes or []), tail, output, figure)
+    sweep_file(file, read_varied(vary), icon, load_rig(rig, changes or []), tail, output, figure)
 
 
 def compare_command(
-    first: Annotated[str, typer.Argument(metavar="A", help="A rig, FILE:ICON, a set, or a trace or log.")],
-    second: Annotated[str, typer.Argument(metavar="B", help="The same kind of thing.")],
+    first: Annotated[str, typer.Argument(metavar="A", help="A rig, FILE:ICON, a set, a trace or a log.")],
+    second: Annotated[str, typer.Argument(metavar="B", help="A second one of the same kind.")],
     file: Annotated[
         str | None,
-        typer.Option("--file", metavar="FILE", help="For two rigs: the icons to play.  [default: six-icons, one icon]"),
+        typer.Option(
+            "--file", metavar="FILE", help="For two rigs: the icons to play.  [default: one icon of six-icons]"
+        ),
     ] = None,
     icon: IconName = None,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Compare two rigs, two icons, two sets, or a trace and a measured log: a table of differences, B minus A.
+    """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
     .csv or .parquet files with time_s and columns of a trace.
     """
     check_changes(changes or [])
     from .compare import compare
-    from .sides import Request
+    from .compare_inputs import Request
 
     compare(first, second, Request(file, icon, rig, tuple(changes or ())), figure)
 
 
 def sensitivity_command(
     file: OneFile,
-    people: Annotated[int, typer.Option("--people", metavar="N", help="Virtual people of every run.")] = 24,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of people and draws.")] = 0,
+    people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people in each run.")] = 24,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
     method: Annotated[
         str,
-        typer.Option("--method", metavar="|".join(METHODS), help="Shares of variance, or effects by SALib."),
+        typer.Option("--method", metavar="|".join(METHODS), help="Total Sobol indices: shares of the variance."),
     ] = "sobol",
-    samples: Annotated[
-        int | None,
-        typer.Option(
-            "--samples", metavar="N", help="Base samples, a power of 2, or trajectories.  [default: 64; 16 for morris]"
-        ),
-    ] = None,
+    samples: Annotated[int, typer.Option("--samples", metavar="N", help="Base samples, a power of 2.")] = 64,
     norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="OUT.csv", readable=False, help="The table, or - for stdout."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="OUT.csv",
+            readable=False,
+            help="Write the table to a .csv or .parquet file, or - for stdout.",
+        ),
     ] = None,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Tell which uncertain parameters of model, contact and skin move the prediction most: what to measure first."""
+    """Find which uncertain parameters of model, contact and skin change the prediction most: what to measure first."""
     check_changes(changes or [])
-    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples or 2, 2, 65_536))
+    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples, 2, 65_536))
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
     if method not in METHODS:
-        raise usage(f"{method!r} is none of {', '.join(METHODS)}", "--method")
-    if samples is not None and method == "sobol" and samples & (samples - 1):
+        raise usage(f"{method!r} is not one of {', '.join(METHODS)}", "--method")
+    if samples & (samples - 1):
         raise usage(f"{samples} is not a power of 2, which sobol needs, such as 64", "--samples")
     from .sensitivity import Request, sensitivity_file
 
-    request = Request(people=people, seed=seed, method=method, samples=samples, norm=norm)
+    request = Request(people=people, seed=seed, samples=samples, norm=norm)
     sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)

@@ -1,4 +1,4 @@
-"""An export from icons to files, for command line and workbench: delivered, judged, compared, packed, written."""
+"""The export of icons to files, for command line and workbench: simulated, judged, compared, packed and written."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Device, Prepared, Refusal, Rig
     from thermicon.circuit.delivery.formats import Format
     from thermicon.icons import Icon
-    from thermicon.perception import FeltChange
+    from thermicon.perception import PerceivedChange
 
 FORMAT = "csv"
 
@@ -22,29 +22,29 @@ AFTER_S = 10.0
 """How long perception follows every icon after the longest has ended, as ``rank`` does."""
 
 MOST_COMPARED = 60
-"""In a larger set d′ is looked at only among the icons that are exported, and among more than these not at all."""
+"""In a larger set, d′ is computed only among the exported icons; beyond this number, not at all."""
 
 
 @dataclass(frozen=True, slots=True)
-class Ready:
-    """Icons ready to be written or refused: what the device makes of each, and what is felt of the change."""
+class PreparedExport:
+    """Icons ready to be written or refused: what the device delivers, and how that changes perception."""
 
     form: Format
     device: Device
     prepared: tuple[Prepared, ...]
-    felt: tuple[FeltChange, ...] = ()
+    felt: tuple[PerceivedChange, ...] = ()
     warnings: tuple[str, ...] = ()
 
     @property
     def losses(self) -> dict[str, tuple[str, ...]]:
-        """What perception says is lost, by the names of icons."""
+        """Perceptual losses by icon name."""
         return {change.icon: change.losses() for change in self.felt}
 
     @property
     def against(self) -> list[tuple[str, Refusal]]:
-        """Every cause against writing, with the icon that it is about.
+        """Every reason against writing, with its icon.
 
-        What perception loses is reported where nothing else is refused, since it follows from the rest.
+        Perceptual losses are listed only without other reasons, from which they would follow.
         """
         from thermicon.circuit.packing.refusal import Refusal
 
@@ -54,14 +54,14 @@ class Ready:
             felt = self.losses.get(name, ())
             if felt and not causes:
                 more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
-                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device that is finer or faster"),)
+                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device with a finer resolution or a higher rate"),)
             found += [(name, refusal) for refusal in causes]
         return found
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """What an export put into its folder, and which older files went because their sidecars describe new drives."""
+    """Files written by an export, and older files removed because their sidecars describe new drives."""
 
     folder: Path
     names: tuple[str, ...]
@@ -85,7 +85,7 @@ def formats_for(device: Device) -> tuple[str, ...]:
     return tuple(name for name in format_names() if device.driven_by in load_format(name).takes)
 
 
-def ready_of(icon: Icon | None, rig: Rig, device: str | None = None, form: str = FORMAT) -> Ready:
+def prepare_icon(icon: Icon | None, rig: Rig, device: str | None = None, form: str = FORMAT) -> PreparedExport:
     """Deliver and judge one icon; raises ValueError without one, InputError where the device cannot play it."""
     if icon is None:
         raise ValueError("there is no icon to export: the text has errors")
@@ -101,11 +101,11 @@ def prepare_icons(
     step: Callable[[int, int], None] | None = None,
     tail_s: float = 0.0,
     pause_s: float | None = None,
-) -> Ready:
-    """Deliver and judge icons, and compare them beside the ``rest`` of their set; ``step`` is called after each.
+) -> PreparedExport:
+    """Simulate and judge icons, and compare them with each other and the ``rest`` of their set.
 
-    ``tail_s`` is followed after the last corner, ``pause_s`` lies between plays (None: the recovery time).
-    Raises InputError where the device cannot play an icon, or not in this format.
+    ``step`` is called after each icon. ``tail_s`` is simulated after the last corner, ``pause_s`` is the time between
+    plays (None: the recovery time). Raises InputError if the device cannot play an icon, or not in this format.
     """
     from thermicon.circuit import Device
     from thermicon.circuit.delivery.formats import load_format
@@ -116,11 +116,11 @@ def prepare_icons(
     prepared = prepare_set(icons, rig, played, made, tail_s=tail_s, pause_s=pause_s, step=step)
     warned: list[str] = []
     felt = compare_felt(prepared, rest, rig, played, tail_s, warned.append)
-    return Ready(made, played, prepared, felt, tuple(warned))
+    return PreparedExport(made, played, prepared, felt, tuple(warned))
 
 
 def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
-    """The icons of a set that are not exported but compared with; none where the set is large."""
+    """The other icons of the set, which are only compared with; none in a large set."""
     names = {icon.name for icon in chosen}
     left = [icon for icon, _ in zip(whole, range(MOST_COMPARED + 1), strict=False) if icon.name not in names]
     return left if len(left) + len(chosen) <= MOST_COMPARED else []
@@ -133,8 +133,8 @@ def compare_felt(
     device: Device,
     tail_s: float,
     warn: Callable[[str], None],
-) -> tuple[FeltChange, ...]:
-    """What the device changes of the exported icons for a nominal person, beside the others of the set."""
+) -> tuple[PerceivedChange, ...]:
+    """How the device changes the perception of the exported icons by a nominal person, within their set."""
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
@@ -149,7 +149,7 @@ def compare_felt(
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[delivery] for delivery in everyone]
     if len(groups) > 1:
         warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
-    felt: list[FeltChange] = []
+    felt: list[PerceivedChange] = []
     for group in groups:
         traces = [traces_until(delivery, end) for delivery in group]
         names = [delivery.icon.name for delivery in group]
@@ -157,7 +157,9 @@ def compare_felt(
     return tuple(felt[: len(ready)])
 
 
-def write(ready: Ready, folder: Path, overwrite: bool = False, insist: bool = False, how: str = HOW) -> Written:
+def write(
+    ready: PreparedExport, folder: Path, overwrite: bool = False, insist: bool = False, how: str = HOW
+) -> Written:
     """Write drives and sidecars, all or none, and say which.
 
     Raises OutputError where that is refused: what is unsafe always, what is lossy or not reached unless ``insist``,

@@ -36,6 +36,10 @@ def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
         offer = " or ".join(suffixes)
         found = f"not {path.suffix}" if path.suffix else "and this name has no ending"
         raise OutputError(f"cannot write {path}: {what} is written as {offer}, {found}")
+    if path.suffix.lower() == ".parquet":
+        from thermicon.circuit.inputs import require_pyarrow
+
+        require_pyarrow(f"cannot write {path}", OutputError)
     _check_folder(path, path.parent)
     if path.exists() and not os.access(path, os.W_OK):
         raise OutputError(f"cannot write {path}: the file is there already and is read-only")

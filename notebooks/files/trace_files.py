@@ -100,6 +100,9 @@ def _read(path: Path) -> pd.DataFrame:
 
 def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
     """The table of a Parquet file, whose size when unpacked is looked at first."""
+    from thermicon.circuit.inputs import require_pyarrow
+
+    require_pyarrow(path, LogError)
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from ..text.number_text import number, percent
-from .report_page import element, picture, png_of, svg_of
+from .blocks import Block, Code, Heading, Picture, Row, Text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
@@ -19,11 +21,12 @@ MOST_OVERVIEWS = 24
 FEW, LARGE, SMALL = 12, 84, 66
 """Dots an inch of overviews: large for few icons."""
 OVERVIEW_PIXELS = 700
+SALT = "thermicon"
 VECTOR_ICONS = 8
 """Pictures of more icons are pixels, which take less room, and stand below one another."""
 
 
-def view_parts(ranking: Ranking) -> Iterator[str]:
+def view_parts(ranking: Ranking) -> Iterator[Block]:
     """Yield heat maps, perceptual map and places; nothing for one icon or by rules."""
     if ranking.by == "rules" or len(ranking.icons) < 2:
         return
@@ -31,61 +34,59 @@ def view_parts(ranking: Ranking) -> Iterator[str]:
     from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places
 
     vector = len(ranking.icons) <= VECTOR_ICONS
-    yield element("h2", "Pictures of the set")
-    confused = "Rows: the icon presented. Columns: the name it is answered with. Icons that are near are side by side."
+    yield Heading("Pictures of the set")
+    confused = "Rows: the icon presented. Columns: the response. Similar icons are adjacent."
     maps = (
         _drawn(plot_confusion(ranking), "confusions between the icons, per cent", confused, vector),
         _drawn(
             plot_distance(ranking),
             "d′ of every pair",
-            "Median over people of the d′ by which two icons differ.",
+            "Median over people of the d′ between two icons.",
             vector,
         ),
     )
-    yield f'<div class="pair">{"".join(maps)}</div>' if vector else "".join(maps)
+    yield from (Row(maps),) if vector else maps
     found = map_of(ranking)
     bent = (
-        f"Distances in the plane are as near to d′ as a plane allows (stress {found.stress:.2f}; 0: exactly). Only "
-        "distances count: directions have no meaning."
+        f"Distances in the plane approach d′ (stress {found.stress:.2f}; 0: exact). Only distances matter; directions "
+        "have no meaning."
     )
     if found.covariance is not None:
-        bent += (
-            f" An ellipse holds half of {found.people} people, whose own maps were turned and shifted onto this one."
-        )
+        bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
     yield _drawn(plot_map(found), "the icons as points of a plane", bent, vector)
     if ranking.spread is not None and ranking.people > 1:
-        places = "Each person ranks the icons by how often each is named correctly; equal ones share their places."
+        places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
         yield _drawn(plot_places(ranking), "probability of each place for each icon", places, vector)
 
 
-def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> str:
+def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> Picture:
     figure: Any = axes.figure
     width = round(96 * figure.get_figwidth())
     if not vector:
-        return picture(png_of(figure, 120), "png", said, caption, width)
-    return picture(svg_of(figure), "svg+xml", said, caption, width)
+        return Picture("", caption, said, "png", width, png_of(figure, 120))
+    return Picture("", caption, said, "svg+xml", width, svg_of(figure))
 
 
-def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[str]:
+def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
     """Yield every icon: what it scores, its cue text, its course and an overview of its run."""
     from thermicon.icons.pictures.picture import picture as drawn
 
     members = list(icons)
-    yield element("h2", "Icons")
+    yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
-        yield element("p", f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes those of all.")
+        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes all of them.")
     for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
-        yield element("h3", icon.name)
+        yield Heading(icon.name, 3)
         facts = [
-            f"{percent(score['percent_correct'])} correct",
+            f"{percent(score['proportion_correct'])} correct",
             f"detected by {percent(score['detected_probability'])}",
         ]
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
         said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]
-        yield element("p", "; ".join(said) + ".", "lead")
+        yield Text("; ".join(said) + ".", "lead")
         small = drawn(icon).encode("utf-8")
-        yield '<div class="pair">' + element("pre", cue_text(icon))
-        yield picture(small, "svg+xml", f"prescribed course of {icon.name}", "", 320) + "</div>"
+        course = Picture("", "", f"prescribed course of {icon.name}", "svg+xml", 320, small)
+        yield Row((Code(cue_text(icon)), course))
         if place < MOST_OVERVIEWS:
             yield _overview(icon, rig, len(members))
 
@@ -96,7 +97,7 @@ def cue_text(icon: Icon) -> str:
     return text[text.find("\nicon ") + 1 :].rstrip("\n")
 
 
-def _overview(icon: Icon, rig: Rig, count: int) -> str:
+def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
     from thermicon.circuit import simulate
     from thermicon.perception import perceive
 
@@ -105,4 +106,27 @@ def _overview(icon: Icon, rig: Rig, count: int) -> str:
 
     trace = on_one_clock(simulate(icon, rig, tail_s=FELT_TAIL_S))
     data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
-    return picture(data, "png", f"temperatures, heat flow, current and sensation of {icon.name}", "", OVERVIEW_PIXELS)
+    alt = f"temperatures, heat flow, current and sensation of {icon.name}"
+    return Picture("", "", alt, "png", OVERVIEW_PIXELS, data)
+
+
+def svg_of(figure: Figure) -> bytes:
+    """A figure as SVG, the same bytes every time: no date, and names drawn from a fixed salt."""
+    import matplotlib
+
+    held = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": SALT, "svg.fonttype": "path"}):
+        figure.savefig(held, format="svg", metadata={"Date": None})
+    return held.getvalue()
+
+
+def png_of(figure: Figure, dpi: float, colours: int = 64) -> bytes:
+    """A figure as a small PNG of few colours."""
+    from PIL import Image
+
+    held, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(held, format="png", dpi=dpi)
+    held.seek(0)
+    with Image.open(held) as image:
+        image.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(small, format="png", optimize=True)
+    return small.getvalue()

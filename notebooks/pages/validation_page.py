@@ -10,13 +10,13 @@ from thermicon.perception.validation.validate import Judged, Line, Section, Vali
 from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF
 from thermicon.perception.validation.verdicts import criterion_of_row, plain, value_text
 
-from .pages import Block, Bullets, Cell, Grid, Heading, Picture, Text
+from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Picture, Text
 
 TITLE = "Validation: predicted beside published"
 NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
 
 
-def page(report: ValidationReport) -> list[Block]:
+def page(report: ValidationReport) -> list[MarkdownBlock]:
     """Every block of the page, the table of targets first."""
     return [*_head(report), *_better(report), *(b for s in report.sections for b in _section(s)), *_trades(report)]
 
@@ -65,7 +65,7 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
     return rows
 
 
-def _head(report: ValidationReport) -> Iterator[Block]:
+def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading(TITLE, 1)
     yield Text(
         "Every number here is a prediction, set against a published result that was not used to set the model. The "
@@ -85,7 +85,7 @@ def _head(report: ValidationReport) -> Iterator[Block]:
     )
 
 
-def _better(report: ValidationReport) -> Iterator[Block]:
+def _better(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading("Temperature or heat flow: which does better where")
     named = [(f"{s.target.number} {line.row.label}", line) for s in report.sections for line in s.lines]
     found = {name: line.nearer for name, line in named if line.nearer}
@@ -113,7 +113,7 @@ def _better(report: ValidationReport) -> Iterator[Block]:
     yield Grid(("number", "published", *NAMES[:2], "better"), tuple(rows))
 
 
-def _section(section: Section) -> Iterator[Block]:
+def _section(section: Section) -> Iterator[MarkdownBlock]:
     target = section.target
     yield Heading(f"{target.number} {target.title}")
     yield Text(f"{target.asks} Published: {target.source}.")
@@ -136,7 +136,7 @@ def _section(section: Section) -> Iterator[Block]:
     yield Bullets(tuple(_conditions(section)))
 
 
-def _trades(report: ValidationReport) -> Iterator[Block]:
+def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading("Trade-offs")
     if report.draws < FEWEST:
         yield Text(f"Too few draws to tell ({report.draws}; {FEWEST} are needed).")

@@ -1,1 +1,1 @@
-"""What the command line prints: messages, numbers, tables, sentences."""
+"""Text for people: messages, numbers, tables and sentences."""

@@ -1,4 +1,4 @@
-"""Options that ask for the best few icons of a set, and how the choice is told."""
+"""Options for choosing the best few icons of a set, and the text of the choice."""
 
 from __future__ import annotations
 
@@ -9,108 +9,107 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .messages import usage
-from .number_text import number, percent
+from .number_text import number, percent, percent_span
 
 if TYPE_CHECKING:
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
 OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
 MOST_EXCLUDED = 5
 ONE_BY_ONE = 50
 
-ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K of the icons.")]
+ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K icons.")]
 ObjectiveName = Annotated[
     str | None,
     typer.Option(
         "--objective",
         metavar="NAME",
-        help="What to choose by: worst (pair), correct, bits, bits-per-s.  [default: worst]",
+        help="Criterion of the choice: worst (pair), correct, bits or bits-per-s.  [default: worst]",
     ),
 ]
 Must = Annotated[
-    list[str] | None, typer.Option("--must", metavar="ICON", help="An icon to have among the chosen; may be repeated.")
+    list[str] | None,
+    typer.Option("--must", metavar="ICON", help="An icon that must be chosen; may be given several times."),
 ]
 MostTime = Annotated[
-    float | None, typer.Option("--most-time", metavar="S", help="The chosen last at most so many seconds together.")
+    float | None, typer.Option("--most-time", metavar="S", help="Longest total duration of the chosen icons, in s.")
 ]
 MostEnergy = Annotated[
-    float | None, typer.Option("--most-energy", metavar="J", help="They take at most so many joules together.")
+    float | None,
+    typer.Option("--most-energy", metavar="J", help="Largest total electrical energy of the chosen icons, in J."),
 ]
 
 
 def chosen_as(
     count: int | None, objective: str | None, must: Sequence[str] | None, most_s: float | None, most_J: float | None
-) -> Choosing | None:
-    """Check the options of a choice; None where none is asked for."""
+) -> Selection | None:
+    """Check the options of a choice; None without one."""
     others = (("--objective", objective), ("--must", must), ("--most-time", most_s), ("--most-energy", most_J))
     if count is None:
         for option, value in others:
             if value:
-                raise usage("belongs to --choose K, which asks for the best K icons", option)
+                raise usage("needs --choose K, which chooses the best K icons", option)
         return None
     if count < 2:
-        raise usage(f"{count} cannot be told apart; choose 2 icons or more", "--choose")
+        raise usage(f"a choice of {count} has no pair to compare; choose 2 icons or more", "--choose")
     if objective is not None and objective not in OBJECTIVES:
         raise usage(f"{objective!r} is none of {', '.join(OBJECTIVES)}", "--objective")
     for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
         if most is not None and not (math.isfinite(most) and most > 0):
             raise usage(f"{most:g} {unit} is not above 0", option)
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
-    return Choosing(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
+    return Selection(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
 
 
 def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
-    """Say what was chosen, how sure that is, what it is worth on its own, and what could not be chosen.
+    """Report what was chosen, how certain that is, its scores as a set of its own, and the excluded icons.
 
     >>> scored("worst", 2.449), scored("correct", 0.914), scored("bits-per-s", 0.3)
     ('d′ 2.4 in the worst pair', '91 % correct', '0.30 bits/s')
     """
     objective, count = chosen["objective"], len(chosen["icons"])
     yield f"Best {count} of {chosen['pool']}, by {NAMES[objective]}: {', '.join(chosen['icons'])}"
-    told = f"  - at the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"
+    score = f"  - within the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"
     if objective == "worst":
-        told += f" ({' and '.join(chosen['worst_pair'])})"
-    yield told
+        score += f" ({' and '.join(chosen['worst_pair'])})"
+    yield score
     if chosen["optimal"]:
         yield f"  - no other choice is better: {_searched(chosen)}"
     else:
         yield (
-            f"  - the best found; no choice exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
-            f"({chosen['looked_at']} choices looked at)"
+            f"  - the best choice found; none exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
+            f"({chosen['looked_at']} choices examined)"
         )
     own = chosen["at_own_range"]
     yield (
-        f"  - at their own range: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
-        f"{scored('correct', own['percent_correct'])}, {scored('bits', own['information_bits'])}, "
+        f"  - as a set of their own: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
+        f"{scored('correct', own['proportion_correct'])}, {scored('bits', own['information_bits'])}, "
         f"{scored('bits-per-s', own['bits_per_s'])}"
     )
-    if own["percent_correct_parameter_interval"]:
-        low, high = own["percent_correct_parameter_interval"]
+    if own["proportion_correct_parameter_interval"]:
+        low, high = own["proportion_correct_parameter_interval"]
         least, most = own["information_bits_parameter_interval"]
-        yield (
-            f"  - over the range of the model's parameters {percent(low)} to {percent(high)} correct, "
-            f"{least:.2f} to {most:.2f} bits"
-        )
-    energy = "" if chosen["total_J"] is None else f" and take {number(chosen['total_J'])} J"
-    yield f"  - together they last {number(chosen['total_s'])} s{energy}"
+        yield (f"  - model uncertainty (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
+    energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
+    yield f"  - total duration {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:
-        asked = min(chosen["people"], ONE_BY_ONE)
+        people = min(chosen["people"], ONE_BY_ONE)
         yield (
-            f"  - it is also the best choice for {percent(chosen['best_for_people'])} of {asked} people "
-            f"taken one by one; in the middle, one made for the person alone would gain d′ {chosen['median_loss']:.2f}"
+            f"  - also the best choice for {percent(chosen['best_for_people'])} of {people} individual people; "
+            f"a choice for one person alone would gain d′ {chosen['median_loss']:.2f} (median)"
         )
-    for one in chosen["excluded"][:MOST_EXCLUDED]:
-        yield f"  - left out: {one['icon']} {one['reason']}"
+    for icon in chosen["excluded"][:MOST_EXCLUDED]:
+        yield f"  - excluded: {icon['icon']} {icon['reason']}"
     if len(chosen["excluded"]) > MOST_EXCLUDED:
-        yield f"  - and {len(chosen['excluded']) - MOST_EXCLUDED} more left out, all of them in --json"
+        yield f"  - and {len(chosen['excluded']) - MOST_EXCLUDED} more excluded; --json lists all"
 
 
-NAMES = {"worst": "the worst pair", "correct": "per cent correct", "bits": "bits", "bits-per-s": "bits a second"}
+NAMES = {"worst": "the worst pair", "correct": "proportion correct", "bits": "bits", "bits-per-s": "bits per second"}
 
 
 def scored(objective: str, value: float) -> str:
-    """Write the value of an objective with what it is."""
+    """Write the value of an objective with its meaning."""
     if objective == "worst":
         return f"d′ {number(value)} in the worst pair"
     if objective == "correct":
@@ -120,5 +119,6 @@ def scored(objective: str, value: float) -> str:
 
 def _searched(chosen: dict[str, Any]) -> str:
     if chosen["objective"] == "worst":
-        return f"proven by branch and bound ({chosen['looked_at']} branches)"
+        count = chosen["looked_at"]
+        return f"proven by integer programming ({'1 program' if count == 1 else f'{count} programs'})"
     return f"all {chosen['looked_at']} were looked at, with {chosen['people']} people"

@@ -34,8 +34,8 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import load_library
-    >>> from thermicon.notebooks.files.exporting import ready_of
-    >>> ready = ready_of(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
+    >>> from thermicon.notebooks.files.exporting import prepare_icon
+    >>> ready = prepare_icon(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
     >>> [about for about, _ in gate_words(ready.prepared)]
     ['played again and again', 'the hardware must provide']
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import typer
@@ -14,6 +14,8 @@ from thermicon.icons.model.cleaning import clean, clean_line
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+
+Progress = Callable[[int, int], None]
 
 BAD_INPUT = 1
 REFUSED = 3
@@ -86,3 +88,20 @@ def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
     for warning in rig.warnings:
         note(f"warning: {warning}")
     return rig
+
+
+@contextlib.contextmanager
+def progress_bar(what: str) -> Iterator[Progress | None]:
+    """Give a function of (done, total) that draws a bar, or None when stderr is not a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format="{desc}: {bar} {n_fmt}/{total_fmt}") as bar:
+
+        def advance(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield advance

@@ -36,6 +36,16 @@ def percent(proportion: float | None) -> str:
     return "–" if proportion is None else f"{100 * proportion:.0f} %"
 
 
+def percent_span(low: float, high: float) -> str:
+    """Write a range of proportions as per cent.
+
+    >>> percent_span(0.76, 0.98), percent_span(1.0, 1.0)
+    ('76–98 %', '100 %')
+    """
+    ends = [f"{100 * end:.0f}" for end in (low, high)]
+    return f"{ends[0]} %" if ends[0] == ends[1] else f"{ends[0]}–{ends[1]} %"
+
+
 def seconds(value: float | None) -> str:
     """Write a time to a hundredth of a second; a dash where there is none.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import typer
 
@@ -13,22 +13,39 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-def show(*parts: object) -> None:
+WIDEST = 1000
+
+
+def show(*parts: Table | str) -> None:
     """Print tables and lines on stdout; colours only on a terminal, never markup taken from people's text."""
     from rich.console import Console
 
-    plain = Console(markup=False, highlight=False, emoji=False)
+    terminal = Console()
     for part in parts:
-        console = plain
-        if not isinstance(part, str) and not plain.is_terminal:
-            # A pipe has no width: names stay whole there, as a script expects.
-            wanted = cast("Table", part)
-            least = Console(width=1000).measure(wanted).minimum + 2 * len(wanted.columns)  # rich forgets the gaps
-            console = Console(markup=False, highlight=False, emoji=False, width=max(plain.width, least))
-        with console.capture() as captured:
-            console.print(hanging(part, plain.width) if isinstance(part, str) else part)
-        for line in captured.get().splitlines():
-            typer.echo(line.rstrip())
+        for line in rendered(part, terminal.width, terminal.is_terminal):
+            typer.echo(line)
+
+
+def rendered(part: Table | str, width: int, is_terminal: bool = True) -> list[str]:
+    """Return the lines of a table or a text at this width.
+
+    Names and headings stay whole: in a pipe, which has no width, the table gets as wide as they need; on a narrow
+    terminal they are wrapped, and no letter is lost.
+    """
+    from rich.console import Console
+
+    if not isinstance(part, str):
+        least = Console(width=WIDEST).measure(part).minimum + 2 * len(part.columns)  # rich leaves out the gaps
+        if not is_terminal:
+            width = max(width, least)
+        elif least > width:
+            part.collapse_padding = True
+            for column in part.columns:
+                column.no_wrap = False
+    console = Console(markup=False, highlight=False, emoji=False, width=width, force_terminal=is_terminal or None)
+    with console.capture() as captured:
+        console.print(hanging(part, width) if isinstance(part, str) else part)
+    return [line.rstrip() for line in captured.get().splitlines()]
 
 
 def hanging(text: str, width: int) -> str:
@@ -44,7 +61,7 @@ def hanging(text: str, width: int) -> str:
 
 
 def table(*columns: str, numbers: Sequence[str] = (), names: Sequence[str] = ()) -> Table:
-    """Make an empty table with these columns; those in ``numbers`` are set flush right, ``names`` are never broken."""
+    """Make an empty table with these columns; ``numbers`` are flush right, ``names`` wrap only on a narrow terminal."""
     from rich import box
     from rich.table import Table
 

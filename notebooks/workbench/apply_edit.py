@@ -30,7 +30,7 @@ def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     family writes the icon, or where the edit is more than one number or repeat.
 
     >>> from thermicon.icons import parse
-    >>> from thermicon.perception.selection.numbers import numbers_of, with_number
+    >>> from thermicon.perception.selection.icon_numbers import numbers_of, with_number
     >>> text = "cue 1\\nicon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s } # deep"
     >>> icon = parse(text)["dip"]
     >>> with_edit(text, with_number(icon, numbers_of(icon, 32.0)[0], 6.5), "cool by 6 …", "cool by 6.5 …")
@@ -58,7 +58,7 @@ def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
         made = _repeated(text, icon, first.count)
         if made is not None:
             yield made
-    edits = list(_numbers(text, icon.statements, edited.statements, icon.frame.control))
+    edits = list(_numbers(text, icon.statements, edited.statements, icon.context.control))
     if len(edits) == 1:  # more than one: the text is not the one that the edit was found for
         yield replaced(text, dict(edits))
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from thermicon.icons import CueError
 
 MOST_NAMES = 200
-"""Names that a list of icons shows; a family may have a million members."""
+"""Names that a list of icons shows; a family may have 100,000 members."""
 KEPT = 16
 
 

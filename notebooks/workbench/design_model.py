@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .cue_check import mended
 from .dragging import drag
-from .frames import Frame, frame_of
+from .frames import CanvasFrame, frame_of
 from .history import Edited, History
 from .knobs import apply, knobs_of
 from .scene import Scene, scene, with_notes
@@ -30,13 +30,13 @@ class _Drag:
     text: str
 
 
-class Designing:
+class DesignModel:
     """Text, icon, knobs and history of one workbench, and the scene that they make.
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
 
     >>> from thermicon.circuit import Rig
-    >>> made = Designing("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
+    >>> made = DesignModel("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
     >>> made.receive({"type": "text", "seq": 1, "text": "cue 1; icon dip { cool by 6 at 3 K/s }"}).meta["stale"]
     True
     >>> made.receive({"type": "undo", "seq": 2}).meta["text"]
@@ -67,12 +67,12 @@ class Designing:
         """Call a function after each message that changed text or rig."""
         self._tell.append(tell)
 
-    def receive(self, message: Message) -> Frame:
+    def receive(self, message: Message) -> CanvasFrame:
         """Answer a message of the page with the newest frame."""
         seq = message.get("seq", 0)
         return self._answer(lambda: self._act(message), seq if isinstance(seq, int) else 0)
 
-    def turn(self, values: Mapping[str, float | str]) -> Frame:
+    def turn(self, values: Mapping[str, float | str]) -> CanvasFrame:
         """Set knobs, by key; the others stay where they are."""
 
         def act() -> None:
@@ -80,19 +80,19 @@ class Designing:
 
         return self._answer(act)
 
-    def reset(self) -> Frame:
+    def reset(self) -> CanvasFrame:
         """Bring all knobs back to the rig's own values."""
         return self._answer(lambda: self._set({}))
 
-    def show_text(self, text: str, icon: str | None = None) -> Frame:
+    def show_text(self, text: str, icon: str | None = None) -> CanvasFrame:
         """Put another text in the editor, as one step that can be undone."""
         return self._answer(lambda: self._replace(text, icon))
 
-    def frame(self) -> Frame:
+    def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""
         return self._answer(lambda: self.text)
 
-    def say(self, note: str) -> Frame:
+    def say(self, note: str) -> CanvasFrame:
         """Put a sentence before the notes until the next change."""
 
         def act() -> None:
@@ -100,7 +100,7 @@ class Designing:
 
         return self._answer(act)
 
-    def _answer(self, act: Callable[[], str | None], seq: int = 0) -> Frame:
+    def _answer(self, act: Callable[[], str | None], seq: int = 0) -> CanvasFrame:
         began, before = time.perf_counter(), (self.text, self.rig)
         shown: str | None = None
         try:

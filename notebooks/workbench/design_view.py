@@ -12,7 +12,7 @@ from .knobs import Knob, knobs_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from .design_model import Designing
+    from .design_model import DesignModel
 
 SHARED = "globalThis.thermiconCanvas"
 
@@ -36,9 +36,9 @@ class SideCanvas(Canvas):
 
 
 class DesignView:
-    """Canvas and knobs of one ``Designing``; ``box`` is what is shown."""
+    """Canvas and knobs of one ``DesignModel``; ``box`` is what is shown."""
 
-    def __init__(self, design: Designing) -> None:
+    def __init__(self, design: DesignModel) -> None:
         self.design = design
         self.canvas = MainCanvas("design")
         self.canvas.on_message(self._receive)

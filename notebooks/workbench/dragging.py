@@ -111,7 +111,7 @@ class _Move:
         leaf = self.corner.leaf
         if field in RATES:
             return 0.05 if self.corner.time_s - self.corner.begin_s >= 0.25 else 0.01
-        return self.amount(field).step(getattr(leaf, field), kind_of(leaf, field, self.icon.frame.control))
+        return self.amount(field).step(getattr(leaf, field), kind_of(leaf, field, self.icon.context.control))
 
     def solve(self, to_level: float, to_time: float) -> tuple[float, float]:
         """Size of the change from where the statement begins, and its time, that lead the corner there.
@@ -200,7 +200,7 @@ class _Move:
 
     def in_words(self, size: float, took: float) -> dict[tuple[int, int], str]:
         """The edits that write a size and time, rounded; a number that rounds to what it was stays as it is written."""
-        leaf, grip, control = self.corner.leaf, self.grip, self.icon.frame.control
+        leaf, grip, control = self.corner.leaf, self.grip, self.icon.context.control
         edits: dict[tuple[int, int], str] = {}
         resized = False
         if grip.level is not None:

@@ -1,4 +1,4 @@
-"""When things happen in one run: the onset that is reported, the peaks that are felt and those of the skin."""
+"""Event times of one run: the reported onset, felt peaks, and peaks of the skin temperature."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from thermicon.perception import Channel, Percept
 
 FELT_DPRIME = 1.0
-"""A peak of sensation is marked from here on: what a choice of two tells from nothing."""
+"""Smallest marked peak of sensation: the detection threshold in a two-interval choice, d′ = 1."""
 GAP_S = 0.05
 Kind = Literal["onset", "felt peak", "physical peak"]
 
 
 @dataclass(frozen=True, slots=True)
-class Moment:
-    """One event: time in s on the clock that is named, and whose channel it is."""
+class EventTime:
+    """One event: time in s on the named clock, and its channel."""
 
     kind: Kind
     time_s: float
@@ -36,7 +36,7 @@ class Moment:
 
     @property
     def label(self) -> str:
-        """What a mark says, as in ``physical peak (cold) 2.04 s``."""
+        """Label of the mark, as in ``physical peak (cold) 2.04 s``."""
         clock = "" if self.clock == "cue" else f", {self.clock} clock"
         return f"{self.kind} ({self.channel}) {self.time_s:.2f} s{clock}"
 
@@ -50,24 +50,24 @@ class Span:
     label: str
 
 
-def moments_of(trace: Trace, percept: Percept) -> tuple[Moment, ...]:
-    """Return onset, felt peaks and peaks of the skin, the earliest first; those of channels that feel something.
+def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
+    """Return onset, felt peaks and skin peaks of the channels that respond, the earliest first.
 
-    A peak of the skin that is held counts from when it comes within 1 %.
+    A held peak of the skin counts from when the temperature comes within 1 %.
     """
-    found: list[Moment] = []
+    found: list[EventTime] = []
     if percept.onset_s is not None and percept.channel is not None:
-        found.append(Moment("onset", percept.onset_s, percept.channel, "response"))
+        found.append(EventTime("onset", percept.onset_s, percept.channel, "response"))
     for channel in directions(trace):
         psi = percept.psi_cold if channel == "cold" else percept.psi_warm
         felt = percept.felt_peak_s(channel)
         if felt is None or psi.max() < FELT_DPRIME:
             continue
-        found.append(Moment("felt peak", felt, channel, "percept"))
+        found.append(EventTime("felt peak", felt, channel, "percept"))
         away = (trace.skin_C - trace.skin_C[0]) * (-1.0 if channel == "cold" else 1.0)
         if away.max() > STILL_K:
             at = int((away >= HELD_SHARE * away.max()).argmax())
-            found.append(Moment("physical peak", float(trace.time_s[at]), channel, "cue"))
+            found.append(EventTime("physical peak", float(trace.time_s[at]), channel, "cue"))
     return tuple(sorted(found, key=lambda moment: moment.time_s))
 
 

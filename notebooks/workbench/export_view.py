@@ -1,42 +1,41 @@
-"""The export view: what a device makes of the icons, whether that is safe, and the files."""
+"""The export view: what a device delivers, whether it is safe, and the drive files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
-from ..files.exporting import FORMAT, Ready, formats_for, prepare_icons, write
+from ..files.exporting import FORMAT, PreparedExport, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
-from .background import Newest, Turn
+from ..pages.blocks import fragment
+from .background import Job
 from .cue_check import read_text
 from .export_tables import delivered_html, gate_html, written_html
+from .live_view import LiveView
 from .set_model import MOST_RANKED
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-    from .design_model import Designing
+    from .design_model import DesignModel
 
-SETTLES_S = 0.2
-Wanted = tuple[str, "Rig", "str | None", str, str, str]
+ExportRequest = tuple[str, "Rig", "str | None", str, str, str]
 """Text, rig, name of the icon (None: all), device, format, pause as typed."""
 
 
-class ExportView:
-    """The drives of one ``Designing``, prepared while it is ``shown``; ``box`` is what is shown."""
+class ExportView(LiveView[ExportRequest]):
+    """The drives of one ``DesignModel``, prepared while its tab is ``shown``; ``box`` holds the widgets."""
 
-    def __init__(self, design: Designing, folder: Path) -> None:
-        self.design = design
-        self.shown = False
-        self.ready: Ready | None = None
-        self.worker = Newest(self._failed)
-        self._asked: Wanted | None = None
-        self._done: Wanted | None = None
+    settles_s = 0.2
+    status_style = "th-wrap"
+
+    def __init__(self, design: DesignModel, folder: Path) -> None:
+        super().__init__(design)
+        self.ready: PreparedExport | None = None
         self._build(folder)
 
     def _build(self, folder: Path) -> None:
@@ -49,18 +48,18 @@ class ExportView:
         titles = [(f"{name}: {Device.load(name).title}", name) for name in names]
         self.device = widgets.Dropdown(options=titles, value=usual, description="device", layout=wide)
         self.form = widgets.Dropdown(options=self._forms(usual), value=FORMAT, description="format", layout=wide)
-        which = [("the icon that is shown", "shown"), ("all icons of the set", "all")]
+        which = [("the selected icon", "shown"), ("all icons of the set", "all")]
         self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
         self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
         self.pause = widgets.Text(
             value="",
-            placeholder="in s; empty: recovery time",
+            placeholder="seconds; empty: recovery time",
             description="pause",
             continuous_update=False,
             layout=wide,
         )
-        self.overwrite = widgets.Checkbox(value=False, description="overwrite files that are there", indent=False)
-        self.insist = widgets.Checkbox(value=False, description="also what is lossy or not reached", indent=False)
+        self.overwrite = widgets.Checkbox(value=False, description="overwrite existing files", indent=False)
+        self.insist = widgets.Checkbox(value=False, description="also export lossy or unreached icons", indent=False)
         self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
         for control in (self.device, self.form, self.folder, self.which, self.pause):
             control.style.description_width = "52px"
@@ -80,65 +79,60 @@ class ExportView:
         )
         row = widgets.Box([left, self.body]).add_class("thermicon-row")
         self.box = widgets.VBox([row]).add_class("thermicon-export")
-        self._say("drives are prepared when this tab is opened")
+        self._say("drives are prepared when this tab opens")
 
-    def renew(self, after_s: float = SETTLES_S) -> None:
-        """Prepare the drives anew if the view is shown and what there is to prepare has changed."""
-        if not self.shown:
-            self.worker.forget()
-            self._asked = None
-            return
-        want = self._wanted()
-        if want == self._asked:
-            return
-        if want == self._done and self.ready is None:
-            return
-        if want == self._done:
-            self.worker.forget()
-            self._asked = None
-            self._mark(False)
-            self._allow()
-            return
+    def _mark_outdated(self, request: ExportRequest) -> None:
         self.button.disabled = True
         self.said["written"].value = ""
-        self._mark(self.ready is not None)
-        reading = read_text(want[0])
-        if reading.icons is None or (want[2] is None and len(reading.icons) > MOST_RANKED):
-            self.worker.forget()
-            self._asked = None
-            many = f"more than {MOST_RANKED} icons are exported by thermicon export"
-            self._say("the text has errors, so nothing is exported" if reading.icons is None else many, "th-caution")
-            return
-        self._asked = want
+        super()._mark_outdated(request)
+
+    def _obstacle(self, request: ExportRequest) -> str | None:
+        icons = read_text(request[0]).icons
+        if icons is None:
+            return "the text has errors, so nothing is exported"
+        if request[2] is None and len(icons) > MOST_RANKED:
+            return f"{len(icons):,} icons are more than {MOST_RANKED}: use the command thermicon export"
+        return None
+
+    def _job(self, request: ExportRequest) -> Callable[[Job], None]:
         self._say("working …")
-        self.worker.ask(lambda turn: self._prepare(turn, want), after_s)
+        return lambda job: self._prepare(job, request)
+
+    def _show_finished(self) -> None:
+        self._allow()
+
+    def _has_result(self) -> bool:
+        return self.ready is not None
+
+    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
+        return (self.body,)
 
     def write(self) -> None:
-        """Write the files; what is refused is said, and nothing is written then."""
-        if self.ready is None or self._wanted() != self._done:
+        """Write the files, or report why that is refused; then nothing is written."""
+        if self.ready is None or self._request() != self._finished:
             raise OutputError("the drives are not ready yet")
         try:
             folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
             written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
         except (OutputError, ValueError, RuntimeError) as wrong:
-            self.said["written"].value = f'<div class="th-bad">nothing was written: {escape(str(wrong))}</div>'
+            self.said["written"].value = fragment("block", f"nothing was written: {wrong}", "th-bad")
             self._say("")
             return
         self.said["written"].value = written_html(self.ready, written)
         self._say("")
 
     def _forget_result(self) -> None:
-        """What was said of another folder is no news of this one."""
+        """A result for another folder does not apply to this one."""
         self.said["written"].value = ""
         self._allow()
 
-    def _wanted(self) -> Wanted:
+    def _request(self) -> ExportRequest:
         name = self.design.scene.icon if self.which.value == "shown" else None
         return self.design.text, self.design.rig, name, self.device.value, self.form.value, self.pause.value
 
-    def _prepare(self, turn: Turn, want: Wanted) -> None:
-        """The job of the worker."""
-        text, rig, name, device, form, typed = want
+    def _prepare(self, job: Job, request: ExportRequest) -> None:
+        """The background job."""
+        text, rig, name, device, form, typed = request
         icons = read_text(text).icons
         assert icons is not None
         chosen = [icon for icon in icons if name in (None, icon.name)] if len(icons) <= MOST_RANKED else []
@@ -147,18 +141,18 @@ class ExportView:
         rest = [icon for icon in icons if icon not in chosen] if len(icons) <= MOST_RANKED else []
 
         def step(done: int, total: int) -> None:
-            turn.tell(lambda: self._say(f"working … {done} of {total}"))
+            job.on_page(lambda: self._say(f"working … {done} of {total}"))
 
         made = prepare_icons(chosen, rest, rig, device, form, step, pause_s=pause_of(typed))
         shown = self.design.scene.icon
         red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
         named = (k for k, one in enumerate(made.prepared) if one.delivery.icon.name == shown)
-        place = next(red, next(named, 0))  # what stops all of them is looked at first
+        place = next(red, next(named, 0))  # the icon that stops the export is shown first
         picture = export_svg(made, place)
-        turn.tell(lambda: self._show(made, place, picture, want))
+        job.on_page(lambda: self._show(made, place, picture, request))
 
-    def _show(self, made: Ready, place: int, picture: str, want: Wanted) -> None:
-        self.ready, self._asked, self._done = made, None, want
+    def _show(self, made: PreparedExport, place: int, picture: str, request: ExportRequest) -> None:
+        self.ready, self._running, self._finished, self._failed_request = made, None, request, None
         self._mark(False)
         self.said["delivered"].value = delivered_html(made)
         self.said["figure"].value = picture
@@ -166,29 +160,30 @@ class ExportView:
         self._allow()
 
     def _allow(self) -> None:
-        """Whether there is something to write, and if not, why."""
-        if self.ready is None or self._wanted() != self._done:
+        """Report whether the drives can be written, and if not, why."""
+        if self.ready is None or self._request() != self._finished:
             return
         stops = [refusal for _, refusal in self.ready.against if not (self.insist.value and refusal.forcible)]
         self.button.disabled = bool(stops)
         if not stops:
             self._say("ready to be written", "th-good")
         elif all(refusal.forcible for refusal in stops):
-            self._say("refused: what is lossy or not reached is written only if you tick it", "th-caution")
+            self._say("refused: lossy or unreached icons are written only if you tick the box", "th-caution")
         else:
             names = dict.fromkeys(name for name, refusal in self.ready.against if not refusal.forcible)
-            cure = "; take out what is red, or export the others one by one" if len(self.ready.prepared) > 1 else ""
-            self._say(f"refused: what is not safe is never written ({', '.join(names)}){cure}", "th-bad")
+            cure = "; remove the red icons, or export the others one by one" if len(self.ready.prepared) > 1 else ""
+            self._say(f"refused: unsafe icons are never written ({', '.join(names)}){cure}", "th-bad")
 
-    def _failed(self, said: str) -> None:
-        self._asked, self._done, self.ready = None, self._wanted(), None
+    def _failed(self, message: str) -> None:
+        super()._failed(message)
+        self._finished, self.ready = None, None
         for name in ("delivered", "figure", "gate"):
             self.said[name].value = ""
         self._mark(False)
-        self._say(said, "th-bad")
+        self._say(message, "th-bad")
 
     def _device_chosen(self) -> None:
-        """Offer the formats that the device takes; the one that was chosen stays if it can."""
+        """Offer the formats of the device; the chosen one is kept if possible."""
         forms = self._forms(self.device.value)
         kept = self.form.value if any(name == self.form.value for _, name in forms) else forms[0][1]
         self.form.options = forms
@@ -202,21 +197,9 @@ class ExportView:
 
         return [(f"{name}: {load_format(name).title}", name) for name in formats_for(Device.load(device))]
 
-    def _mark(self, stale: bool) -> None:
-        (self.body.add_class if stale else self.body.remove_class)("thermicon-stale")
-
-    def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = f'<span class="{kind}" style="white-space: normal">{escape(text)}</span>'
-
-    def _safely(self, act: Callable[[], None]) -> None:
-        try:
-            act()
-        except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
-
 
 def pause_of(typed: str) -> float | None:
-    """Return the pause in s that was typed, None for nothing; raises PauseError for what is no such time.
+    """Read a pause in s, None for empty text; raises PauseError for anything else.
 
     >>> pause_of(" 12.5 "), pause_of("")
     (12.5, None)
@@ -228,12 +211,12 @@ def pause_of(typed: str) -> float | None:
     try:
         pause = float(typed)
     except ValueError:
-        raise PauseError(f"pause {typed.strip()!r} is no number; give seconds, 0 to 600, or leave it empty") from None
+        raise PauseError(f"pause {typed.strip()!r} is not a number; give 0 to 600 s, or leave it empty") from None
     check_pause(pause)
     return pause
 
 
-def export_svg(made: Ready, place: int) -> str:
+def export_svg(made: PreparedExport, place: int) -> str:
     """The figure of one icon, in the colours of the page's theme."""
     from ..figures.export_plot import export_figure
     from ..figures.vector import themed_svg

@@ -27,16 +27,16 @@ Role = str
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class CanvasFrame:
     """What is sent: ``meta`` for JSON, and the arrays in the order that its series name by ``buffer``."""
 
     meta: dict[str, Any]
     buffers: tuple[Floats, ...]
 
-    def numbered(self, seq: int, ms: float, text: str | None, can_undo: bool, can_redo: bool) -> Frame:
+    def numbered(self, seq: int, ms: float, text: str | None, can_undo: bool, can_redo: bool) -> CanvasFrame:
         """The frame as the answer to a message: its number, what it took, the text if the editor is to take it."""
         own = {"seq": seq, "ms": _number(ms), "text": text, "can_undo": can_undo, "can_redo": can_redo}
-        return Frame({**self.meta, **own}, self.buffers)
+        return CanvasFrame({**self.meta, **own}, self.buffers)
 
 
 @dataclass(slots=True)
@@ -69,7 +69,7 @@ class _Curves:
         }
 
 
-def frame_of(scene: Scene) -> Frame:
+def frame_of(scene: Scene) -> CanvasFrame:
     """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
 
     >>> from thermicon.circuit import Rig
@@ -81,15 +81,15 @@ def frame_of(scene: Scene) -> Frame:
     meta = {"type": "frame", "view": "design", "seq": 0, "text": scene.text, **_said(scene)}
     if scene.drawing is None:
         empty = {"time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": [], "handles": []}
-        return Frame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
+        return CanvasFrame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
     drawn = traces_of(scene.drawing)
     handles = [] if scene.stale else _handles(scene.drawing)
-    return Frame(
+    return CanvasFrame(
         {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
     )
 
 
-def traces_of(drawing: Drawing) -> Frame:
+def traces_of(drawing: Drawing) -> CanvasFrame:
     """Return clock, panels and arrays of one drawing: what the design view and an overlay have in common."""
     from thermicon.perception.sensation.percept import uniform_clock
 
@@ -103,7 +103,7 @@ def traces_of(drawing: Drawing) -> Frame:
     if len(percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
     time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
-    return Frame({"time": time, "panels": panels}, tuple(curves.buffers))
+    return CanvasFrame({"time": time, "panels": panels}, tuple(curves.buffers))
 
 
 def _said(scene: Scene) -> dict[str, Any]:

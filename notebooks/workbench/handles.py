@@ -8,7 +8,7 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Literal
 
-from thermicon.icons import Change, Drive, Hold, Play, Pulse, Repeat, Rest, Return, Step, Total, Wave
+from thermicon.icons import Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Return, Step, Total, Wave
 from thermicon.icons.model.icon import rest_level
 from thermicon.icons.model.motion import advance, amplitude, pieces
 
@@ -72,7 +72,7 @@ class Grip:
 def handles_of(icon: Icon, family: Family | None = None, start: float | None = None) -> tuple[Handle, ...]:
     """Return the corners of an icon, at most 150; of a member of a ``family``, what a parameter writes does not move.
 
-    ``start`` is the level of rest where the text gives none, as in ``Icon.lower``.
+    ``start`` is the level of rest where the text gives none, as in ``Icon.corners``.
 
     >>> from thermicon.icons import load_library
     >>> for handle in handles_of(load_library("six-icons")["cooling-step"]):
@@ -92,7 +92,7 @@ def handles_of(icon: Icon, family: Family | None = None, start: float | None = N
 
 def corners_of(icon: Icon, start: float | None = None) -> tuple[Corner, ...]:
     """Return the corners that handles stand for, in the order in which they are played."""
-    return tuple(islice(_walk(icon, rest_level(icon.frame, start)), MOST_HANDLES))
+    return tuple(islice(_walk(icon, rest_level(icon.context, start)), MOST_HANDLES))
 
 
 def slots_of(family: Family | None) -> dict[tuple[Path, str], str]:
@@ -130,7 +130,7 @@ def _fields(leaf: Leaf, part: Part) -> tuple[str | None, str | None, str | None]
     level = next((name for name in given if name in LEVELS), None)
     pace = next((name for name in given if name in RATES), "duration_s")
     match leaf:
-        case Change() | Drive():
+        case Ramp() | Current():
             return pace, level, None
         case Return():
             return pace, None, "a return ends at baseline"

@@ -48,7 +48,7 @@ class Knob:
         return value if isinstance(value, str) else f"{number(value, 2)} {self.unit}".strip()
 
 
-class Applied(NamedTuple):
+class KnobResult(NamedTuple):
     """The rig and the observer with the knobs set, and a sentence for every value that could not be."""
 
     rig: Rig
@@ -101,7 +101,7 @@ def _limit_knob(rig: Rig) -> Knob:
     )  # fmt: skip
 
 
-def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None = None) -> Applied:
+def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None = None) -> KnobResult:
     """Return rig and observer with knobs set; what cannot be leaves them as they were before it, and says so.
 
     Knobs that are not named stay where they are. Raises KeyError for a name that no knob has.
@@ -132,7 +132,7 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
     try:
         made = _held(_turned(rig, ordered))
         unusual = [said for key, value in ordered.items() for said in _unusual(table[key], value)]
-        return Applied(made, person, (*notes, *unusual))
+        return KnobResult(made, person, (*notes, *unusual))
     except RigError:
         made = rig
     for key, value in ordered.items():
@@ -143,7 +143,7 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
             knob = table[key]
             before = f"{knob.label} stays at {knob.shown(knob.value)}, {knob.shown(value)} cannot be"
             notes.append(f"{before}: {str(wrong).splitlines()[0]}")
-    return Applied(made, person, tuple(notes))
+    return KnobResult(made, person, tuple(notes))
 
 
 def aged(observer: Observer, age_years: float) -> Observer:

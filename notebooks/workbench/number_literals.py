@@ -9,7 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from thermicon.icons import Change, Drive, Return
+from thermicon.icons import Current, Ramp, Return
 from thermicon.icons.model.units import UNITS, Kind
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def keyword_of(leaf: Leaf, field: str) -> str:
     'for'
     """
     if field == "duration_s":
-        return "over" if isinstance(leaf, Change | Drive | Return) else "for"
+        return "over" if isinstance(leaf, Ramp | Current | Return) else "for"
     return "every" if field == "period_s" else "at" if "per_s" in field else field[:2]
 
 

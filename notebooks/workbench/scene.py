@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 
-    from .event_times import Moment, Span
-    from .threshold_band import Band
+    from .event_times import EventTime, Span
+    from .threshold_band import ThresholdBand
 
 TAIL_S = 10.0
-"""How long sensation is followed behind the last corner, as ``thermicon simulate --figure`` does."""
+"""Seconds of sensation simulated after the last corner, as in ``thermicon simulate --figure``."""
 RATE_HZ, MOST_ROWS = 100.0, 30_000
-"""Rows a second of a run, and how many there are at most: longer runs have fewer a second."""
+"""Samples per second, and their largest number: longer runs have a lower rate."""
 Colour = Literal["green", "amber", "red", "grey"]
 
 
 @dataclass(frozen=True, slots=True)
 class Badge:
-    """Safety in one line, with its colour, and all that there is to say in ``more``; grey where nothing is judged."""
+    """Safety in one line, with its colour and all findings in ``more``; grey if nothing is judged."""
 
     colour: Colour
     text: str
@@ -40,7 +40,7 @@ class Badge:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """One icon played on a rig for an observer, with everything that is drawn of it."""
+    """One icon played on a rig for an observer, with everything that is drawn."""
 
     icon: Icon
     rig: Rig
@@ -49,8 +49,8 @@ class Drawing:
     percept: Percept
     verdict: SafetyVerdict
     missed: tuple[Span, ...]
-    moments: tuple[Moment, ...]
-    bands: tuple[Band, ...]
+    moments: tuple[EventTime, ...]
+    bands: tuple[ThresholdBand, ...]
     handles: tuple[Handle, ...]
     start: float
 
@@ -62,7 +62,7 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """What there is to see of a text: names, troubles, the chosen icon, notes, and its drawing.
+    """Content of the design view: names, errors, the chosen icon, notes, and its drawing.
 
     ``stale``: the drawing is of an earlier text or rig, since this one has none. ``start`` of the drawing is the level
     that its icon begins at (°C or A). Without a drawing there was nothing to draw yet.
@@ -121,21 +121,21 @@ def scene(
     if reading.icons is None:
         return _kept(text, rig, person, wanted, before, reading.troubles, tuple(notes), reading.more)
     chosen, moved = _chosen(reading, wanted, before)
-    said = [*notes, *moved]
+    remarks = [*notes, *moved]
     count, names = len(reading.icons), reading.names
     if count > MOST_NAMES:
-        said.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
+        remarks.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
         names = names if chosen.name in names else (*names, chosen.name)
     try:
         drawing = draw(chosen, rig, person, reading)
     except CueErrors as wrong:  # with the rest of this rig a target lies on the wrong side
         troubles = tuple(map(trouble_of, wrong.errors))
-        return _kept(text, rig, person, chosen.name, before, troubles, tuple(said), wrong.more, names, count)
+        return _kept(text, rig, person, chosen.name, before, troubles, tuple(remarks), wrong.more, names, count)
     except (InputError, ValueError, ArithmeticError) as wrong:
-        told = (*said, *(f"not drawn: {line}" for line in str(wrong).splitlines()[:3]))
+        told = (*remarks, *(f"not drawn: {line}" for line in str(wrong).splitlines()[:3]))
         return _kept(text, rig, person, chosen.name, before, (), told, 0, names, count)
-    said += _told(drawing, reading, rig)
-    return Scene(text, rig, person, chosen.name, names, count, (), _once(said), False, drawing)
+    remarks += _notes_on(drawing, reading, rig)
+    return Scene(text, rig, person, chosen.name, names, count, (), _once(remarks), False, drawing)
 
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
@@ -144,8 +144,8 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.perception import perceive
 
-    from .event_times import missed_spans, moments_of
-    from .threshold_band import bands_of
+    from .event_times import event_times_of, missed_spans
+    from .threshold_band import threshold_bands
 
     lasts = duration_s(icon, rig)
     rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))
@@ -153,7 +153,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
     percept = perceive(trace, observer)
     base = baseline_C(icon, rig)
-    start = steady_state(rig, "display", base)[0] if icon.frame.control == "current" else base
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     return Drawing(
         icon=icon,
         rig=rig,
@@ -162,8 +162,8 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
         percept=percept,
         verdict=judge_safety(trace),
         missed=missed_spans(icon, trace, rig),
-        moments=moments_of(trace, percept),
-        bands=bands_of(trace, observer),
+        moments=event_times_of(trace, percept),
+        bands=threshold_bands(trace, observer),
         handles=handles_of(icon, reading.family_of(icon.name), start),
         start=start,
     )
@@ -209,26 +209,26 @@ def _kept(
     return Scene(text, rig, observer, icon, names, count, troubles, _once(said), True, drawing)
 
 
-def _told(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
-    """Sentences about a drawing: why it is not reached, sites, what is unusual, where data end."""
-    trace, said = drawing.trace, []
+def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
+    """Notes on a drawing: why it is not reached, site, unusual values, limits of the data."""
+    trace, notes = drawing.trace, []
     if trace.reason is not None:
         verb = "not reached: it" if trace.outcome is not None else "not played as written:"
-        said.append(f"{drawing.icon.name} is {verb} {trace.reason}")
-    site = reading.icons.frame.site if reading.icons is not None else None
+        notes.append(f"{drawing.icon.name} is {verb} {trace.reason}")
+    site = reading.icons.context.site if reading.icons is not None else None
     if site is not None and site != rig.site:
-        said.append(f"the set is for the site {site}, the rig {rig.name} is for {rig.site}")
+        notes.append(f"the set is for the site {site}, the rig {rig.name} is for {rig.site}")
     if drawing.percept.onset_s is None:
-        said.append(f"{drawing.icon.name} is not felt by this observer")
+        notes.append(f"{drawing.icon.name} is not felt by this observer")
     if len(drawing.handles) == MOST_HANDLES:
-        said.append(f"the first {MOST_HANDLES} corners can be dragged")
-    return [*said, *trace.warnings, *drawing.percept.outside_data]
+        notes.append(f"only the first {MOST_HANDLES} corners can be dragged")
+    return [*notes, *trace.warnings, *drawing.percept.outside_data]
 
 
 def _badge(verdict: SafetyVerdict) -> Badge:
     findings = verdict.findings
     if not findings:
-        return Badge("green", "safe: no limit of safety is passed")
+        return Badge("green", "safe: no safety limit is exceeded")
     first = findings[0]
     unit = "" if first.unit == "1" else f" {first.unit}"
     side = "above" if first.upper else "below"

@@ -12,13 +12,13 @@ import numpy as np
 from ..cli.cues import MOST_ICONS
 from ..figures.map_drawing import distinct
 from .cue_check import Reading, read_text
-from .frames import Frame, traces_of
+from .frames import CanvasFrame, traces_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
     from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
 QUICK, WELL = (6, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
@@ -26,7 +26,7 @@ MOST_RANKED = 60
 
 
 @dataclass(frozen=True, slots=True)
-class Ranked:
+class RankedSet:
     """A ranking, the text and rig that it is of, its map, the order of its heat maps, and what it took (ms)."""
 
     text: str
@@ -62,10 +62,10 @@ def rank_set(
     rig: Rig,
     people: int,
     parameters: int,
-    choosing: Choosing | None = None,
+    choosing: Selection | None = None,
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> Ranked:
+) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
 
     >>> from thermicon.circuit import Rig
@@ -83,7 +83,7 @@ def rank_set(
     made = rank(reading.icons, rig, people=people, parameters=parameters, choosing=choosing, progress=progress)
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
-    return Ranked(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))
+    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))
 
 
 def why_not(reading: Reading) -> str | None:
@@ -102,7 +102,7 @@ def why_not(reading: Reading) -> str | None:
     return None
 
 
-def heat_frame(made: Ranked, picked: tuple[str, str] | None, seq: int = 0) -> Frame:
+def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) -> CanvasFrame:
     """The frame of both heat maps, near icons side by side."""
     order, labels = np.array(made.order), made.labels
     distances = made.ranking.d_prime[np.ix_(order, order)]
@@ -122,10 +122,10 @@ def heat_frame(made: Ranked, picked: tuple[str, str] | None, seq: int = 0) -> Fr
         "picked": None if picked is None else [labels.index(name) for name in picked],
         "ms": made.ms,
     }  # fmt: skip
-    return Frame(meta, (distances.astype(np.float32).ravel(), confusions.astype(np.float32).ravel()))
+    return CanvasFrame(meta, (distances.astype(np.float32).ravel(), confusions.astype(np.float32).ravel()))
 
 
-def overlay_frame(made: Ranked, a: str, b: str) -> Frame:
+def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     """Two icons over each other on one clock: skin, sensation of cold and of warmth; one icon alone where a is b."""
     names = [a] if a == b else [a, b]
     parts = [_traces(made, name) for name in names]
@@ -153,14 +153,14 @@ def overlay_frame(made: Ranked, a: str, b: str) -> Frame:
         "panels": panels,
         "notes": [],
     }
-    return Frame(meta, tuple(buffers))
+    return CanvasFrame(meta, tuple(buffers))
 
 
 PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
 STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
 
 
-def edit_of(made: Ranked, a: str, b: str) -> Edit | NoEdit:
+def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
     """The cheapest edit that parts a pair, confirmed by the people of the ranking."""
     from thermicon.perception import cheapest_edit
 
@@ -168,7 +168,7 @@ def edit_of(made: Ranked, a: str, b: str) -> Edit | NoEdit:
     return cheapest_edit(made.icons, made.rig, a, b, people=made.ranking.people, seed=made.ranking.seed, before=known)
 
 
-def _traces(made: Ranked, name: str) -> Frame:
+def _traces(made: RankedSet, name: str) -> CanvasFrame:
     from thermicon.perception import Observer
 
     from .scene import draw
@@ -177,7 +177,7 @@ def _traces(made: Ranked, name: str) -> Frame:
     return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))
 
 
-def _values(part: Frame, key: str, clock: Any) -> Any:
+def _values(part: CanvasFrame, key: str, clock: Any) -> Any:
     """The values of a curve on another clock; NaN behind its end."""
     panel = "temperature" if key == "skin" else "sensation"
     for each in part.meta["panels"]:

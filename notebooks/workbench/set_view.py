@@ -1,23 +1,24 @@
-"""The set view: who is confused with whom, the pair that is looked at, what would part it, the map, the best few."""
+"""The set view: confusions, the selected pair with its cheapest edit, the perceptual map, and the best few icons."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
 from ..figures.map_drawing import map_svg
+from ..pages.blocks import fragment
 from ..text.choices import NAMES
 from .apply_edit import with_edit
-from .background import Newest, Turn
+from .background import BackgroundWorker, Job
 from .cue_check import read_text
 from .design_view import SideCanvas
+from .live_view import LiveView
 from .set_model import (
     QUICK,
     WELL,
-    Ranked,
+    RankedSet,
     edit_of,
     heat_frame,
     overlay_frame,
@@ -38,37 +39,34 @@ from .set_tables import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Edit, NoEdit, PerceptualMap
-    from thermicon.perception.selection.request import Choosing
+    from thermicon.perception.selection.request import Selection
 
-    from .design_model import Designing
+    from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
-Wanted = tuple[str, "Rig", "Choosing | None"]
-SETTLES_S = 0.25
-"""How long a text is left to change further before the set is ranked anew."""
+SetRequest = tuple[str, "Rig", "Selection | None"]
+"""Text, rig, and the choice of a few icons, if any."""
 SHARES = 10
 SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
 WIDE, BESIDE = "1 1 500px", 6
-"""Up to so many icons, table and heat maps stand side by side."""
+"""Table and heat maps are side by side for at most this number of icons."""
 
 
-class SetView:
-    """The set of one ``Designing``, ranked while it is ``shown``; ``box`` is what is shown.
+class SetView(LiveView[SetRequest]):
+    """The set of one ``DesignModel``, ranked while its tab is ``shown``; ``box`` holds the widgets.
 
     ``show_text`` is called with the text after an edit is applied.
     """
 
-    def __init__(self, design: Designing, show_text: ShowText) -> None:
-        self.design, self._show_text = design, show_text
-        self.shown = False
-        self.made: Ranked | None = None
+    settles_s = 0.25
+
+    def __init__(self, design: DesignModel, show_text: ShowText) -> None:
+        super().__init__(design)
+        self._show_text = show_text
+        self.made: RankedSet | None = None
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
-        self.worker, self.editor = Newest(self._failed), Newest(self._no_edit)
-        self._warmer = Newest()
-        self._asked: Wanted | None = None
-        self._done: Wanted | None = None
-        self._failed_for: Wanted | None = None
+        self.editor, self._warmer = BackgroundWorker(self._no_edit), BackgroundWorker()
         self._build()
 
     def _build(self) -> None:
@@ -96,47 +94,41 @@ class SetView:
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
         self.box = widgets.VBox([top, self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
-        self._say("the set is ranked when this tab is opened")
+        self._say("the set is ranked when this tab opens")
 
     def warm(self) -> None:
-        """Load, beside the page, what ranking needs, so that the first look at a set does not wait for it."""
+        """Load what ranking needs in the background, so that the first ranking starts at once."""
         self._warmer.ask(self._load, 1.0)
 
-    def _load(self, turn: Turn) -> None:
-        rank_set(SMALL, self.design.nominal, 2, 0, progress=turn.go_on)
+    def _load(self, job: Job) -> None:
+        rank_set(SMALL, self.design.nominal, 2, 0, progress=job.go_on)
 
-    def renew(self, after_s: float = SETTLES_S) -> None:
-        """Rank the set anew if it is shown and what there is to rank has changed; mark what is there as stale.
+    def _mark_outdated(self, request: SetRequest) -> None:
+        self._mark(self.made is not None and request[:2] != self._source())
 
-        It waits for a time (s) in which the text may change further.
-        """
-        want = self._wanted()
-        if not self.shown:
-            self.worker.forget()  # the design view has the processor to itself
-            self._asked = None
-            return
-        if want in (self._asked, self._failed_for):
-            return
-        if want == self._done and self.made is not None:
-            self.worker.forget()
-            self._asked = None
-            self._mark(False)
+    def _obstacle(self, request: SetRequest) -> str | None:
+        reason = why_not(read_text(request[0]))
+        if reason is None or self.made is None:
+            return reason
+        return f"{reason}; the last valid set is shown, for {self.made.ranking.people} people"
+
+    def _job(self, request: SetRequest) -> Callable[[Job], None]:
+        quick = self.made is None or request[:2] != self._source()
+        self._say("ranking …" if quick or not request[2] else "choosing …")
+        return lambda job: self._rank(job, request, quick)
+
+    def _show_finished(self) -> None:
+        if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
-            return
-        self._mark(self.made is not None and want[:2] != self._done_of())
-        if (why := why_not(read_text(want[0]))) is not None:
-            self.worker.forget()
-            self._asked = None
-            kept = "" if self.made is None else f"; the last good set is shown, for {self.made.ranking.people} people"
-            self._say(why + kept, "th-caution")
-            return
-        self._asked = want
-        quick = self.made is None or want[:2] != self._done_of()
-        self._say("ranking …" if quick or not want[2] else "choosing …")
-        self.worker.ask(lambda turn: self._rank(turn, want, quick), after_s)
+
+    def _has_result(self) -> bool:
+        return self.made is not None
+
+    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
+        return self.body, self.said["scores"]
 
     def pick(self, a: str, b: str) -> None:
-        """Look at a pair: both icons over each other, why they are confused, and the cheapest edit."""
+        """Select a pair: show both icons together, why they are confused, and the cheapest edit."""
         made = self.made
         if made is None:
             return
@@ -147,18 +139,17 @@ class SetView:
         self.apply.disabled = True
         if a == b:
             self.editor.forget()
-            self.said["pair"].value = f'<div class="th-head">{escape(a)}</div>'
+            self.said["pair"].value = fragment("block", a, "th-head")
             self.said["why"].value = ""
-            self.said[
-                "edit_text"
-            ].value = '<span class="th-soft">choose a cell of two icons: it tells what parts them</span>'
+            hint = "select a cell of two different icons to see what separates them"
+            self.said["edit_text"].value = fragment("marked", hint, "th-soft")
             return
         self.said["pair"].value, self.said["why"].value = pair_html(made.pair(a, b)), why_html(made.pair(a, b))
         self.said["edit_text"].value = edit_html(None)
-        self.editor.ask(lambda turn: self._look_for_edit(turn, made, a, b), 0.1)
+        self.editor.ask(lambda job: self._look_for_edit(job, made, a, b), 0.1)
 
     def apply_edit(self) -> None:
-        """Write the edit that is told into the text, as one step that can be undone."""
+        """Apply the suggested edit to the text, as one step that can be undone."""
         from thermicon.perception import Edit
 
         edit = self.edit
@@ -166,41 +157,40 @@ class SetView:
             raise ValueError("there is no edit to apply")
         text = with_edit(self.design.text, edit.edited, edit.old, edit.new)
         self.apply.disabled = True
-        self.said["edit_text"].value = f'<span class="th-good">applied: {escape(edit.new)}</span>'
+        self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
-    def _rank(self, turn: Turn, want: Wanted, quick: bool) -> None:
-        """The job of the worker: a few people at once, then as many as make numbers of it."""
-        text, rig, choosing = want
+    def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
+        """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
+        text, rig, choosing = request
         if quick:
             reference = None if self.made is None else self.made.map
-            first = rank_set(text, rig, *QUICK, None, reference, turn.go_on)
-            turn.tell(lambda: self._show(first, want, False))
+            first = rank_set(text, rig, *QUICK, None, reference, job.go_on)
+            job.on_page(lambda: self._show(first, request, False))
         reference = None if self.made is None else self.made.map
-        told = [0]
+        reported = [0]
 
         def progress(done: int, total: int) -> None:
-            turn.go_on()
+            job.go_on()
             share = SHARES * done // max(total, 1)
-            if share > told[0]:
-                told[0] = share
+            if share > reported[0]:
+                reported[0] = share
                 doing = "choosing" if choosing is not None and not quick else "refining"
-                said = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
-                turn.tell(lambda: self._say(said))
+                status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
+                job.on_page(lambda: self._say(status))
 
         well = rank_set(text, rig, *WELL, choosing, reference, progress)
-        turn.tell(lambda: self._show(well, want, True))
+        job.on_page(lambda: self._show(well, request, True))
 
-    def _failed(self, said: str) -> None:
-        self._asked, self._failed_for = None, self._wanted()  # the same again would fail the same way
-        self._say(f"not ranked: {said}", "th-caution")
+    def _failed(self, message: str) -> None:
+        super()._failed(f"not ranked: {message}")
 
-    def _show(self, made: Ranked, want: Wanted, well: bool) -> None:
-        """Put a ranking on the page; runs on the kernel's own loop."""
-        self.made, self._failed_for = made, None
-        self._done = want if well else None
+    def _show(self, made: RankedSet, request: SetRequest, well: bool) -> None:
+        """Put a ranking on the page; runs on the kernel's event loop."""
+        self.made, self._failed_request = made, None
+        self._finished = request if well else None
         if well:
-            self._asked = None
+            self._running = None
         from thermicon.perception.ranking.rank_file import ranking_file
 
         ranking, said = made.ranking, self.said
@@ -213,18 +203,18 @@ class SetView:
         known = set(made.labels)
         self.picked = self.picked if self.picked is not None and known.issuperset(self.picked) else None
         pair = self.picked or ranking.worst_pair or (made.labels[0],) * 2
-        if not alone:  # the maps first: they are what is waited for
+        if not alone:  # the maps first, since people wait for them
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = ranking_file(ranking, mapped=False)  # the map is made already, beside the one before
+        result = ranking_file(ranking, mapped=False)  # the map exists already, aligned with the one before
         said["scores"].value = scores_html(ranking)
         said["table"].value = ranking_table(ranking, result)
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
         people = f"{ranking.people} people"
-        self._say(f"{people}" if well else f"first look: {people}; refining …")
+        self._say(f"{people}" if well else f"preliminary: {people}; refining …")
         self._offer(len(made.icons))
         if alone:
             return
@@ -233,12 +223,12 @@ class SetView:
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
 
-    def _look_for_edit(self, turn: Turn, made: Ranked, a: str, b: str) -> None:
+    def _look_for_edit(self, job: Job, made: RankedSet, a: str, b: str) -> None:
         found = edit_of(made, a, b)
-        turn.tell(lambda: self._offer_edit(found))
+        job.on_page(lambda: self._offer_edit(found))
 
     def _no_edit(self, said: str) -> None:
-        self.said["edit_text"].value = f'<span class="th-caution">no edit: {escape(said)}</span>'
+        self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
 
     def _offer_edit(self, found: Edit | NoEdit) -> None:
         from thermicon.perception import NoEdit
@@ -251,7 +241,7 @@ class SetView:
         self._safely(lambda: self._cell(message))
 
     def _cell(self, message: dict[str, Any]) -> None:
-        """A cell was clicked: answer at once, so that the page knows that the kernel lives."""
+        """A cell was clicked: answer at once, so that the page knows that the kernel is alive."""
         if message.get("type") != "cell" or self.made is None:
             return
         seq = int(message.get("seq", 0))
@@ -264,44 +254,32 @@ class SetView:
         self.heat.frame(frame.meta, frame.buffers)
         self.pick(*pair)
 
-    def _wanted(self) -> Wanted:
+    def _request(self) -> SetRequest:
         return self.design.text, self.design.rig, self._choosing()
 
-    def _choosing(self) -> Choosing | None:
-        from thermicon.perception.selection.request import Choosing
+    def _choosing(self) -> Selection | None:
+        from thermicon.perception.selection.request import Selection
 
-        return Choosing(self.count.value, self.objective.value) if self.count.value else None
+        return Selection(self.count.value, self.objective.value) if self.count.value else None
 
     def _offer(self, icons: int) -> None:
-        """How many can be chosen of so many icons."""
+        """Offer the possible numbers of chosen icons."""
         options = [("all", 0), *((f"best {k}", k) for k in range(2, icons))]
         if list(self.count.options) != options:
             kept = self.count.value if any(value == self.count.value for _, value in options) else 0
             self.count.options = options
             self.count.value = kept
 
-    def _done_of(self) -> tuple[str, Rig] | None:
+    def _source(self) -> tuple[str, Rig] | None:
+        """Text and rig of the ranking on the page."""
         return None if self.made is None else (self.made.text, self.made.rig)
-
-    def _mark(self, stale: bool) -> None:
-        for part in (self.body, self.said["scores"]):
-            (part.add_class if stale else part.remove_class)("thermicon-stale")
-
-    def _say(self, text: str, kind: str = "th-status") -> None:
-        self.said["status"].value = f'<span class="{kind}">{escape(text)}</span>'
-
-    def _safely(self, act: Callable[[], None]) -> None:
-        try:
-            act()
-        except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
 
 
 def map_html(found: PerceptualMap) -> str:
-    """The perceptual map with what is to be known of it."""
-    spread = f"; ellipses: half of {found.people} people" if found.covariance is not None else ""
-    told = f'<div class="th-soft">distances are d′, stress {found.stress:.2f}{spread}</div>'
-    return f'<div class="th-head">perceptual map</div>{told}{map_svg(found)}'
+    """The perceptual map with its caption."""
+    spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
+    note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
+    return f"{fragment('block', 'perceptual map', 'th-head')}{note}{map_svg(found)}"
 
 
 def _row(*parts: Any) -> widgets.Box:

@@ -1,4 +1,4 @@
-"""What would be just felt: the change at the depth of a receptor that the observer tells from nothing in a choice."""
+"""Detection threshold at d′ = 1, as the change of temperature at receptor depth."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ ROUNDS = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Band:
-    """About the level (°C) that a channel is adapted to: what lies within ``change_K`` of it is not felt.
+class ThresholdBand:
+    """Temperatures within ``change_K`` of the level (°C) that a channel is adapted to, which are below its threshold.
 
-    The cold channel feels what goes down, the warm one what goes up, so each band lies on one side of its level.
+    The cold channel responds to falls, the warm one to rises, so each band is on one side of its level.
     """
 
     channel: Channel
@@ -39,27 +39,27 @@ class Band:
         return self.level_C if self.channel == "cold" else self.level_C + self.change_K
 
 
-def bands_of(trace: Trace, observer: Observer) -> tuple[Band, ...]:
-    """Return the bands of both channels about the temperatures that a trace begins with; none where heat flow is felt.
+def threshold_bands(trace: Trace, observer: Observer) -> tuple[ThresholdBand, ...]:
+    """Return the bands of both channels at the initial temperatures of a trace; none for a heat-flow observer.
 
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library
     >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
-    >>> [f"{band.channel} {band.change_K:.2f} K" for band in bands_of(trace, Observer.load())]
+    >>> [f"{band.channel} {band.change_K:.2f} K" for band in threshold_bands(trace, Observer.load())]
     ['cold 0.06 K', 'warm 0.09 K']
     """
     if observer.drive_unit != "K":
         return ()
     starts = (trace.cold_receptor_C, trace.warm_receptor_C)
     return tuple(
-        Band(channel, float(start[0]), just_felt_K(observer, channel, trace.area_m2, trace.site))
+        ThresholdBand(channel, float(start[0]), threshold_change_K(observer, channel, trace.area_m2, trace.site))
         for channel, start in zip(CHANNELS, starts, strict=True)
     )
 
 
 @lru_cache(maxsize=256)
-def just_felt_K(observer: Observer, channel: Channel, area_m2: float, site: str) -> float:
-    """Size (K) of the ramp at receptor depth that is felt with d′ = 1, for an observer adapted to where it begins.
+def threshold_change_K(observer: Observer, channel: Channel, area_m2: float, site: str) -> float:
+    """Size (K) of the ramp at receptor depth with d′ = 1, for an observer adapted to its start.
 
     The ramp has the rate and hold of the step that the observer's unit of sensation was calibrated with; thresholds
     depend on area and site as everywhere else.

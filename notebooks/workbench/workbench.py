@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
 
-from .design_model import Designing
+from .design_model import DesignModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +51,7 @@ class Workbench:
         from thermicon.circuit import Rig
 
         loaded = rig if isinstance(rig, Rig) else Rig.load(rig)
-        self._design = Designing(text_of(text), loaded, icon)
+        self._design = DesignModel(text_of(text), loaded, icon)
         self._check_icon(icon)
         self._folder = Path(folder)
         self._ranked: tuple[object, Ranking] | None = None
@@ -144,9 +144,9 @@ class Workbench:
 
             return set_figure(self.ranking())
         from ..figures.export_plot import export_figure
-        from ..files.exporting import ready_of
+        from ..files.exporting import prepare_icon
 
-        return export_figure(ready_of(self.icon, self.rig))
+        return export_figure(prepare_icon(self.icon, self.rig))
 
     @property
     def page(self) -> Any:

@@ -23,7 +23,7 @@ from .rules import load_rules
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
-PARTS = ("direction", "intensity", "rate", "duration", "pattern", "onset")
+COMPONENTS = ("direction", "intensity", "rate", "duration", "pattern", "onset")
 SENSORY_NOISE = 1.0
 HALF = 0.5
 LEAST_SENSATION = 0.05
@@ -35,7 +35,7 @@ GRID = np.linspace(-0.5, 2.0, 251)
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class DistanceComponent:
     """One part of the distance of two icons; `a` and `b` are what each icon has of it, where each has a number.
 
     `value` is None where there is nothing to compare, as for an icon that is not felt. `noticeable` is the value
@@ -58,7 +58,7 @@ class Part:
     def times(self) -> float | None:
         """How often the just noticeable value goes into it; factors by their logarithms.
 
-        >>> Part("onset", 0.5, "s", 0.2).times, round(Part("rate", 2.0, "1", 1.43).times, 2)
+        >>> Part("onset", 0.5, "s", 0.2).times, round(DistanceComponent("rate", 2.0, "1", 1.43).times, 2)
         (2.5, 1.94)
         """
         if self.value is None:
@@ -82,8 +82,8 @@ class Part:
     def __repr__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         if self.value is None:
-            return f"Part({self.name}: nothing to compare)"
-        return f"Part({self.name} {self.value:.3g}{unit}, just noticed {self.noticeable:.3g}{unit})"
+            return f"DistanceComponent({self.name}: nothing to compare)"
+        return f"DistanceComponent({self.name} {self.value:.3g}{unit}, just noticed {self.noticeable:.3g}{unit})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,10 +105,10 @@ class Course:
     channel: Channel | None
 
 
-def distance_parts(
+def distance_components(
     a: Trace, b: Trace, observer: Observer | None = None, felt: tuple[Percept, Percept] | None = None
-) -> tuple[Part, ...]:
-    """The six parts of the distance of two simulated icons for a nominal person (or `observer`), in the order of PARTS.
+) -> tuple[DistanceComponent, ...]:
+    """The six parts of the distance of two simulated icons for a nominal person (or `observer`), in COMPONENTS order.
 
     `felt` are their percepts, where they are known already. `direction` is the strongest sensation (d′) in a
     direction whose place in the order of directions differs; `intensity` the difference of the strongest
@@ -119,7 +119,7 @@ def distance_parts(
     person = Observer.load() if observer is None else observer
     percepts = (perceive(a, person), perceive(b, person)) if felt is None else felt
     first, second = (course(trace, percept, person) for trace, percept in zip((a, b), percepts, strict=True))
-    return course_parts(first, second, person)
+    return course_components(first, second, person)
 
 
 def course(trace: Trace, felt: Percept, observer: Observer) -> Course:
@@ -147,18 +147,18 @@ def course(trace: Trace, felt: Percept, observer: Observer) -> Course:
     )
 
 
-def course_parts(a: Course, b: Course, observer: Observer) -> tuple[Part, ...]:
+def course_components(a: Course, b: Course, observer: Observer) -> tuple[DistanceComponent, ...]:
     """The six parts from what each of the two icons brings."""
     weaker = min(a.strongest, b.strongest)
     moments = math.sqrt(2.0) * observer.onset_uncertainty_s
     duration = _apart(a.duration_s, b.duration_s)
     pattern = None if duration is None else weaker * float(np.abs(a.total - b.total).max())
     return (
-        Part("direction", _direction(a, b), "d′", observer.criterion),
-        Part("intensity", abs(a.strongest - b.strongest), "d′", SENSORY_NOISE, a.strongest, b.strongest),
+        DistanceComponent("direction", _direction(a, b), "d′", observer.criterion),
+        DistanceComponent("intensity", abs(a.strongest - b.strongest), "d′", SENSORY_NOISE, a.strongest, b.strongest),
         _rate(a, b),
-        Part("duration", duration, "s", moments, a.duration_s, b.duration_s),
-        Part("pattern", pattern, "d′", SENSORY_NOISE),
+        DistanceComponent("duration", duration, "s", moments, a.duration_s, b.duration_s),
+        DistanceComponent("pattern", pattern, "d′", SENSORY_NOISE),
         _onset(a, b),
     )
 
@@ -177,7 +177,7 @@ def _place(one: Course, channel: Channel) -> int | None:
     return one.order.index(channel) if channel in one.order else None
 
 
-def _rate(a: Course, b: Course) -> Part:
+def _rate(a: Course, b: Course) -> DistanceComponent:
     """The largest factor between rates in a shared direction; else that between the rates of the first directions."""
     needed = load_rules().one("rate ratio").central
     shared = [(a.rate_K_per_s[channel], b.rate_K_per_s[channel]) for channel in a.order if channel in b.order]
@@ -185,15 +185,15 @@ def _rate(a: Course, b: Course) -> Part:
         shared = [(a.rate_K_per_s[a.order[0]], b.rate_K_per_s[b.order[0]])]
     moving = [(x, y) for x, y in shared if min(x, y) > 0.0]
     if not moving:
-        return Part("rate", None, "1", needed)
+        return DistanceComponent("rate", None, "1", needed)
     x, y = max(moving, key=lambda pair: max(pair) / min(pair))
-    return Part("rate", max(x, y) / min(x, y), "1", needed, x, y)
+    return DistanceComponent("rate", max(x, y) / min(x, y), "1", needed, x, y)
 
 
-def _onset(a: Course, b: Course) -> Part:
+def _onset(a: Course, b: Course) -> DistanceComponent:
     both: Channel = "warm" if a.channel == b.channel == "warm" else "cold"
     needed = load_rules().one("onset", channel=both).central
-    return Part("onset", _apart(a.onset_s, b.onset_s), "s", needed, a.onset_s, b.onset_s)
+    return DistanceComponent("onset", _apart(a.onset_s, b.onset_s), "s", needed, a.onset_s, b.onset_s)
 
 
 def _apart(a: float | None, b: float | None) -> float | None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.distance import difference, difference_trace, identification_dprime
+from ..identification.distance import difference_trace, identification_dprime, percept_distance
 from ..number_text import decimals, fixed, verdict
 from ..observer.observer import CHANNELS, Channel, Norm, Observer, check_norm
 from ..sensation.features import (
@@ -146,7 +146,7 @@ def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Obs
     k = int(np.hypot(over_time[0], over_time[1]).argmax())
     cold, warm = (abs(float(channel[k])) for channel in over_time)
     size, duration = math.hypot(cold, warm), felt_a.dt_s * (over_time.shape[1] - 1)
-    apart = size if norm == "max" else difference(felt_a, felt_b, observer, norm)
+    apart = size if norm == "max" else percept_distance(felt_a, felt_b, observer, norm)
     left = float(identification_dprime(apart, observer, norm, duration))
     values = {"difference": size, "cold": cold, "warm": warm, "time_s": k * felt_a.dt_s, norm: apart, "d_prime": left}
     names = f"{_name(a)} and {_name(b)}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..criteria import APART_DPRIME
+from ..criteria import DISTINGUISHABLE_DPRIME
 from ..number_text import decimals, significant
 from .rules import OURS, RuleResult, passes
 
@@ -71,14 +71,19 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
         model = icon.detected_probability >= FELT
         if rules != model:
             shown, limit = significant(icon.detected_probability, FELT, least=2)
-            word = "felt" if rules else "not felt"
-            said = f"{icon.name}: rules say {word}, the model {shown} detected (felt from {limit})"
-            found.append({"icon": icon.name, "rules": rules, "model": model, "text": said})
+            word = "detectable" if rules else "not detectable"
+            side = "above" if model else "below"
+            text = f"{icon.name}: rules: {word}; model: {shown} detected, {side} the {limit} criterion"
+            found.append({"icon": icon.name, "rules": rules, "model": model, "text": text})
     for pair in pairs:
-        apart = pair.d_prime >= APART_DPRIME
-        if pair.rules_pass != apart:
-            word = "told apart" if pair.rules_pass else "not told apart"
-            shown = f"{pair.d_prime:.{decimals(pair.d_prime, APART_DPRIME, 1)}f}"
-            said = f"{pair.a} and {pair.b}: rules say {word}, the model d′ {shown} (apart from {APART_DPRIME})"
-            found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": apart, "text": said})
+        model = pair.d_prime >= DISTINGUISHABLE_DPRIME
+        if pair.rules_pass != model:
+            word = "distinguishable" if pair.rules_pass else "not distinguishable"
+            side = "above" if model else "below"
+            d_prime = f"{pair.d_prime:.{decimals(pair.d_prime, DISTINGUISHABLE_DPRIME, 1)}f}"
+            text = (
+                f"{pair.a} and {pair.b}: rules: {word}; "
+                f"model: d′ {d_prime}, {side} the {DISTINGUISHABLE_DPRIME} criterion"
+            )
+            found.append({"a": pair.a, "b": pair.b, "rules": pair.rules_pass, "model": model, "text": text})
     return tuple(found)

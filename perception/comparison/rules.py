@@ -30,7 +30,7 @@ from ..sensation.percept import Percept
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
 
-TOLD_APART = "told apart"
+DISTINGUISHABLE = "distinguishable"
 OURS = ("direction", "peak", "rate ratio", "onset")
 """Rules of this project on a pair; one that passes tells it apart."""
 Plain = str | float | bool | None
@@ -142,7 +142,7 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
         if rates[0] > 0.0:
             ours.append(_at_least(table.one("rate ratio"), channel, rates[1] / rates[0]))
     ours.append(_onset(table, a, b))
-    return (*theirs, *ours, _any(table.one(TOLD_APART), ours))
+    return (*theirs, *ours, _any(table.one(DISTINGUISHABLE), ours))
 
 
 def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
@@ -208,7 +208,7 @@ def _onset(table: Table, a: Trace, b: Trace) -> RuleResult:
 
 def _any(record: Record, ours: list[RuleResult]) -> RuleResult:
     passed = [r.rule for r in ours if r.passed]
-    text = f"{TOLD_APART}: {'by ' + ', '.join(passed) if passed else 'no rule separates the two'}"
+    text = f"{DISTINGUISHABLE}: {'by ' + ', '.join(passed) if passed else 'no rule separates the two'}"
     count = float(len(passed))
     return _result(record, None, bool(passed), count, count - 1.0, 1.0, text)
 

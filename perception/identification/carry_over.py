@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..observer.observer import NORMS, Norm, Observer
 from ..sensation.percept import perceive_many, uniform_clock
-from .distance import differences, identification_noise
+from .distance import identification_noise, percept_distances
 from .task import Task
 
 if TYPE_CHECKING:
@@ -103,13 +103,13 @@ def carry_over(
     for before, wait in enumerate(waits):
         after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
         pairs = np.stack([alone, after], axis=2)
-        found = differences(pairs[0], pairs[1], dt, person)
+        found = percept_distances(pairs[0], pairs[1], dt, person)
         apart[:, before] = [found[norm][:, 0, 1] for norm in NORMS]
     noise = np.array([float(identification_noise(person, norm, dt * (rows - 1))) for norm in NORMS])
     return CarryOver(tuple(icon.name for icon in icons), gap_s, apart, noise)
 
 
-def prepared(
+def prepare_task(
     task: Task,
     icons: Sequence[Icon],
     rig: Rig,
@@ -126,7 +126,7 @@ def prepared(
     return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
 
 
-def among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Task:
+def task_among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Task:
     """The task for some icons of a set that are then asked for on their own."""
     own = () if left is None else _rows(left.over(places)[:, list(places)])
     return replace(task.asked(), carried=own, places=() if task.asked().plain else tuple(places))

@@ -122,10 +122,10 @@ def embed(distances: Array) -> tuple[Array, Array]:
     return points, np.divide(bent, size, out=np.zeros_like(bent), where=size > 0)
 
 
-def equal_percent_correct(d: float, icons: int) -> float:
+def equal_proportion_correct(d: float, icons: int) -> float:
     """Proportion correct for equally distant icons, PC = ∫φ(x − d)Φ(x)^(m−1)dx, with d = d′/√2.
 
-    >>> round(equal_percent_correct(2.78, 6), 2)
+    >>> round(equal_proportion_correct(2.78, 6), 2)
     0.91
     """
     x = np.linspace(-9.0, 9.0 + d, 4001)

@@ -13,14 +13,14 @@ from thermicon.circuit.solver.delivery_deviation import loss_limit
 from ..arrays import Array
 from ..observer.observer import Observer, check_norm
 from ..sensation.percept import Percept, perceive
-from .distance import differences, identification_dprime
+from .distance import identification_dprime, percept_distances
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class DeliveredChange:
     """A number of the design and of what is delivered."""
 
     designed: float
@@ -33,17 +33,18 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class FeltChange:
+class PerceivedChange:
     """What a device changes of one icon for a nominal person: probability of detection, d′ to each other icon."""
 
     icon: str
-    detection: Change
-    d_prime: tuple[tuple[str, Change], ...]
+    detection: DeliveredChange
+    d_prime: tuple[tuple[str, DeliveredChange], ...]
 
     def __repr__(self) -> str:
         worst = max(self.d_prime, key=lambda pair: pair[1].drop, default=None)
         pair = "" if worst is None else f", d′ to {worst[0]} {worst[1].designed:.3g} → {worst[1].delivered:.3g}"
-        return f"FeltChange({self.icon}: detected {self.detection.designed:.3f} → {self.detection.delivered:.3f}{pair})"
+        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f}"
+        return f"PerceivedChange({self.icon}: {detected}{pair})"
 
     def losses(self) -> tuple[str, ...]:
         """A sentence for every drop over the stated loss."""
@@ -78,7 +79,7 @@ def judge_delivered(
     delivered: Sequence[Trace],
     observer: Observer | None = None,
     norm: str = "max",
-) -> tuple[FeltChange, ...]:
+) -> tuple[PerceivedChange, ...]:
     """Return what a device changes of every icon of a set, for a nominal person (or `observer`).
 
     All traces must have the same rows. Each icon is compared with the others as they were designed, and, delivered,
@@ -88,10 +89,14 @@ def judge_delivered(
     percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]
     before, after = (_d_primes(each, person, chosen) for each in percepts)
     return tuple(
-        FeltChange(
+        PerceivedChange(
             name,
-            Change(percepts[0][k].detected_probability, percepts[1][k].detected_probability),
-            tuple((other, Change(float(before[k, j]), float(after[k, j]))) for j, other in enumerate(names) if j != k),
+            DeliveredChange(percepts[0][k].detected_probability, percepts[1][k].detected_probability),
+            tuple(
+                (other, DeliveredChange(float(before[k, j]), float(after[k, j])))
+                for j, other in enumerate(names)
+                if j != k
+            ),
         )
         for k, name in enumerate(names)
     )
@@ -101,9 +106,9 @@ def _d_primes(percepts: Sequence[Percept], person: Observer, norm: str) -> Array
     cold = np.array([[percept.psi_cold for percept in percepts]])
     warm = np.array([[percept.psi_warm for percept in percepts]])
     first, chosen = percepts[0], check_norm(norm)
-    apart = differences(cold, warm, first.dt_s, person)[chosen][0]
+    apart = percept_distances(cold, warm, first.dt_s, person)[chosen][0]
     return identification_dprime(apart, person, chosen, first.dt_s * (first.psi_cold.size - 1))
 
 
-def _pair(change: Change) -> dict[str, float]:
+def _pair(change: DeliveredChange) -> dict[str, float]:
     return {"designed": change.designed, "delivered": change.delivered}

@@ -38,7 +38,7 @@ def smooth(psi: ArrayLike, dt_s: float, uncertainty_s: float) -> Array:
     return blurred.reshape(shape)
 
 
-def differences(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer) -> dict[Norm, Array]:
+def percept_distances(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer) -> dict[Norm, Array]:
     """Differences between all icons of every person, in sensation units, for every norm.
 
     `psi_cold`, `psi_warm` have shape (people, icons, n_time) on one clock. Each norm gets an array
@@ -67,11 +67,11 @@ def differences(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer:
     return matrices
 
 
-def difference(a: Percept, b: Percept, observer: Observer | None = None, norm: Norm = "max") -> float:
+def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, norm: Norm = "max") -> float:
     """Difference of two percepts in sensation units; the shorter one is held at its end."""
     person = Observer.load() if observer is None else observer
     cold, warm, dt = _common(a, b)
-    return float(differences(cold[None], warm[None], dt, person)[check_norm(norm)][0, 0, 1])
+    return float(percept_distances(cold[None], warm[None], dt, person)[check_norm(norm)][0, 0, 1])
 
 
 def difference_trace(a: Percept, b: Percept, observer: Observer | None = None) -> Array:

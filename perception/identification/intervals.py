@@ -18,7 +18,7 @@ from ..kernels.parallel import in_order
 from ..observer.observer import Norm
 from ..observer.people import People
 from ..sensation.parameters import latin, observer_at, observer_parameters
-from .population import Played, Scores, score
+from .population import ReceptorTemperatures, Scores, score
 from .task import USUAL, Task
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768
@@ -45,12 +45,12 @@ class ParameterIntervals:
 
     draws: int
     parameters: tuple[str, ...]
-    percent_correct: Interval
+    proportion_correct: Interval
     information_bits: Interval
     detected: tuple[Interval, ...]
 
     def __repr__(self) -> str:
-        (low, high), (least, most) = self.percent_correct, self.information_bits
+        (low, high), (least, most) = self.proportion_correct, self.information_bits
         return (
             f"ParameterIntervals({self.draws} draws of {len(self.parameters)} parameters: "
             f"{100 * low:.1f}–{100 * high:.1f} % correct, {least:.2f}–{most:.2f} bits)"
@@ -58,7 +58,7 @@ class ParameterIntervals:
 
 
 def parameter_intervals(
-    thin: Played,
+    thin: ReceptorTemperatures,
     crowd: People,
     predicted: Scores,
     norm: Norm,
@@ -77,7 +77,7 @@ def parameter_intervals(
         raise ValueError(f"an interval needs at least two draws of the parameters, not {draws}")
     free = observer_parameters(norm, thin.site)
     icons = predicted.detected.size
-    thin = thin.thinned(asked_again(icons), 1 if icons <= MANY else 2)
+    thin = thin.thinned(people_for_intervals(icons), 1 if icons <= MANY else 2)
     few = crowd.part(0, len(thin.cold_C))
     samples = min(SAMPLES, max(LEAST, NAMED // icons))
     centre = score(thin, few, observer_at({}), norm, seed, samples, task)
@@ -99,10 +99,10 @@ def parameter_intervals(
     return ParameterIntervals(
         draws=draws,
         parameters=tuple(parameter.name for parameter in free),
-        percent_correct=about(
-            float(predicted.percent_correct.mean()),
-            np.array([m.percent_correct.mean() for m in moved]),
-            float(centre.percent_correct.mean()),
+        proportion_correct=about(
+            float(predicted.proportion_correct.mean()),
+            np.array([m.proportion_correct.mean() for m in moved]),
+            float(centre.proportion_correct.mean()),
             1.0,
         ),
         information_bits=about(
@@ -123,10 +123,10 @@ def parameter_intervals(
     )
 
 
-def asked_again(icons: int) -> int:
+def people_for_intervals(icons: int) -> int:
     """How many people, at most, judge a set of so many icons with every observer.
 
-    >>> asked_again(6), asked_again(64)
+    >>> people_for_intervals(6), people_for_intervals(64)
     (24, 12)
     """
     return min(PEOPLE, max(FEWEST, PRESENTED // icons))

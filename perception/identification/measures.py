@@ -15,7 +15,7 @@ from ..arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
-class Plugin:
+class PluginInformation:
     """Plug-in information (bits) of simulated experiments: mean, and the interval of 95 % of them."""
 
     mean: float
@@ -24,10 +24,10 @@ class Plugin:
     trials: int
 
     def __repr__(self) -> str:
-        return f"Plugin({self.mean:.3f} bits [{self.low:.3f}, {self.high:.3f}] from {self.trials} trials)"
+        return f"PluginInformation({self.mean:.3f} bits [{self.low:.3f}, {self.high:.3f}] from {self.trials} trials)"
 
 
-def percent_correct(confusion: ArrayLike) -> Array:
+def proportion_correct(confusion: ArrayLike) -> Array:
     """Proportion correct (0–1) with every icon presented equally often; shape (..., m, m) → (...)."""
     found: Array = np.trace(np.asarray(confusion, dtype=np.float64), axis1=-2, axis2=-1) / np.shape(confusion)[-1]
     return found
@@ -44,7 +44,7 @@ def information_bits(confusion: ArrayLike) -> Array:
     return _mutual_information(joint)
 
 
-def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> Plugin:
+def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> PluginInformation:
     """What experiments of `trials` trials report, by the plug-in estimator on their counts.
 
     Presentations are spread over the icons as evenly as they go. With `confusion` of shape
@@ -53,7 +53,7 @@ def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: i
     people = np.asarray(confusion, dtype=np.float64)
     bits = experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments)
     low, high = np.percentile(bits, [2.5, 97.5])
-    return Plugin(float(bits.mean()), float(low), float(high), trials)
+    return PluginInformation(float(bits.mean()), float(low), float(high), trials)
 
 
 def experiments_bits(confusion: Array, trials: int, seed: int, experiments: int, first: int = 0) -> Array:

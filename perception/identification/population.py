@@ -11,13 +11,13 @@ from ..observer.people import People
 from ..sensation.detection import detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
-from .distance import differences, identification_noise
-from .measures import information_bits, percent_correct
+from .distance import identification_noise, percept_distances
+from .measures import information_bits, proportion_correct
 from .task import USUAL, Task
 
 
 @dataclass(frozen=True, slots=True)
-class Played:
+class ReceptorTemperatures:
     """What the receptors of every person went through: °C of shape (people, icons, n_time), clock in s, area in m²."""
 
     cold_C: Array
@@ -26,18 +26,18 @@ class Played:
     site: str
     area_m2: float
 
-    def of(self, icons: Sequence[int]) -> Played:
+    def of(self, icons: Sequence[int]) -> ReceptorTemperatures:
         """Some of the icons."""
-        return Played(self.cold_C[:, icons], self.warm_C[:, icons], self.time_s, self.site, self.area_m2)
+        return ReceptorTemperatures(self.cold_C[:, icons], self.warm_C[:, icons], self.time_s, self.site, self.area_m2)
 
-    def thinned(self, people: int, every: int) -> Played:
+    def thinned(self, people: int, every: int) -> ReceptorTemperatures:
         """The first people of them at every k-th instant, on arrays of their own."""
         cold, warm = (held[:people, :, ::every].copy() for held in (self.cold_C, self.warm_C))
-        return Played(cold, warm, self.time_s[::every], self.site, self.area_m2)
+        return ReceptorTemperatures(cold, warm, self.time_s[::every], self.site, self.area_m2)
 
 
 @dataclass(frozen=True, slots=True)
-class Felt:
+class PopulationResponse:
     """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s.
 
     `peaks` (people, icons) are the largest sensations, cold and warm.
@@ -53,12 +53,12 @@ class Felt:
 class Scores:
     """What one observer's constants make of it: per person proportion correct and bits, per icon the detected share."""
 
-    percent_correct: Array
+    proportion_correct: Array
     information_bits: Array
     detected: Array
 
 
-def feel(played: Played, crowd: People, observer: Observer) -> Felt:
+def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> PopulationResponse:
     """What every person feels of every icon, and how far apart the icons are for them."""
     dt, rows = uniform_clock(played.time_s)
     cold, warm = perceive_many(
@@ -82,17 +82,17 @@ def feel(played: Played, crowd: People, observer: Observer) -> Felt:
         decision_s=crowd.decision_s[:, None],
     )
     peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    return Felt(differences(cold, warm, dt, observer), found.probability, dt * (rows - 1), peaks)
+    return PopulationResponse(percept_distances(cold, warm, dt, observer), found.probability, dt * (rows - 1), peaks)
 
 
-def between(felt: Felt, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
+def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) is each person's own noise."""
     own = task.memory(memory, felt.peaks, observer)[:, None, None]
     return felt.apart[norm] / task.between(identification_noise(observer, norm, felt.duration_s, own), norm)
 
 
-def judge(
-    felt: Felt,
+def identify(
+    felt: PopulationResponse,
     norm: Norm,
     crowd: People,
     observer: Observer,
@@ -105,15 +105,21 @@ def judge(
 
     `first` is the number of the first person, on which the noise and the bias hang.
     """
-    d_prime = between(felt, norm, crowd.memory, observer, task)
+    d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
     bias = task.favour(first, len(crowd), d_prime.shape[-1], seed)
     return d_prime, confuse(d_prime, lapse=crowd.lapse, bias=bias, seed=seed, samples=samples, first=first)
 
 
 def score(
-    played: Played, crowd: People, observer: Observer, norm: Norm, seed: int, samples: int, task: Task = USUAL
+    played: ReceptorTemperatures,
+    crowd: People,
+    observer: Observer,
+    norm: Norm,
+    seed: int,
+    samples: int,
+    task: Task = USUAL,
 ) -> Scores:
     """The whole chain for one observer, without what only a report needs."""
-    felt = feel(played, crowd, observer)
-    confusion = judge(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
-    return Scores(percent_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))
+    felt = respond(played, crowd, observer)
+    confusion = identify(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
+    return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

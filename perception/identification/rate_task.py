@@ -23,10 +23,10 @@ from ..arrays import Array
 from ..observer.channels import CHANNELS, NORMS, Norm
 from ..observer.observer import Observer
 from ..observer.variants import source_of
-from ..sensation.bench import Bench, Stimuli, ramp
+from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.fits import RIG, with_unit_drives
 from ..sensation.percept import perceive_many
-from .distance import differences, memory_from_task
+from .distance import memory_from_task, percept_distances
 
 TAIL_S = 10.0
 STRENGTHS = np.round(np.linspace(0.0, 1.0, 51), 2)
@@ -116,7 +116,7 @@ def rate_task(known: Table, observer: Observer) -> list[RateCase]:
     """The published rate discrimination, simulated: every rate and span, against a rate larger by the fraction."""
     cases = []
     for cold, warm, dt in _felt(known, observer):
-        apart = differences(cold[None], warm[None], dt, observer)
+        apart = percept_distances(cold[None], warm[None], dt, observer)
         cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, dt * (cold.shape[-1] - 1)))
     return cases
 
@@ -143,7 +143,7 @@ def with_gain(observer: Observer, strength: float) -> Observer:
 
 
 @lru_cache(maxsize=64)
-def _pair(span_K: float, slow: float, fast: float) -> Stimuli:
+def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
     end = round(span_K / slow + TAIL_S, 2)
     return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
 

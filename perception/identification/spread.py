@@ -13,7 +13,7 @@ MOST_PEOPLE, MOST_CELLS = 64, 200_000
 
 
 @dataclass(frozen=True, slots=True)
-class Spread:
+class PersonSpread:
     """Over people: `place_probability` (icons, places), whose rows and columns sum to 1; `d_prime` (few, icons, icons).
 
     Places go from the icon that a person names best to the one named worst. Icons that agree to the whole per cent
@@ -30,11 +30,11 @@ class Spread:
             object.__setattr__(self, name, own)
 
 
-def spread_over_people(d_prime: Array, correct: Array) -> Spread:
+def spread_over_people(d_prime: Array, correct: Array) -> PersonSpread:
     """Places and a few d′ out of pairwise d′ (people, icons, icons) and proportions correct (people, icons)."""
     icons = d_prime.shape[-1]
     few = max(2, min(MOST_PEOPLE, MOST_CELLS // (icons * icons)))
-    return Spread(place_probability(correct), d_prime[:few])
+    return PersonSpread(place_probability(correct), d_prime[:few])
 
 
 def place_probability(correct: Array) -> Array:

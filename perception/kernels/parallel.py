@@ -13,8 +13,8 @@ from thermicon.circuit.solver.cores import at_most, cores
 
 SMALL = 200_000
 MOST_THREADS = 8
-Asked = TypeVar("Asked")
-Found = TypeVar("Found")
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 
 def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
@@ -33,8 +33,8 @@ def over_rows(work: Callable[[slice], None], rows: int, size: int) -> None:
 
 
 def in_order(
-    work: Callable[[Asked], Found], each: Sequence[Asked], workers: int | None = None, most: int = MOST_THREADS
-) -> Iterator[Found]:
+    work: Callable[[Item], Result], each: Sequence[Item], workers: int | None = None, most: int = MOST_THREADS
+) -> Iterator[Result]:
     """Results of `work` in the order of `each`, by `workers` threads (None: the cores there are, up to `most`).
 
     The kernels let go of the interpreter lock. No more than two results a worker wait to be taken.
@@ -45,7 +45,7 @@ def in_order(
     allowed = min(cores(), most) if workers is None else workers
     threads = max(1, min(allowed, len(each)))
 
-    def one(asked: Asked) -> Found:
+    def one(asked: Item) -> Result:
         with at_most(allowed // threads):
             return work(asked)
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from thermicon.circuit.solver.draw import COOL, new_axes
 
 from ..arrays import Array
-from ..criteria import APART_DPRIME
+from ..criteria import DISTINGUISHABLE_DPRIME
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,7 +38,7 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool 
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
     axes.set_xlabel("answered")
     axes.set_ylabel("presented")
-    axes.set_title(f"predicted confusions, % ({100 * ranking.percent_correct:.0f} % correct)")
+    axes.set_title(f"predicted confusions, % ({100 * ranking.proportion_correct:.0f} % correct)")
     return axes
 
 
@@ -47,7 +47,7 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None, *, clustered: bool =
     order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
     names = [ranking.marked[k] for k in order]
     matrix = ranking.d_prime[np.ix_(order, order)]
-    axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * APART_DPRIME))
+    axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))
     axes.set_xlabel("… and")
     axes.set_ylabel("d′ between …")
     axes.set_title(f"predicted d′ between icons ({ranking.norm})")

@@ -1,4 +1,4 @@
-"""The picture of a sensitivity: two bars a parameter, the most important on top."""
+"""Figure of a sensitivity study: two bars for each parameter, the most important at the top."""
 
 from __future__ import annotations
 
@@ -17,15 +17,13 @@ HEIGHT = 0.38
 
 
 def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
-    """Draw total indices or mean effects, per cent correct above bits; by Morris in shares of the largest effect."""
+    """Draw the total Sobol indices of every parameter, proportion correct above bits."""
     axes = _axes(len(found.effects)) if ax is None else ax
     names = [effect.parameter.name for effect in found.effects]
     places = np.arange(len(names))
-    correct = np.array([effect.percent_correct for effect in found.effects])
+    correct = np.array([effect.proportion_correct for effect in found.effects])
     bits = np.array([effect.information_bits for effect in found.effects])
-    if found.method == "morris":
-        correct, bits = (size / size.max() if size.max() > 0 else size for size in (correct, bits))
-    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color=COOL, label="per cent correct")
+    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color=COOL, label="proportion correct")
     axes.barh(places + HEIGHT / 2, bits, HEIGHT, color=WARM, label="bits")
     axes.set_yticks(places, names)
     axes.invert_yaxis()
@@ -34,9 +32,8 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    share = "share of the variance that it takes part in (total Sobol index)"
-    axes.set_xlabel(share if found.method == "sobol" else "mean effect over its interval, share of the largest")
-    axes.set_title("what to measure first", loc="left")
+    axes.set_xlabel("share of the variance (total Sobol index)")
+    axes.set_title("Parameters to measure first", loc="left")
     axes.legend(frameon=False, loc="lower right")
     return axes
 

@@ -1,6 +1,6 @@
-"""The same chunks on a dask.distributed cluster, for work that one machine would take too long for.
+"""The same batches on a dask.distributed cluster, for jobs that take too long on one machine.
 
-Chunks of a worker that dies are done again by others; what comes back does not depend on who did it.
+Batches of a worker that dies are computed again by others; the result does not depend on which worker computed it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from .chunks import Found, Work, code_digest, run
+from .batches import BatchResult, Job, code_digest, run
 
 PATIENCE_S = 5.0
 """How long to wait for a scheduler to answer, and for a first worker."""
@@ -21,17 +21,17 @@ ADDRESS = re.compile(r"((tcp|tls|ws|wss)://)?[^\s/:]+:\d{1,5}|((tcp|tls|ws|wss):
 
 
 class ClusterError(RuntimeError):
-    """A cluster cannot be used; the text says why and what to change."""
+    """A cluster cannot be used; the text states why and what to change."""
 
 
-def on_cluster(work: Work, numbers: list[int], address: str) -> Iterator[tuple[int, Found]]:
-    """Do some chunks on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
+def on_cluster(job: Job, numbers: list[int], address: str) -> Iterator[tuple[int, BatchResult]]:
+    """Compute batches on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
 
-    Each is given as soon as it is done. Raises `ClusterError` where nothing answers, there is no worker, or a worker
+    Batches are yielded as they finish. Raises `ClusterError` where nothing answers, there is no worker, or a worker
     has other code or fails.
     """
     with _client(address) as client:
-        tasks = {client.submit(_run, work, number, pure=False, retries=RETRIES): number for number in numbers}
+        tasks = {client.submit(_run, job, number, pure=False, retries=RETRIES): number for number in numbers}
         try:
             for task in import_module("distributed").as_completed(list(tasks), loop=client.loop):
                 number = tasks.pop(task)
@@ -73,7 +73,7 @@ def _client(address: str) -> Iterator[Any]:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Keep what distributed logs about connections off stderr: what matters comes as an error."""
+    """Silence the log messages of distributed about connections: failures are raised as errors."""
     loggers = [logging.getLogger(name) for name in ("distributed", "distributed.comm", "distributed.client", "tornado")]
     before = [logger.level for logger in loggers]
     for logger in loggers:
@@ -85,17 +85,17 @@ def _quiet() -> Iterator[None]:
             logger.setLevel(level)
 
 
-def _run(work: Work, number: int) -> tuple[str, Found]:
-    """Done on a worker: the chunk, with what code it was done by."""
+def _run(job: Job, number: int) -> tuple[str, BatchResult]:
+    """Runs on a worker: the hash of its code, and the batch."""
     from thermicon.circuit.solver.cores import at_most
 
     with at_most(1):
-        return code_digest(), run(work, number)
+        return code_digest(), run(job, number)
 
 
-def _result(task: Any, address: str) -> Found:
+def _result(task: Any, address: str) -> BatchResult:
     try:
-        code, found = task.result()
+        code, result = task.result()
     except Exception as error:
         raise ClusterError(
             f"a worker of the cluster at {address} failed: {error or type(error).__name__}; all workers need the same "
@@ -103,5 +103,5 @@ def _result(task: Any, address: str) -> Found:
         ) from error
     if code != code_digest():
         raise ClusterError(f"a worker of the cluster at {address} has another version of thermicon: install the same")
-    made: Found = found
-    return made
+    batch: BatchResult = result
+    return batch

@@ -15,11 +15,11 @@ import numpy as np
 from thermicon.circuit.program import own_version
 
 from ..arrays import Array
-from ..comparison.distance_components import course, course_parts
+from ..comparison.distance_components import course, course_components
 from ..comparison.reasons import pair_reasons
 from ..comparison.rule_score import disagreements, icon_score, pair_margin, worst_by_rules
 from ..comparison.rules import icon_rules, pair_rules, rig_rules
-from ..identification.carry_over import CarryOver, among, prepared
+from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.intervals import DRAWS, parameter_intervals
 from ..identification.population import Scores
 from ..identification.spread import spread_over_people
@@ -27,13 +27,12 @@ from ..identification.task import USUAL, Task
 from ..observer.observer import DATA, Norm, Observer, check_norm
 from ..observer.people import People, draw_people
 from ..selection.choose import Choice, choose
-from ..selection.request import Choosing, against, check_asked
+from ..selection.pair_edits import with_edits
+from ..selection.request import Selection, check_selection, objection
 from ..sensation.coverage import outside_data
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept, perceive
-from .chunks import RATE_HZ, Work
-from .edits import with_edits
-from .gather import Gathered, Where, gather
+from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
 from .ranking import IconScore, PairScore, Ranking
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def rank(
     norm: str = "max",
     by: str = "model",
     parameters: int = DRAWS,
-    choosing: Choosing | None = None,
+    choosing: Selection | None = None,
     edits: str = "none",
     task: Task = USUAL,
     workers: int | None = None,
@@ -96,24 +95,24 @@ def rank(
     if edits not in EDITS:
         raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
     if choosing is not None:
-        check_asked(choosing, [icon.name for icon in members])
+        check_selection(choosing, [icon.name for icon in members])
     if parameters < 0 or parameters == 1:
         raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
     draws = parameters if by == "model" else 0
-    where = Where(workers, cluster, keep)
+    execution = Execution(workers, cluster, keep)
     observer = Observer.load()
     crowd = draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    fine = [] if task.plain else [k for k, trace in enumerate(traces) if against(trace) is None]
-    task, left = prepared(task, members, rig, end, fine, tracking)
-    work = Work(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
-    report = _steps(progress, 2 + work.chunks + draws + (choosing is not None))
+    fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
+    task, left = prepare_task(task, members, rig, end, fine, tracking)
+    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
+    report = _steps(progress, 2 + job.batches + draws + (choosing is not None))
     percepts = [perceive(trace, observer) for trace in traces]
     report()
 
-    all_ = gather(work, where, report)
+    all_ = collect_batches(job, execution, report)
     made = _assemble(members, traces, percepts, all_, chosen, observer)
     counted = _playable(made)
     worst = _worst(counted) if by == "model" else worst_by_rules(counted)
@@ -155,8 +154,8 @@ def rank(
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,
-        percent_correct=float(all_.correct.mean()),
-        percent_correct_interval=_interval(all_.correct),
+        proportion_correct=float(all_.correct.mean()),
+        proportion_correct_interval=_interval(all_.correct),
         information_bits=float(all_.bits.mean()),
         information_bits_interval=_interval(all_.bits),
         bits_per_s=float(all_.bits.mean()) / (sum(durations) / len(durations)),
@@ -189,7 +188,7 @@ def _assemble(
     icons: Sequence[Icon],
     traces: Sequence[Trace],
     percepts: Sequence[Percept],
-    all_: Gathered,
+    all_: PooledResult,
     norm: Norm,
     observer: Observer,
 ) -> _Made:
@@ -208,15 +207,15 @@ def _assemble(
                 why=tuple(reason.text for reason in why),
                 rules=rules,
                 rules_margin=pair_margin(rules),
-                parts=course_parts(courses[i], courses[j], observer),
+                parts=course_components(courses[i], courses[j], observer),
             )
         )
     scored = []
     for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
         safe, reason, cautions = _verdict(trace)
         own = icon_rules(trace, percept)
-        against = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
-        share, margin = icon_score(own, against)
+        objection = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
+        share, margin = icon_score(own, objection)
         scored.append(
             IconScore(
                 name=icon.name,
@@ -226,7 +225,7 @@ def _assemble(
                 peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
-                percent_correct=float(pooled[k, k]),
+                proportion_correct=float(pooled[k, k]),
                 reachable=bool(trace.reachable),
                 safe=safe,
                 reason=reason,
@@ -245,9 +244,9 @@ def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
     from thermicon.circuit import judge_safety
 
     safety = judge_safety(trace)
-    against = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
+    objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
     amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
-    return bool(safety.safe), "; ".join(against) or None, amber
+    return bool(safety.safe), "; ".join(objection) or None, amber
 
 
 def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
@@ -259,7 +258,7 @@ def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
 def _with_interval(
     picked: Choice,
     names: Sequence[str],
-    all_: Gathered,
+    all_: PooledResult,
     crowd: People,
     norm: Norm,
     draws: int,
@@ -270,9 +269,9 @@ def _with_interval(
     """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
     places = [names.index(name) for name in picked.icons]
     own = picked.at_own_range
-    at_once = Scores(np.array([own.percent_correct]), np.array([own.information_bits]), all_.detected[places])
+    at_once = Scores(np.array([own.proportion_correct]), np.array([own.information_bits]), all_.detected[places])
     found = parameter_intervals(
-        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=among(*asked, places), step=step
+        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=task_among(*asked, places), step=step
     )
     return replace(picked, parameter_intervals=found)
 

@@ -103,8 +103,8 @@ def plain(held: Any) -> Any:
 def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dict[str, Any]:
     many = model and len(ranking.icons) > 1
     return {
-        "percent_correct": ranking.percent_correct if model else None,
-        "percent_correct_interval": list(ranking.percent_correct_interval) if model else None,
+        "proportion_correct": ranking.proportion_correct if model else None,
+        "proportion_correct_interval": list(ranking.proportion_correct_interval) if model else None,
         "information_bits": ranking.information_bits if many else None,
         "information_bits_interval": list(ranking.information_bits_interval) if many else None,
         "bits_per_s": ranking.bits_per_s if many else None,
@@ -114,7 +114,7 @@ def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dic
         "rules_disagree": list(ranking.rules_disagree),
         "norm_sensitivity": ranking.norm_sensitivity if model else {},
         "norm_changes": ranking.norm_changes if model else {},
-        "percent_correct_parameter_interval": asked.percent_correct if asked else None,
+        "proportion_correct_parameter_interval": asked.proportion_correct if asked else None,
         "information_bits_parameter_interval": asked.information_bits if asked and many else None,
         "parameter_draws": asked.draws if asked else None,
         "rules_score": ranking.rules_score,
@@ -134,7 +134,7 @@ def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, 
         "peak_change_K": both(icon.peak_change_K),
         "attack_K_per_s": both(icon.attack_K_per_s),
         "delay_s": both(icon.delay_s),
-        "percent_correct": icon.percent_correct if model else None,
+        "proportion_correct": icon.proportion_correct if model else None,
         "reachable": icon.reachable,
         "safe": icon.safe,
         "reason": icon.reason,

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..comparison.distance_components import Part
+from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
-from ..comparison.rules import TOLD_APART, RuleResult
+from ..comparison.rules import DISTINGUISHABLE, RuleResult
 from ..identification.intervals import ParameterIntervals
-from ..identification.spread import Spread
+from ..identification.spread import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
 
@@ -48,7 +48,7 @@ class IconScore:
     peak_change_K: tuple[float, float]
     attack_K_per_s: tuple[float, float]
     delay_s: tuple[float | None, float | None]
-    percent_correct: float
+    proportion_correct: float
     reachable: bool
     safe: bool
     reason: str | None
@@ -81,12 +81,12 @@ class PairScore:
     rules: tuple[RuleResult, ...]
     rules_margin: float | None = None
     edit: Edit | NoEdit | None = None
-    parts: tuple[Part, ...] = ()
+    parts: tuple[DistanceComponent, ...] = ()
 
     @property
     def rules_pass(self) -> bool:
         """Whether the rules alone tell the two apart."""
-        return any(r.passed for r in self.rules if r.rule == TOLD_APART)
+        return any(r.passed for r in self.rules if r.rule == DISTINGUISHABLE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +115,8 @@ class Ranking:
     icons: tuple[IconScore, ...]
     pairs: tuple[PairScore, ...]
     confusion: Array
-    percent_correct: float
-    percent_correct_interval: tuple[float, float]
+    proportion_correct: float
+    proportion_correct_interval: tuple[float, float]
     information_bits: float
     information_bits_interval: tuple[float, float]
     bits_per_s: float
@@ -132,7 +132,7 @@ class Ranking:
     parameter_intervals: ParameterIntervals | None = None
     rig_changes: tuple[str, ...] = ()
     chosen: Choice | None = None
-    spread: Spread | None = None
+    spread: PersonSpread | None = None
     task: Task = USUAL
     carry_over: CarryOver | None = None
 
@@ -174,7 +174,7 @@ class Ranking:
 
         Only by more than one point of per cent correct in both, since less is within what sampling blurs.
         """
-        own = [icon.percent_correct for icon in self.icons]
+        own = [icon.proportion_correct for icon in self.icons]
         return {
             norm: tuple(
                 (self.labels[i], self.labels[j])
@@ -198,7 +198,7 @@ class Ranking:
         return [
             {
                 "icon": icon.name,
-                "percent_correct": icon.percent_correct if model else None,
+                "proportion_correct": icon.proportion_correct if model else None,
                 "detected_probability": icon.detected_probability if model else None,
                 "onset_s": icon.onset_s if model else None,
                 "channel": icon.channel if model else None,
@@ -241,13 +241,13 @@ class Ranking:
         return plot_confusion(self, ax)
 
     def __repr__(self) -> str:
-        low, high = self.percent_correct_interval
+        low, high = self.proportion_correct_interval
         icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
         where = with_changes(self.rig, self.rig_changes)
         if self.by == "rules":
             worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
             apart = sum(pair.rules_pass for pair in self.pairs)
-            pairs = f", {apart} of {len(self.pairs)} pairs told apart" if self.pairs else ""
+            pairs = f", {apart} of {len(self.pairs)} pairs distinguishable" if self.pairs else ""
             return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
         crowd = "1 person" if self.people == 1 else f"{self.people} people"
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
@@ -255,7 +255,7 @@ class Ranking:
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         return (
             f"Ranking(predicted: {icons} on {where}, {crowd}, "
-            f"{100 * self.percent_correct:.1f} % correct{spread}{bits}{worst})"
+            f"{100 * self.proportion_correct:.1f} % correct{spread}{bits}{worst})"
         )
 
     def _repr_html_(self) -> str:
@@ -270,7 +270,7 @@ class Ranking:
         if self.by == "rules":
             margin = float("inf") if icon.rules_margin is None else icon.rules_margin
             return (not icon.playable, -icon.rules_score, -margin, icon.name)
-        return (not icon.playable, -icon.percent_correct, 0.0, icon.name)
+        return (not icon.playable, -icon.proportion_correct, 0.0, icon.name)
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:

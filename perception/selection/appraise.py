@@ -11,8 +11,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
-from ..identification.measures import information_bits, percent_correct
-from ..identification.population import Played, between, feel
+from ..identification.measures import information_bits, proportion_correct
+from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm, Observer
 from ..observer.people import People, draw_people
@@ -32,7 +32,7 @@ class Appraisal:
 
     worst_pair: tuple[str, str]
     d_prime: float
-    percent_correct: float
+    proportion_correct: float
     information_bits: float
     bits_per_s: float
 
@@ -40,7 +40,7 @@ class Appraisal:
         """The number that an objective goes by."""
         return {
             "worst": self.d_prime,
-            "correct": self.percent_correct,
+            "correct": self.proportion_correct,
             "bits": self.information_bits,
             "bits-per-s": self.bits_per_s,
         }[objective]
@@ -50,7 +50,7 @@ class Appraisal:
         return {
             "worst_pair": list(self.worst_pair),
             "d_prime": self.d_prime,
-            "percent_correct": self.percent_correct,
+            "proportion_correct": self.proportion_correct,
             "information_bits": self.information_bits,
             "bits_per_s": self.bits_per_s,
         }
@@ -80,11 +80,11 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("two icons at least are needed to be told apart")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, durations = distances(icons, rig, crowd, tracking, norm, task=task)
-    return appraised([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
+    d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task)
+    return appraise_dprime([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
 
 
-def appraised(
+def appraise_dprime(
     names: Sequence[str],
     d_prime: Array,
     lapse: Array,
@@ -104,13 +104,13 @@ def appraised(
     return Appraisal(
         worst_pair=(names[a], names[b]),
         d_prime=float(middle[a, b]),
-        percent_correct=float(percent_correct(probability).mean()),
+        proportion_correct=float(proportion_correct(probability).mean()),
         information_bits=bits,
         bits_per_s=bits / float(np.mean(durations_s)),
     )
 
 
-def distances(
+def population_dprime(
     icons: Sequence[Icon],
     rig: Rig,
     crowd: People,
@@ -133,5 +133,7 @@ def distances(
     end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
-    felt = feel(Played(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer)
-    return between(felt, norm, crowd.memory, observer, task), durations
+    felt = respond(
+        ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer
+    )
+    return memory_dprime(felt, norm, crowd.memory, observer, task), durations

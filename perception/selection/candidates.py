@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,14 +18,14 @@ FINE = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Gene:
+class Candidate:
     """One icon that is tried: its family and a share, 0–1, for each parameter; no family for a plain icon."""
 
     icon: Icon
     family: Family | None = None
     shares: tuple[float, ...] = ()
 
-    def moved(self, rng: np.random.Generator, step: float) -> Gene | None:
+    def moved(self, rng: np.random.Generator, step: float) -> Candidate | None:
         """The same family about half of whose parameters moved by a random step; None where that cannot be run."""
         if self.family is None:
             return None
@@ -36,28 +36,30 @@ class Gene:
         # A list has no neighbours: half of the time a listed value is drawn anew.
         listed = np.array([p.span is None or not p.unit for p in self.family.parameters])
         anew = which & listed & (rng.random(len(self.shares)) < MOVED)
-        return born(self.family, np.where(anew, fresh, jump).tolist())
+        return candidate_at(self.family, np.where(anew, fresh, jump).tolist())
 
 
-def born(family: Family, shares: Sequence[float]) -> Gene | None:
+def candidate_at(family: Family, shares: Sequence[float]) -> Candidate | None:
     """The gene of a member at these shares; None where the member cannot be run."""
     from thermicon.icons import CueErrors
 
     try:
-        return Gene(member(family, shares), family, tuple(shares))
+        return Candidate(member(family, shares), family, tuple(shares))
     except (CueErrors, ValueError):
         return None
 
 
-def drawn(families: Sequence[Family], count: int, rng: np.random.Generator) -> list[Gene]:
+def sample_candidates(families: Sequence[Family], count: int, rng: np.random.Generator) -> list[Candidate]:
     """Members of the families, as many of each: all that they count out where these are few, else drawn at random."""
-    found: list[Gene | None] = []
+    found: list[Candidate | None] = []
     each = max(2, count // len(families))
     for family in families:
         some = rng.choice(len(family), each, replace=False) if len(family) > each else np.arange(len(family))
         for index in np.sort(some):
             places = np.unravel_index(index, [len(parameter) for parameter in family.parameters])
-            found.append(born(family, [share_of(p, int(k)) for p, k in zip(family.parameters, places, strict=True)]))
+            found.append(
+                candidate_at(family, [share_of(p, int(k)) for p, k in zip(family.parameters, places, strict=True)])
+            )
     return [gene for gene in found if gene is not None]
 
 
@@ -68,15 +70,8 @@ def member(family: Family, shares: Sequence[float]) -> Icon:
     >>> member(read_cue("search-space").families[0], [0.5, 0.33, 0.0, 0.9]).name
     'dip_depth=3.5_rate=1.66_pause=0.5_times=2'
     """
-    from thermicon.icons import Family, Icon, Parameter
-
-    own = tuple(
-        Parameter(parameter.name, parameter.unit, listed=(value_at(parameter, share),))
-        for parameter, share in zip(family.parameters, shares, strict=False)
-    )
-    held = {field.name: getattr(family, field.name) for field in fields(family) if field.init}
-    found = Family.unproven({**held, "parameters": own})[0]
-    return Icon(found.name, found.statements, found.frame, found.metadata)
+    pairs = zip(family.parameters, shares, strict=False)
+    return family.variant({parameter.name: value_at(parameter, share) for parameter, share in pairs})
 
 
 def value_at(parameter: Parameter, share: float) -> float:

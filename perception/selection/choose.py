@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..identification.carry_over import CarryOver, among
+from ..identification.carry_over import CarryOver, task_among
 from ..identification.intervals import ParameterIntervals
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People
 from .appraise import Appraisal, appraise
-from .request import ChoiceError, Choosing, Usable, usable
-from .subset_identification import Namings, Objective
+from .max_min_subset import Limits, UndecidedError, max_min_subset
+from .request import ChoiceError, Selection, UsableIcons, usable_icons
+from .subset_identification import Objective, SubsetIdentification
 from .upper_bounds import upper_bound
-from .widest import Limits, OutOfBudget, widest
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -38,7 +38,7 @@ ONE_BY_ONE = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Picked:
+class SubsetChoice:
     """Places of the chosen, the objective's value, what no choice exceeds, whether that is reached, choices seen."""
 
     chosen: tuple[int, ...]
@@ -96,7 +96,7 @@ class Choice:
             "median_loss": self.loss,
             "at_own_range": {
                 **self.at_own_range.to_dict(),
-                "percent_correct_parameter_interval": None if open_ is None else list(open_.percent_correct),
+                "proportion_correct_parameter_interval": None if open_ is None else list(open_.proportion_correct),
                 "information_bits_parameter_interval": None if open_ is None else list(open_.information_bits),
             },
         }
@@ -107,7 +107,7 @@ class Choice:
 
 
 def choose(
-    asked: Choosing,
+    asked: Selection,
     icons: Sequence[Icon],
     rig: Rig,
     traces: Sequence[Trace],
@@ -126,7 +126,7 @@ def choose(
 
     Raises `ChoiceError` where too few icons are usable or no choice keeps the limits.
     """
-    pool = usable(asked, icons, traces, rig)
+    pool = usable_icons(asked, icons, traces, rig)
     places = list(pool.places)
     d = d_prime[:, places][:, :, places]
     must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
@@ -134,7 +134,7 @@ def choose(
     namings = None
     if asked.objective != "worst":
         favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
-        namings = Namings.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
+        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
     picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
     if picked is None:
         raise ChoiceError(_nothing_fits(asked, pool))
@@ -163,38 +163,46 @@ def choose(
             seed=seed,
             tracking=tracking,
             norm=norm,
-            task=among(task, left, chosen),
+            task=task_among(task, left, chosen),
         ),
     )
 
 
 def pick(
     middle: Array,
-    namings: Namings | None,
+    namings: SubsetIdentification | None,
     count: int,
     objective: Objective,
     must: Sequence[int] = (),
     limits: Limits | None = None,
     seed: int = 0,
-) -> Picked | None:
+) -> SubsetChoice | None:
     """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
     within = limits or Limits.none(len(middle))
     if namings is None or objective == "worst":
         try:
-            found = widest(middle, count, must, within)
-        except OutOfBudget:
+            best = max_min_subset(middle, count, must, within)
+        except UndecidedError:
             raise ChoiceError("whether any choice keeps the totals could not be decided: loosen one of them") from None
-        return None if found is None else Picked(found.chosen, found.value, found.bound, found.proven, found.nodes)
+        if best is None:
+            return None
+        return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.programs)
     n, free = len(middle), count - len(must)
     if n <= ENUMERATED or math.comb(n - len(must), free) <= MOST_SUBSETS:
-        best = namings.enumerated(count, objective, must, within.costs, within.most)
-        return None if best is None else Picked(best[0], best[1], best[1], True, best[2])
+        optimum = namings.enumerated(count, objective, must, within.costs, within.most)
+        return None if optimum is None else SubsetChoice(optimum[0], optimum[1], optimum[1], True, optimum[2])
     return _climbed(middle, namings, count, objective, must, within, seed)
 
 
 def _climbed(
-    middle: Array, namings: Namings, count: int, objective: Objective, must: Sequence[int], limits: Limits, seed: int
-) -> Picked | None:
+    middle: Array,
+    namings: SubsetIdentification,
+    count: int,
+    objective: Objective,
+    must: Sequence[int],
+    limits: Limits,
+    seed: int,
+) -> SubsetChoice | None:
     """The best of the widest choice and of random ones, each bettered by single swaps until none helps."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
     others = [k for k in range(len(middle)) if k not in must]
@@ -220,7 +228,7 @@ def _climbed(
         if score > value + 1e-12:
             best, value = ordered, namings.score(ordered, objective)
     bound = upper_bound(namings, count, objective)
-    return Picked(best, value, max(bound, value), value >= bound, seen)
+    return SubsetChoice(best, value, max(bound, value), value >= bound, seen)
 
 
 def _swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> Array:
@@ -236,7 +244,7 @@ def _swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -
     return allowed
 
 
-def _limits(asked: Choosing, pool: Usable) -> Limits:
+def _limits(asked: Selection, pool: UsableIcons) -> Limits:
     rows = [
         (costs, most)
         for costs, most in ((pool.durations_s, asked.most_s), (pool.energies_J, asked.most_J))
@@ -247,13 +255,13 @@ def _limits(asked: Choosing, pool: Usable) -> Limits:
     return Limits(np.stack([costs for costs, _ in rows]), tuple(most for _, most in rows))
 
 
-def _for_people(d: Array, picked: Picked, must: Sequence[int], limits: Limits) -> tuple[float, float]:
+def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Limits) -> tuple[float, float]:
     """Share of people for whom no other choice parts its worst pair farther, and what the middle person loses."""
     own = list(picked.chosen)
     losses = []
     for one in d[:ONE_BY_ONE]:
         mine = float(one[np.ix_(own, own)][np.triu_indices(len(own), 1)].min())
-        best = widest(one, len(own), must, limits, most_nodes=2_000, ties=False)
+        best = max_min_subset(one, len(own), must, limits, ties=False)
         losses.append(max(0.0, (mine if best is None else best.value) - mine))
     return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))
 
@@ -264,7 +272,7 @@ def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
     return names[first[k]], names[second[k]]
 
 
-def _nothing_fits(asked: Choosing, pool: Usable) -> str:
+def _nothing_fits(asked: Selection, pool: UsableIcons) -> str:
     told = []
     for costs, most, unit, what in (
         (pool.durations_s, asked.most_s, "s", "shortest last"),

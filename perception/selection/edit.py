@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..criteria import APART_DPRIME
-from ..identification.carry_over import prepared
+from ..criteria import DISTINGUISHABLE_DPRIME
+from ..identification.carry_over import prepare_task
 from ..identification.task import USUAL, Task
 from ..observer.observer import Norm
 from ..observer.people import People, draw_people
-from .appraise import distances
+from .appraise import population_dprime
+from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
 from .nominal import Sensed, dprimes, end_of, sense
-from .numbers import Number, line_of, numbers_of, repeated, with_number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -86,7 +86,7 @@ class NoEdit:
 
 
 @dataclass(frozen=True, slots=True)
-class _Tried:
+class _CandidateEdit:
     """An edit that is looked at: which icon, which number (None: a repeat), what it becomes, what it costs."""
 
     place: int
@@ -105,7 +105,7 @@ def cheapest_edit(
     a: str,
     b: str,
     *,
-    wanted: float = APART_DPRIME,
+    wanted: float = DISTINGUISHABLE_DPRIME,
     people: int | People = CONFIRMED_BY,
     seed: int = 0,
     tracking: str | None = None,
@@ -153,12 +153,12 @@ class _Search:
         rigs = crowd.rigs(self.rig)
 
         def medians(some: Sequence[Icon], end_s: float, asked: Task = USUAL) -> Array:
-            found = distances(some, self.rig, crowd, tracking, self.norm, rigs=rigs, end_s=end_s, task=asked)[0]
+            found = population_dprime(some, self.rig, crowd, tracking, self.norm, rigs=rigs, end_s=end_s, task=asked)[0]
             middle: Array = np.median(found, axis=0)
             return middle
 
         def of_set(icons: Sequence[Icon], end_s: float) -> Array:
-            return medians(icons, end_s, prepared(task, icons, self.rig, end_s, task.counted, tracking)[0])
+            return medians(icons, end_s, prepare_task(task, icons, self.rig, end_s, task.counted, tracking)[0])
 
         before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:
@@ -193,10 +193,10 @@ class _Search:
         said = "each one that parts them makes another pair worse" if refused or self.opposed else self._why_not()
         return NoEdit(f"no single edit parts them to d′ {self.wanted:.3g}: {said}")
 
-    def _untried(self, offers: Sequence[_Tried]) -> list[_Tried]:
+    def _untried(self, offers: Sequence[_CandidateEdit]) -> list[_CandidateEdit]:
         return [one for one in offers if (one.place, one.new) not in self.refused]
 
-    def _near(self, one: _Tried) -> list[int]:
+    def _near(self, one: _CandidateEdit) -> list[int]:
         """Icons that an edit brings nearer for the nominal person, those that end nearest; people are asked of them."""
         row, now = self.rows[one.place, one.new], self.now[one.place]
         nearer = [k for k in range(len(row)) if k not in self.pair and row[k] < now[k] and row[k] < NEAR * self.wanted]
@@ -205,7 +205,7 @@ class _Search:
     def _worse(self, before: Array, after: Array) -> bool:
         return bool(((after < before - TOLERANCE) & (after < FAR * self.wanted)).any())
 
-    def _offers(self) -> list[_Tried]:
+    def _offers(self) -> list[_CandidateEdit]:
         """Edits that do it for the nominal person, the cheapest first."""
         ways = [
             (place, number, up)
@@ -238,14 +238,14 @@ class _Search:
         return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
 
     @staticmethod
-    def _shortest(good: Sequence[_Tried]) -> list[_Tried]:
+    def _shortest(good: Sequence[_CandidateEdit]) -> list[_CandidateEdit]:
         """Of each number the edit with the fewest digits; those come first."""
-        first: dict[int, _Tried] = {}
+        first: dict[int, _CandidateEdit] = {}
         for one in good:
             first.setdefault(one.way[0], one)
         return list(first.values())
 
-    def _made(self, way: tuple[int, Number, bool], w: int, g: int, log: float, digits: int = 4) -> list[_Tried]:
+    def _made(self, way: tuple[int, Number, bool], w: int, g: int, log: float, digits: int = 4) -> list[_CandidateEdit]:
         """The icon with one number changed by a log ratio; nothing where the language or the whole icon forbids it."""
         place, number, up = way
         value = number.times(math.exp(log if up else -log))
@@ -261,18 +261,18 @@ class _Search:
             value,
         )
 
-    def _repeats(self, place: int) -> list[_Tried]:
+    def _repeats(self, place: int) -> list[_CandidateEdit]:
         icon = self.icons[place]
         count_of = len(icon.statements)
         once = "its one statement" if count_of == 1 else f"its {count_of} statements"
 
-        def tried(count: int) -> list[_Tried]:
+        def tried(count: int) -> list[_CandidateEdit]:
             told = (once, f"repeat {count} {{ {once} }}", math.log(count))
             return self._valid(lambda: repeated(icon, count), lambda _: told, place, (-1, count), float(count))
 
         return [one for count in REPEATS for one in tried(count)]
 
-    def _valid(self, make: Any, tell: Any, place: int, way: tuple[int, int], value: float) -> list[_Tried]:
+    def _valid(self, make: Any, tell: Any, place: int, way: tuple[int, int], value: float) -> list[_CandidateEdit]:
         from thermicon.circuit import duration_s
         from thermicon.icons import CueErrors
 
@@ -284,9 +284,9 @@ class _Search:
         if added > MOST_LONGER_S:
             return []
         old, line, ratio = tell(new)
-        return [_Tried(place, new, old, line, ratio + PER_SECOND * max(added, 0.0), added, way, value)]
+        return [_CandidateEdit(place, new, old, line, ratio + PER_SECOND * max(added, 0.0), added, way, value)]
 
-    def _good(self, tried: Sequence[_Tried]) -> list[bool]:
+    def _good(self, tried: Sequence[_CandidateEdit]) -> list[bool]:
         """Whether each parts the pair for the nominal person, is safe and reached, and leaves the others apart."""
         if not tried:
             return []
@@ -300,7 +300,7 @@ class _Search:
             fallen = (row < self.now[one.place] - TOLERANCE) & (row < FAR * self.wanted)
             fallen[[one.place, other]] = False
             parted = bool(row[other] >= self.target)
-            playable = (parted or row[other] > self.closest) and felt.against(at) is None
+            playable = (parted or row[other] > self.closest) and felt.objection(at) is None
             if playable and parted:
                 self.opposed |= bool(fallen.any())
             elif playable:

@@ -10,10 +10,10 @@ import numpy as np
 from ..arrays import Array
 from ..observer.observer import Norm, Observer
 from ..observer.people import draw_people
-from .appraise import distances
-from .candidates import Gene
+from .appraise import population_dprime
+from .candidates import Candidate
 from .nominal import dprimes, end_of, sense
-from .subset_identification import Namings, Objective
+from .subset_identification import Objective, SubsetIdentification
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
 PEOPLE = 24
 
 
-class Nominal:
-    """The nominal person; `against` is what speaks against each icon of the pool asked last, or None."""
+class NominalEvaluator:
+    """The nominal person; `objections` states why each icon of the last pool cannot be played, or None."""
 
     def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int) -> None:
         self.rig, self.objective, self.norm, self.seed = rig, objective, norm, seed
         self.lapse = np.array([Observer.load().lapse])
-        self.against: tuple[str | None, ...] = ()
+        self.objections: tuple[str | None, ...] = ()
 
-    def distances(self, icons: Sequence[Icon]) -> Array:
+    def pairwise_dprime(self, icons: Sequence[Icon]) -> Array:
         """d′ (1, icons, icons) from memory."""
         felt = sense(icons, self.rig, end_of(self._durations(icons).tolist()))
-        self.against = felt.all_against()
+        self.objections = felt.objections()
         return dprimes(felt, felt, self.norm)[None]
 
-    def namings(self, d_prime: Array, icons: Sequence[Icon]) -> Namings:
+    def namings(self, d_prime: Array, icons: Sequence[Icon]) -> SubsetIdentification:
         """Who is named what, for the objectives that count errors."""
-        return Namings.of(d_prime, self.lapse, self._durations(icons), self.seed)
+        return SubsetIdentification.of(d_prime, self.lapse, self._durations(icons), self.seed)
 
     def _durations(self, icons: Sequence[Icon]) -> Array:
         from thermicon.circuit import duration_s
@@ -46,7 +46,7 @@ class Nominal:
         return np.array([duration_s(icon, self.rig) for icon in icons])
 
 
-class Few(Nominal):
+class PopulationEvaluator(NominalEvaluator):
     """The first 24 people of a seed, each with contact, skin and thresholds of their own."""
 
     def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int, tracking: str | None) -> None:
@@ -54,17 +54,17 @@ class Few(Nominal):
         self.crowd, self.tracking = draw_people(PEOPLE, seed), tracking
         self.rigs, self.lapse = self.crowd.rigs(rig), self.crowd.lapse
 
-    def distances(self, icons: Sequence[Icon]) -> Array:
+    def pairwise_dprime(self, icons: Sequence[Icon]) -> Array:
         """d′ (24, icons, icons) from memory; safety and reach are those of the rig."""
-        self.against = sense(icons, self.rig, end_of(self._durations(icons).tolist())).all_against()
-        return distances(icons, self.rig, self.crowd, self.tracking, self.norm, rigs=self.rigs, rate_Hz=25.0)[0]
+        self.objections = sense(icons, self.rig, end_of(self._durations(icons).tolist())).objections()
+        return population_dprime(icons, self.rig, self.crowd, self.tracking, self.norm, rigs=self.rigs, rate_Hz=25.0)[0]
 
-    def better(self, one: list[Gene], other: list[Gene]) -> list[Gene]:
+    def better(self, one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
         """The better of two sets for these people; the first where they are equal."""
         values = []
         for genes in (one, other):
             icons = [gene.icon for gene in genes]
-            d = self.distances(icons)
+            d = self.pairwise_dprime(icons)
             middle = np.median(d, axis=0)[np.triu_indices(len(icons), 1)]
             few = self.objective == "worst"
             values.append(

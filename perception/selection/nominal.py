@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.distance import differences, identification_dprime
+from ..identification.distance import identification_dprime, percept_distances
 from ..observer.observer import Norm, Observer
 from ..sensation.percept import perceive_many, uniform_clock
-from .request import against
+from .request import objection
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -32,13 +32,13 @@ class Sensed:
     dt_s: float
     traces: tuple[Trace, ...]
 
-    def against(self, place: int) -> str | None:
+    def objection(self, place: int) -> str | None:
         """What speaks against playing an icon, None where nothing does; judged only when asked, since it takes long."""
-        return against(self.traces[place])
+        return objection(self.traces[place])
 
-    def all_against(self) -> tuple[str | None, ...]:
+    def objections(self) -> tuple[str | None, ...]:
         """What speaks against each icon."""
-        return tuple(map(against, self.traces))
+        return tuple(map(objection, self.traces))
 
 
 def sense(icons: Sequence[Icon], rig: Rig, end_s: float, observer: Observer | None = None) -> Sensed:
@@ -70,7 +70,7 @@ def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None =
             np.stack([np.broadcast_to(mine[row], theirs.shape), theirs], axis=1)
             for mine, theirs in zip(one, other, strict=True)
         )
-        found[row] = differences(cold, warm, tried.dt_s, person)[norm][:, 0, 1]
+        found[row] = percept_distances(cold, warm, tried.dt_s, person)[norm][:, 0, 1]
     return identification_dprime(found, person, norm, tried.dt_s * (n - 1))
 
 

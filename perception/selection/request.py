@@ -22,14 +22,14 @@ class ChoiceError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Choosing:
+class Selection:
     """How many icons to choose and what for; `must` are names of icons that are in any choice.
 
     `objective` is `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`. All chosen icons together last
     at most `most_s` (s) and take at most `most_J` (J) of the driver, where given. Raises `ChoiceError` for what can
     be asked of no set.
 
-    >>> Choosing(3, must=("a", "a")).must
+    >>> Selection(3, must=("a", "a")).must
     ('a',)
     """
 
@@ -57,7 +57,7 @@ class Choosing:
 
 
 @dataclass(frozen=True, slots=True)
-class Usable:
+class UsableIcons:
     """Places of the icons that can be chosen from, duration (s) and energy (J) of each, and why others cannot."""
 
     places: tuple[int, ...]
@@ -66,19 +66,19 @@ class Usable:
     excluded: tuple[tuple[str, str], ...]
 
 
-def usable(asked: Choosing, icons: Sequence[Icon], traces: Sequence[Trace], rig: Rig) -> Usable:
+def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace], rig: Rig) -> UsableIcons:
     """Sort out what is unsafe, cannot be reached, or moves like an icon before it.
 
     Raises `ChoiceError` for an icon that must be in and is unknown or sorted out, and where too few are left.
     """
-    check_asked(asked, [icon.name for icon in icons])
+    check_selection(asked, [icon.name for icon in icons])
     if asked.most_J is not None and rig.thermode is not None:
         raise ChoiceError(f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy")
     shapes: dict[object, str] = {}
     excluded: dict[str, str] = {}
     wanted = sorted(range(len(icons)), key=lambda k: (icons[k].name not in asked.must, k))
     for k in wanted:
-        why = against(traces[k])
+        why = objection(traces[k])
         twin = None if why else shapes.setdefault(shape_of(icons[k], rig), icons[k].name)
         if why is not None:
             excluded[icons[k].name] = why
@@ -97,7 +97,7 @@ def usable(asked: Choosing, icons: Sequence[Icon], traces: Sequence[Trace], rig:
     durations = np.array([duration_s(icons[k], rig) for k in places])
     energies = np.array([energy_J(traces[k], d) for k, d in zip(places, durations.tolist(), strict=True)])
     listed = tuple((icon.name, excluded[icon.name]) for icon in icons if icon.name in excluded)
-    return Usable(places, durations, energies, listed)
+    return UsableIcons(places, durations, energies, listed)
 
 
 def energy_J(trace: Trace, until_s: float) -> float:
@@ -123,12 +123,12 @@ def shape_of(icon: Icon, rig: Rig) -> object:
     from thermicon.circuit.solver.inverse import baseline_C
 
     base = baseline_C(icon, rig)
-    start = steady_state(rig, "display", base)[0] if icon.frame.control == "current" else base
-    corners = icon.lower(start)
-    return icon.frame.control, base, corners
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
+    corners = icon.corners(start)
+    return icon.context.control, base, corners
 
 
-def against(trace: Trace) -> str | None:
+def objection(trace: Trace) -> str | None:
     """What speaks against playing an icon: it is not safe, or the rig does not reach it; None where nothing does."""
     from thermicon.circuit import judge_safety
 
@@ -140,7 +140,7 @@ def against(trace: Trace) -> str | None:
     return None
 
 
-def check_asked(asked: Choosing, names: Sequence[str]) -> None:
+def check_selection(asked: Selection, names: Sequence[str]) -> None:
     """Raise `ChoiceError` for more icons than there are, or one that must be in and is not there."""
     from thermicon.icons.model.words import nearest
 

@@ -15,10 +15,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import confuse
-from ..identification.measures import information_bits, percent_correct
+from ..identification.measures import information_bits, proportion_correct
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
-from .appraise import distances
+from .appraise import population_dprime
 from .request import ChoiceError
 from .subset_identification import OBJECTIVES, Objective
 
@@ -34,7 +34,7 @@ SINK_SD = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Survival:
+class SetRobustness:
     """Names of sets; `best` is the share of draws in which each is best, ties shared, so that they add up to 1.
 
     `values` (sets, draws) is the objective in every draw, `median` and `low` its middle and its 5th per cent.
@@ -55,11 +55,11 @@ class Survival:
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
-        return f"Survival(best by {self.objective} in {self.draws} draws: {told})"
+        return f"SetRobustness(best by {self.objective} in {self.draws} draws: {told})"
 
 
 @dataclass(frozen=True, slots=True)
-class Duel:
+class SetComparison:
     """Probability that set A beats set B (ties count half), its standard error, and the median gain of A over B."""
 
     probability: float
@@ -70,12 +70,12 @@ class Duel:
 
     def __repr__(self) -> str:
         return (
-            f"Duel(A beats B by {self.objective} with probability {self.probability:.2f} ± {self.standard_error:.2f}, "
+            f"SetComparison(P(A better by {self.objective}) = {self.probability:.2f} ± {self.standard_error:.2f}, "
             f"median gain {self.gain:+.3g}, {self.draws} draws)"
         )
 
 
-def beats(
+def compare_sets(
     a: Sequence[Icon] | IconSet,
     b: Sequence[Icon] | IconSet,
     rig: Rig,
@@ -85,23 +85,25 @@ def beats(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = "max",
-) -> Duel:
+) -> SetComparison:
     """Probability that set A is better than set B for a person and a rig drawn at random.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> six = read_cue("six-icons")
     >>> few = [six["cooling-step"], six["cold-to-warm"], six["warming-step"]]
-    >>> beats(few, six, Rig.load("thenar"), draws=8).probability
+    >>> compare_sets(few, six, Rig.load("thenar"), draws=8).probability
     1.0
     """
-    found = survives({"A": a, "B": b}, rig, objective=objective, draws=draws, seed=seed, tracking=tracking, norm=norm)
+    found = best_set_probability(
+        {"A": a, "B": b}, rig, objective=objective, draws=draws, seed=seed, tracking=tracking, norm=norm
+    )
     p = found.best[0]
     gain = float(np.median(found.values[0] - found.values[1]))
-    return Duel(p, math.sqrt(max(p * (1.0 - p), 0.0) / draws), gain, objective, draws)
+    return SetComparison(p, math.sqrt(max(p * (1.0 - p), 0.0) / draws), gain, objective, draws)
 
 
-def survives(
+def best_set_probability(
     choices: Mapping[str, Sequence[Icon] | IconSet],
     rig: Rig,
     *,
@@ -110,10 +112,10 @@ def survives(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = "max",
-) -> Survival:
+) -> SetRobustness:
     """Which of several sets is best, and how often, over people, contact, ambient and rig.
 
-    `worst` is the d′ of the worst pair for the person, the others as in `Choosing`. Icons that sets share are played
+    `worst` is the d′ of the worst pair for the person, the others as in `Selection`. Icons that sets share are played
     once. Raises `ChoiceError` for fewer than two sets, a set of one icon, and no draws.
     """
     from thermicon.circuit import duration_s
@@ -133,11 +135,11 @@ def survives(
     rows = {name: [pool.index(icon) for icon in each] for name, each in sets.items()}
     durations = np.array([duration_s(icon, rig) for icon in pool])
     crowd = draw_people(draws, seed)
-    d, _ = distances(pool, rig, crowd, tracking, check_norm(norm), rigs=drawn_rigs(crowd.rigs(rig), seed))
+    d, _ = population_dprime(pool, rig, crowd, tracking, check_norm(norm), rigs=drawn_rigs(crowd.rigs(rig), seed))
     values = np.array([_values(d, crowd.lapse, durations, rows[name], objective, seed) for name in sets])
     top = values >= values.max(axis=0) - 1e-12
     best = (top / top.sum(axis=0)).mean(axis=1)
-    return Survival(
+    return SetRobustness(
         names=tuple(sets),
         objective=objective,
         draws=draws,
@@ -182,6 +184,6 @@ def _values(d: Array, lapse: Array, durations: Array, rows: Sequence[int], objec
         return least
     probability = confuse(own, lapse=lapse, seed=seed).probability
     if objective == "correct":
-        return percent_correct(probability)
+        return proportion_correct(probability)
     bits = information_bits(probability)
     return bits if objective == "bits" else bits / float(durations[list(rows)].mean())

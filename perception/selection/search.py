@@ -17,11 +17,11 @@ from ..arrays import Array
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
 from .appraise import Appraisal, appraise
-from .candidates import Gene, drawn
-from .evaluators import Few, Nominal
+from .candidates import Candidate, sample_candidates
+from .evaluators import NominalEvaluator, PopulationEvaluator
+from .max_min_subset import max_min_subset, nearest_pair
 from .request import ChoiceError
-from .subset_identification import OBJECTIVES, Namings, Objective
-from .widest import widest, worst
+from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -37,11 +37,10 @@ PER_ROUND = 3
 WIDEST, REFINED, FINEST, SHRINK = 0.25, 0.05, 0.005, 0.85
 ALIKE = -1.0
 """Instead of a d′: two members of one family, of which each gives one icon."""
-NODES = 20_000
 
 
 @dataclass(frozen=True, slots=True)
-class Searched:
+class SearchResult:
     """The set that was found and the one it began with, each appraised on all people, and what was spent on it."""
 
     found: IconSet
@@ -55,7 +54,7 @@ class Searched:
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
-        return f"Searched({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
+        return f"SearchResult({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
 
 
 def search(
@@ -70,7 +69,7 @@ def search(
     tracking: str | None = None,
     norm: str = "max",
     progress: Progress | None = None,
-) -> Searched:
+) -> SearchResult:
     """Look for values of the families' parameters that make the set better: one icon a family, or `count` in all.
 
     Icons of the file that are no families stay as they are. Spans are continuous between their ends, counts and lists
@@ -80,7 +79,10 @@ def search(
     """
     fixed, free = _asked(icons, count, objective)
     run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)
-    nominal, few = Nominal(rig, objective, named, seed), Few(rig, objective, named, seed, tracking)
+    nominal, few = (
+        NominalEvaluator(rig, objective, named, seed),
+        PopulationEvaluator(rig, objective, named, seed, tracking),
+    )
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -97,7 +99,7 @@ def search(
     before, after = (appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named) for one in finalists)
     if after.value(objective) < before.value(objective):
         finalists[1], after = finalists[0], before
-    return Searched(
+    return SearchResult(
         found=_as_set(icons, finalists[1], len(fixed), seed),
         start=tuple(finalists[0]),
         before=before,
@@ -134,16 +136,16 @@ class _Run:
     """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
 
     def __init__(self, fixed: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool) -> None:
-        self.fixed = [Gene(icon) for icon in fixed]
+        self.fixed = [Candidate(icon) for icon in fixed]
         self.families, self.free, self.each = families, free, each
         self.tried = 0
 
-    def start(self, judge: Nominal | Few, rng: np.random.Generator) -> list[Gene]:
+    def start(self, judge: NominalEvaluator | PopulationEvaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *drawn(self.families, SAMPLED, rng)]
+        pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
         found = self.best(pool, judge, None)
         if found is None:
-            bad = [reason for reason in judge.against if reason is not None]
+            bad = [reason for reason in judge.objections if reason is not None]
             raise ChoiceError(
                 f"no {self.free + len(self.fixed)} icons can be played together: {len(bad)} of {len(pool)} that were "
                 f"tried cannot be played at all{', the first of which ' + bad[0] if bad else ''}"
@@ -152,14 +154,14 @@ class _Run:
 
     def improve(
         self,
-        held: list[Gene],
-        judge: Nominal | Few,
+        held: list[Candidate],
+        judge: NominalEvaluator | PopulationEvaluator,
         rounds: int,
         batch: int,
         rng: np.random.Generator,
         step: float,
         tell: Any,
-    ) -> list[Gene]:
+    ) -> list[Candidate]:
         """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
         for _ in range(rounds):
             about = held[len(self.fixed) :]
@@ -172,12 +174,14 @@ class _Run:
             tell(self.tried)
         return held
 
-    def best(self, pool: list[Gene], judge: Nominal | Few, held: list[Gene] | None) -> list[Gene] | None:
+    def best(
+        self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator, held: list[Candidate] | None
+    ) -> list[Candidate] | None:
         """The best set out of a pool, plain icons first; None where no set can be played."""
         self.tried += len(pool)
-        d = judge.distances([gene.icon for gene in pool])
+        d = judge.pairwise_dprime([gene.icon for gene in pool])
         must = len(self.fixed)
-        good = [k for k in range(len(pool)) if k < must or judge.against[k] is None]
+        good = [k for k in range(len(pool)) if k < must or judge.objections[k] is None]
         pool, d = [pool[k] for k in good], d[:, good][:, :, good]
         if len(pool) < must + self.free:
             return None
@@ -185,8 +189,8 @@ class _Run:
         if self.each:
             own = np.array([self._place(gene) for gene in pool])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        first = widest(middle, must + self.free, tuple(range(must)), most_nodes=NODES)
-        if first is None or worst(middle, first.chosen) <= ALIKE:
+        first = max_min_subset(middle, must + self.free, tuple(range(must)))
+        if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
             return None
         chosen = list(first.chosen)
         if judge.objective != "worst":
@@ -194,11 +198,13 @@ class _Run:
             chosen = climbed(judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must)
         return [pool[k] for k in sorted(chosen, key=lambda k: (k >= must, self._place(pool[k]), k))]
 
-    def _place(self, gene: Gene) -> int:
+    def _place(self, gene: Candidate) -> int:
         return -1 if gene.family is None else self.families.index(gene.family)
 
 
-def climbed(namings: Namings, chosen: list[int], objective: Objective, middle: Array, must: int) -> list[int]:
+def climbed(
+    namings: SubsetIdentification, chosen: list[int], objective: Objective, middle: Array, must: int
+) -> list[int]:
     """Single swaps that better an objective until none does; the first `must` stay, and no two alike come in."""
     score = namings.score(chosen, objective)
     while True:
@@ -239,7 +245,7 @@ def _as_set(icons: IconSet, found: Sequence[Icon], fixed: int, seed: int) -> Ico
     for icon, name in zip(found[fixed:], _names(found, fixed)[fixed:], strict=True):
         origin = f"from {icon.name.replace('_', ' ')}"
         tags = (*icon.metadata.tags, "found by search", f"seed {seed}", origin)
-        entries.append(Icon(name, icon.statements, icon.frame, replace(icon.metadata, tags=tags)))
+        entries.append(Icon(name, icon.statements, icon.context, replace(icon.metadata, tags=tags)))
     name = f"{icons.name}-found" if icons.name else ""
     title = f"{icons.title}, found by search" if icons.title else "Found by search"
-    return IconSet(name, title, icons.frame, icons.metadata, tuple(entries))
+    return IconSet(name, title, icons.context, icons.metadata, tuple(entries))

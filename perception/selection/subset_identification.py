@@ -24,7 +24,7 @@ HALF = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Namings:
+class SubsetIdentification:
     """A pool as some people feel it: `half` (people, n, n) half squared distances, `push` (people, n, draws) noise
     projected on the points, `lapse` (people,), `durations_s` (n,).
     """
@@ -44,7 +44,7 @@ class Namings:
         most: int = PEOPLE,
         *,
         favour: Array | float = 0.0,
-    ) -> Namings:
+    ) -> SubsetIdentification:
         """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are.
 
         `favour` (people, n) is the log likelihood that people favour names by.
@@ -61,10 +61,10 @@ class Namings:
     def __len__(self) -> int:
         return int(self.half.shape[1])
 
-    def person(self, which: int) -> Namings:
+    def person(self, which: int) -> SubsetIdentification:
         """One of the people alone."""
         only = slice(which, which + 1)
-        return Namings(self.half[only], self.push[only], self.lapse[only], self.durations_s)
+        return SubsetIdentification(self.half[only], self.push[only], self.lapse[only], self.durations_s)
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
         """Per cent correct (0–1), bits, or bits a second of the chosen, mean over the people."""

@@ -13,14 +13,13 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
-from .subset_identification import Namings, Objective
-from .widest import widest
+from .max_min_subset import max_min_subset
+from .subset_identification import Objective, SubsetIdentification
 
-NODES = 20_000
 FARTHEST = 12.0
 
 
-def upper_bound(pool: Namings, count: int, objective: Objective) -> float:
+def upper_bound(pool: SubsetIdentification, count: int, objective: Objective) -> float:
     """What no `count` icons of the pool exceed: proportion correct, bits, or bits a second.
 
     For bits, one of noise-free presentations; the share that finitely many of them add is allowed for.
@@ -37,7 +36,7 @@ def upper_bound(pool: Namings, count: int, objective: Objective) -> float:
     return bits / float(np.sort(pool.durations_s)[:count].mean())
 
 
-def pair_losses(pool: Namings) -> Array:
+def pair_losses(pool: SubsetIdentification) -> Array:
     """Bits lost between the two of each pair by the best that anybody could do, mean over people: (n, n)."""
     distances = np.sqrt(2.0 * np.maximum(pool.half, 0.0))
     grid, lost = _loss_table()
@@ -50,7 +49,7 @@ def _disjoint(badness: Array, count: int) -> float:
     """The least that the worst pairs of any `count` things add up to, taken one after the other without overlap."""
     total = 0.0
     for left in range(count, 1, -2):
-        found = widest(-badness, left, most_nodes=NODES)
+        found = max_min_subset(-badness, left)
         if found is not None:
             total += max(-found.bound, 0.0)
     return total

@@ -30,7 +30,7 @@ RATE_HZ = 100.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stimuli:
+class Stimulus:
     """Played stimuli, k of them to one common end: step `dt_s`, traces, and how many of their rows count."""
 
     dt_s: float
@@ -86,7 +86,7 @@ class Stimuli:
     def __repr__(self) -> str:
         missed = sum(not trace.reachable for trace in self.traces)
         said = f", {missed} not reached" if missed else ""
-        return f"Stimuli({len(self.traces)} on {self.traces[0].rig_name}, {self.time_s[-1]:.3g} s{said})"
+        return f"Stimulus({len(self.traces)} on {self.traces[0].rig_name}, {self.time_s[-1]:.3g} s{said})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class Bench:
     >>> from thermicon.circuit import Rig
     >>> bench = Bench(Rig.load("thenar"))
     >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0)
-    Stimuli(1 on thenar, 3 s)
+    Stimulus(1 on thenar, 3 s)
     """
 
     rig: Rig
@@ -107,7 +107,7 @@ class Bench:
         if self.surface not in get_args(Surface):
             raise ValueError(f"a stimulus is prescribed at skin or display, not at {self.surface!r}")
 
-    def play(self, courses: Sequence[str], end_s: float) -> Stimuli:
+    def play(self, courses: Sequence[str], end_s: float) -> Stimulus:
         """Play courses, each the body of an icon, from rest until `end_s`; at baseline, or held, after their end."""
         from thermicon.circuit import duration_s, simulate
         from thermicon.icons import parse
@@ -122,7 +122,7 @@ class Bench:
             for icon in icons
         ]
         rows = min([round(end_s * RATE_HZ) + 1, *(uniform_clock(trace.time_s)[1] for trace in traces)])
-        return Stimuli(uniform_clock(traces[0].time_s)[0], rows, tuple(traces))
+        return Stimulus(uniform_clock(traces[0].time_s)[0], rows, tuple(traces))
 
 
 def ramp(channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float = 0.0, *, back: bool = False) -> str:

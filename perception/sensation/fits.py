@@ -17,7 +17,7 @@ from thermicon.circuit.solver.network import network_of
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer, Receptor
 from ..observer.variants import drive_unit, receptor_column, source_of
-from .bench import Bench, Stimuli, ramp
+from .bench import Bench, Stimulus, ramp
 from .receptors import receptor_drive
 
 RIG = "thenar"
@@ -113,7 +113,7 @@ def with_unit_drives(known: Table, observer: Observer) -> Observer:
     return replace(observer, cold=made[0], warm=made[1])
 
 
-def peak_drive(played: Stimuli, channel: Channel, observer: Observer, *, fixed: bool = False) -> float:
+def peak_drive(played: Stimulus, channel: Channel, observer: Observer, *, fixed: bool = False) -> float:
     """Largest drive of the first stimulus; unless `fixed`, with a threshold drive that is this very drive.
 
     Gain control starts at a multiple of the threshold drive, so that the two are found together.
@@ -135,6 +135,6 @@ def _with(observer: Observer, channel: Channel, receptor: Receptor) -> Observer:
 
 
 @lru_cache(maxsize=64)
-def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimuli:
+def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimulus:
     end = round(size_K / rate_K_per_s + hold_s, 2)
     return Bench(Rig.load(rig)).play([ramp(channel, size_K, rate_K_per_s)], end)

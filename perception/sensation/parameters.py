@@ -29,7 +29,7 @@ LOG_FROM = 1.5
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class ObserverParameter:
     """One number of the chain that may lie anywhere between `low` and `high`, and where it comes from.
 
     `use` is the record's: `assumed` has no data behind it.
@@ -52,7 +52,7 @@ class Parameter:
     def at(self, share: float) -> float:
         """The value at a share (0–1) of the interval.
 
-        >>> Parameter("time", 1.0, 2.0, 4.0, "s", "assumed", "assumed").at(0.5)
+        >>> ObserverParameter("time", 1.0, 2.0, 4.0, "s", "assumed", "assumed").at(0.5)
         2.0
         """
         if self.low > 0.0 and self.high / self.low > LOG_FROM:
@@ -61,7 +61,7 @@ class Parameter:
 
     def __repr__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"Parameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
+        return f"ObserverParameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
 
 
 @lru_cache(maxsize=1)
@@ -70,7 +70,7 @@ def observer_table() -> Table:
     return load_records(DATA / "observer.toml")
 
 
-def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[Parameter, ...]:
+def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[ObserverParameter, ...]:
     """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
     known = observer_table()
     return tuple(_parameter(record) for record in known if _free(record, norm, site, known))
@@ -142,9 +142,9 @@ def _at_site(known: Table, site: str) -> Observer:
     return replace(observer, cold=cold, warm=warm)
 
 
-def _parameter(record: Record) -> Parameter:
+def _parameter(record: Record) -> ObserverParameter:
     low, high = record.interval
-    return Parameter(parameter_name(record), low, record.central, high, record.unit, record.source, record.use)
+    return ObserverParameter(parameter_name(record), low, record.central, high, record.unit, record.source, record.use)
 
 
 def _moved(record: Record, values: Mapping[str, float]) -> Record:

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.population import Played
+from ..identification.population import ReceptorTemperatures
 from ..observer.observer import Norm, load_thresholds
 from ..observer.people import People, draw_people, people_records
-from ..sensation.parameters import Parameter, observer_parameters
+from ..sensation.parameters import ObserverParameter, observer_parameters
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -31,14 +31,14 @@ SPREAD, LAPSE = "spread of thresholds between people", "lapse rate"
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class SimulationGrid:
     """Parameters in their order (the observer's, then contact, layer, spread, lapse), people, and nine simulations.
 
     `grid` holds cold and warm temperatures in °C, shape (contact, layer, channel, people, icons, n_time). Shares are
     of every parameter's interval, 0–1; `centre` has every parameter at its value.
     """
 
-    parameters: tuple[Parameter, ...]
+    parameters: tuple[ObserverParameter, ...]
     centre: Array
     crowd: People
     grid: Array
@@ -51,12 +51,12 @@ class Stage:
         own = self.parameters[: -len(OTHERS)]
         return {p.name: p.at(float(share)) for p, share in zip(own, shares[: len(own)], strict=True)}
 
-    def played(self, shares: Array) -> Played:
+    def played(self, shares: Array) -> ReceptorTemperatures:
         """Temperatures of the receptors for a contact and an outermost layer."""
         contact, layer = (_parabola(share) for share in self.played_key(shares))
         weights = np.outer(contact, layer).reshape(-1)
         cold, warm = (weights @ self.grid.reshape(weights.size, -1)).reshape(self.grid.shape[2:])
-        return Played(cold, warm, self.time_s, self.site, self.area_m2)
+        return ReceptorTemperatures(cold, warm, self.time_s, self.site, self.area_m2)
 
     def played_key(self, shares: Array) -> tuple[float, float]:
         """All that `played` hangs on: the shares of contact and layer."""
@@ -83,7 +83,7 @@ class Stage:
 OTHERS = (CONTACT, LAYER, SPREAD, LAPSE)
 
 
-def set_stage(icons: Sequence[Icon], rig: Rig, people: int, seed: int, norm: Norm) -> Stage:
+def simulate_grid(icons: Sequence[Icon], rig: Rig, people: int, seed: int, norm: Norm) -> SimulationGrid:
     """Draw the people and simulate every icon for each of them at the nodes of contact and skin.
 
     Currents are designed on the rig as it is: what differs is what the people turn out to have.
@@ -109,10 +109,10 @@ def set_stage(icons: Sequence[Icon], rig: Rig, people: int, seed: int, norm: Nor
         grid.append(np.stack(row))
     parameters = (*observer_parameters(norm, rig.site), contact, layer, *_about_people())
     centre = np.array([_share_of(parameter) for parameter in parameters])
-    return Stage(parameters, centre, crowd, np.stack(grid), time_s, rig.site, rig.contact.area_m2)
+    return SimulationGrid(parameters, centre, crowd, np.stack(grid), time_s, rig.site, rig.contact.area_m2)
 
 
-def _about_rig(rig: Rig) -> tuple[Parameter, Parameter]:
+def _about_rig(rig: Rig) -> tuple[ObserverParameter, ObserverParameter]:
     """Contact resistance and outermost layer of the rig; their intervals are one person's spread to either side."""
     records = people_records()
     resistance, layer = rig.contact.resistance_m2K_per_W, rig.skin.layers[0]
@@ -120,16 +120,16 @@ def _about_rig(rig: Rig) -> tuple[Parameter, Parameter]:
     by, other = 1.0 + spread.central, 1.0 + thickness.central
     mm = layer.thickness_m * 1e3
     return (
-        Parameter(CONTACT, resistance / by, resistance, resistance * by, "m²K/W", spread.source, "assumed"),
-        Parameter(LAYER, mm / other, mm, mm * other, "mm", thickness.source, "assumed"),
+        ObserverParameter(CONTACT, resistance / by, resistance, resistance * by, "m²K/W", spread.source, "assumed"),
+        ObserverParameter(LAYER, mm / other, mm, mm * other, "mm", thickness.source, "assumed"),
     )
 
 
-def _about_people() -> tuple[Parameter, Parameter]:
+def _about_people() -> tuple[ObserverParameter, ObserverParameter]:
     spread, lapse = load_thresholds().one("between-person spread"), people_records()["lapse"]
     return (
-        Parameter(SPREAD, *_three(spread.interval, spread.central), "log10 units", spread.source, spread.use),
-        Parameter(LAPSE, *_three(lapse.interval, lapse.central), lapse.unit, lapse.source, lapse.use),
+        ObserverParameter(SPREAD, *_three(spread.interval, spread.central), "log10 units", spread.source, spread.use),
+        ObserverParameter(LAPSE, *_three(lapse.interval, lapse.central), lapse.unit, lapse.source, lapse.use),
     )
 
 
@@ -137,7 +137,7 @@ def _three(interval: tuple[float, float], value: float) -> tuple[float, float, f
     return interval[0], value, interval[1]
 
 
-def _share_of(parameter: Parameter) -> float:
+def _share_of(parameter: ObserverParameter) -> float:
     """The share at which a parameter has its value, by bisection: `at` rises from low to high."""
     low, high = 0.0, 1.0
     for _ in range(60):

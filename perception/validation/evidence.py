@@ -62,7 +62,7 @@ class Evidence:
         raise ValueError(f"no prediction of {quantity!r} ({channel}) by {experiment!r}")
 
 
-def gather(people: int, draws: int, seed: int, trials: int, progress: Progress | None = None) -> Evidence:
+def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: Progress | None = None) -> Evidence:
     """Run everything; `progress` is called with (steps done, steps in all)."""
     from thermicon.icons import load_library
 

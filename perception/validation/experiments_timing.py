@@ -16,7 +16,7 @@ from thermicon.circuit import Rig
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Model, Variable
-from ..sensation.bench import Bench, Stimuli, Surface, raised_cosine, ramp
+from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import Percept, perceive
 from ..sensation.receptors import receptor_drive
@@ -158,12 +158,12 @@ def _physical_peak(surface: Surface, channel: Channel, size_K: float, duration_s
 
 
 @lru_cache(maxsize=16)
-def _pulse(channel: Channel, size_K: float, duration_s: float) -> Stimuli:
+def _pulse(channel: Channel, size_K: float, duration_s: float) -> Stimulus:
     return _thenar("display").play([raised_cosine(channel, size_K, duration_s)], duration_s + 4.0)
 
 
 @lru_cache(maxsize=2)
-def _steep(channel: Channel) -> Stimuli:
+def _steep(channel: Channel) -> Stimulus:
     return _thenar("display").play([ramp(channel, STEEP_K, STEEP_K_PER_S, 2.0)], 4.0)
 
 

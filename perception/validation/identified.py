@@ -18,13 +18,13 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
 from ..identification.intervals import EVERY, PEOPLE
 from ..identification.intervals import SAMPLES as FEW_SAMPLES
-from ..identification.measures import information_bits, percent_correct, plugin_bits
-from ..identification.population import Played, feel, judge
+from ..identification.measures import information_bits, plugin_bits, proportion_correct
+from ..identification.population import ReceptorTemperatures, identify, respond
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
-from ..ranking.chunks import EXPERIMENTS, RATE_HZ
+from ..ranking.batches import EXPERIMENTS, RATE_HZ
 from ..ranking.rank import TAIL_S
 from .plausible import plausible_observers
 from .predicted import Predicted
@@ -72,7 +72,7 @@ class Shown:
 
     labels: tuple[str, ...]
     crowd: People
-    played: tuple[Played, ...]
+    played: tuple[ReceptorTemperatures, ...]
     seed: int
 
     def identify(self, variable: Variable, model: Model, draws: int) -> Identified:
@@ -83,10 +83,10 @@ class Shown:
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer) -> Array:
-            felt = feel(thin, few, observer)
-            return judge(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
+            felt = respond(thin, few, observer)
+            return identify(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        whole = judge(feel(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
+        whole = identify(respond(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
         others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
         drawn = tuple(in_order(thinly, others))
         kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
@@ -104,7 +104,8 @@ def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
-        Played(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2) for cold, warm in columns
+        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2)
+        for cold, warm in columns
     )
     return Shown(tuple(icon.name for icon in members), crowd, played, seed)
 
@@ -115,13 +116,13 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     most = math.log2(len(found.labels))
 
     def share_of_people(share: float) -> Score:
-        return lambda p: float(np.percentile(percent_correct(p), share))
+        return lambda p: float(np.percentile(proportion_correct(p), share))
 
     def bits(p: Array) -> float:
         return plugin_bits(p, trials, seed, EXPERIMENTS).mean
 
     asked: list[tuple[str, str, Score, float]] = [
-        ("proportion correct", "proportion", lambda p: float(percent_correct(p).mean()), 1.0),
+        ("proportion correct", "proportion", lambda p: float(proportion_correct(p).mean()), 1.0),
         ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
         ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
         ("plug-in information", "bit", bits, most),
@@ -131,7 +132,7 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     made = [
         found.predicted("six icons", name, unit, score, conditions=said, top=top) for name, unit, score, top in asked
     ]
-    low, high = np.percentile(percent_correct(found.probability), [16.0, 84.0]).tolist()
+    low, high = np.percentile(proportion_correct(found.probability), [16.0, 84.0]).tolist()
     made[0] = replace(made[0], people=(low, high))
     made[3] = replace(made[3], conditions=f"{said}; plug-in estimate of {trials} trials a person")
     return tuple(made)

@@ -13,7 +13,7 @@ from ..observer.people import People
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class Measurement:
     """One number for each person, in `unit`; inf where the strongest stimulus was not felt.
 
     Thresholds are changes from the baseline at the surface where the stimulus was prescribed, K,
@@ -63,7 +63,7 @@ class Measured:
         low, high = self.quantile(0.025), self.quantile(0.975)
         spread = "" if self.each.size == 1 or low is None or high is None else f" [{low:.3g}, {high:.3g}]"
         crowd = "1 person" if self.each.size == 1 else f"{self.each.size} people"
-        return f"Measured({self.procedure}, {self.channel}: {value}{spread}, {crowd}; {self.conditions})"
+        return f"Measurement({self.procedure}, {self.channel}: {value}{spread}, {crowd}; {self.conditions})"
 
 
 @dataclass(frozen=True, slots=True)

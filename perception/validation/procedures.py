@@ -18,10 +18,10 @@ from ..arrays import Array
 from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
-from ..sensation.bench import Bench, Stimuli, ramp
+from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.first_passage import ResponseTimes, response_times
-from .measured import Crowd, Measured, crowd_of
+from .measured import Crowd, Measurement, crowd_of
 
 UNIT_PROPORTION = NormalDist().cdf(2.0**-0.5)
 """Proportion correct of d′ = 1 in a choice of two, Φ(1/√2) = 0.76: what calibration takes a threshold to be."""
@@ -40,7 +40,7 @@ def forced_choice(
     hold_s: float = 3.0,
     proportion: float = UNIT_PROPORTION,
     people: People | None = None,
-) -> Measured:
+) -> Measurement:
     """Threshold (K) in a choice of two intervals, one with a ramp that is held, correct with `proportion`.
 
     The choice is correct with Φ(d′/√2), d′ being the largest sensation of either channel above rest.
@@ -55,7 +55,7 @@ def forced_choice(
     played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
     d_prime = np.sqrt(2.0) * NormalDist().inv_cdf(proportion)
     felt = _peaks(played, observer, crowd)
-    return Measured(
+    return Measurement(
         "forced choice of two",
         channel,
         "K",
@@ -74,7 +74,7 @@ def yes_no(
     hits: float = 0.5,
     false_alarms: float | None = None,
     people: People | None = None,
-) -> Measured:
+) -> Measurement:
     """Threshold (K) at which a share of ramps, `hits`, is reported, corrected for false alarms.
 
     `false_alarms` is their share in an empty trial as long as the shortest one; None keeps the
@@ -87,7 +87,7 @@ def yes_no(
     if false_alarms is not None:
         asked = replace(observer, criterion=criterion_of(false_alarms, observer.noise_correlation_s, hold_s))
     said = _said_yes(played, asked, crowd)
-    return Measured(
+    return Measurement(
         "yes/no",
         channel,
         "K",
@@ -104,7 +104,7 @@ def method_of_limits(
     rate_K_per_s: float = 1.0,
     limit_K: float = 12.0,
     people: People | None = None,
-) -> Measured:
+) -> Measurement:
     """Threshold (K): how far a steady ramp has come at the bench's surface when half of the trials are answered.
 
     The answer waits for the cautious criterion, conduction and decision; it may be a false alarm.
@@ -114,7 +114,7 @@ def method_of_limits(
     pressed = found.quantile(0.5)
     inside = pressed <= limit_K / rate_K_per_s
     each = np.where(inside, np.interp(np.where(inside, pressed, 0.0), played.time_s, moved), np.inf)
-    return Measured("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
+    return Measurement("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
 
 
 def choice_reaction_time(
@@ -142,7 +142,7 @@ def method_of_levels(
     runs: int = 100,
     seed: int = 0,
     people: People | None = None,
-) -> Measured:
+) -> Measurement:
     """Threshold (K) of a staircase of ramps: smaller after yes, larger after no, in steps halved at every turn.
 
     A run starts at `first_K` with steps as large, ends when the step is below `last_K`, and counts the
@@ -156,11 +156,11 @@ def method_of_levels(
     for said in _said_yes(played, observer, crowd):
         each += [_staircase(said, first_K, last_K, rng) for _ in range(1 if people is not None else runs)]
     conditions = f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, from {first_K:g} K down to steps of {last_K:g} K"
-    return Measured("method of levels", channel, "K", np.array(each), conditions)
+    return Measurement("method of levels", channel, "K", np.array(each), conditions)
 
 
 @lru_cache(maxsize=32)
-def _ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -> list[Stimuli]:
+def _ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -> list[Stimulus]:
     """A ramp of every size, each until the end of its own hold; slow ones take at most `LONGEST_S`."""
     sizes = SIZES_K[LONGEST_S * rate_K_per_s >= SIZES_K]
     return [
@@ -169,7 +169,7 @@ def _ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -
     ]
 
 
-def _peaks(played: list[Stimuli], observer: Observer, crowd: Crowd) -> Array:
+def _peaks(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array:
     """Largest sensation above rest for every person and size, shape (n, sizes)."""
     found = []
     for one in played:
@@ -178,7 +178,7 @@ def _peaks(played: list[Stimuli], observer: Observer, crowd: Crowd) -> Array:
     return np.stack(found, axis=1)
 
 
-def _said_yes(played: list[Stimuli], observer: Observer, crowd: Crowd) -> Array:
+def _said_yes(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array:
     """Probability of a report, corrected for false alarms, for every person and size, shape (n, sizes)."""
     found = []
     for one in played:
@@ -228,13 +228,13 @@ def _said(bench: Bench, rate_K_per_s: float) -> str:
 
 
 @lru_cache(maxsize=32)
-def _ramp(bench: Bench, channel: Channel, rate_K_per_s: float, size_K: float) -> Stimuli:
+def _ramp(bench: Bench, channel: Channel, rate_K_per_s: float, size_K: float) -> Stimulus:
     return bench.play([ramp(channel, size_K, rate_K_per_s)], round(size_K / rate_K_per_s + 2.0, 2))
 
 
 def _responses(
     observer: Observer, bench: Bench, channel: Channel, rate: float, size_K: float, people: People | None
-) -> tuple[Stimuli, ResponseTimes]:
+) -> tuple[Stimulus, ResponseTimes]:
     played = _ramp(bench, channel, rate, size_K)
     crowd = crowd_of(observer, bench.rig.site, people)
     cold, warm = played.felt(observer, crowd.threshold_cold, crowd.threshold_warm)

@@ -107,7 +107,7 @@ def validate(
     table of published numbers. Raises `ValueError` for no people or a single draw, `RecordError` for a table
     that lacks what a target names.
     """
-    from .evidence import gather
+    from .evidence import collect_evidence
 
     if people < 2:
         raise ValueError(f"a spread between persons needs at least two of them, not {people}")
@@ -116,7 +116,9 @@ def validate(
     table = load_thresholds() if published is None else published
     targets = load_targets()
     known = {(row.target, row.label): published_for(row, table) for target in targets for row in target.rows}
-    return assemble(targets, known, table, gather(people, draws, seed, trials, progress), people, draws, seed, trials)
+    return assemble(
+        targets, known, table, collect_evidence(people, draws, seed, trials, progress), people, draws, seed, trials
+    )
 
 
 def assemble(

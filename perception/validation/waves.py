@@ -59,7 +59,7 @@ def with_others(icons: IconSet, others: IconSet) -> IconSet:
     """Two sets of one frame as one, the first ones first."""
     from thermicon.icons import IconSet
 
-    return IconSet(icons.name, icons.title, icons.frame, icons.metadata, (*icons.entries, *others.entries))
+    return IconSet(icons.name, icons.title, icons.context, icons.metadata, (*icons.entries, *others.entries))
 
 
 def skin_waves(rig: Rig) -> tuple[SkinWaves, ...]:

@@ -136,7 +136,7 @@ def test_inverse_beside_forward(control: str, benchmark: BenchmarkFixture) -> No
     bank, lanes = Bank.of([network_of(rig)] * 64), np.arange(64)
     _, state = steady_state(rig, control, 32.0)
     start = bank.states([state] * 64)
-    corners = cue.lower(32.0)
+    corners = cue.corners(32.0)
     target = np.interp(ROWS[1:], corners.time_s, corners.value)[None]
     plan = design(cue, rig, 30.0)
     intervals = cut(ROWS, plan.drive.time_s, plan.drive.current_A[None], held=True)

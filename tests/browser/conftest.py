@@ -26,9 +26,21 @@ LAB = (
 )
 
 
+SMOKE = {
+    "test_text_and_curve_stay_in_step",  # JupyterLab
+    "test_the_page_designs_compares_and_exports",  # the page under Voila
+    "test_a_view_greets_and_draws_the_first_frame",  # the canvas alone
+}
+"""The tests of this folder that belong to the ordinary suite; all others are slow."""
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest deselects what is slow
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Browser tests come last: Playwright keeps an event loop running in this thread, which others would trip over."""
+    """Browser tests come last: Playwright keeps an event loop running in this thread, which breaks others."""
     items.sort(key=lambda item: Path(__file__).parent in item.path.parents)
+    for item in items:
+        if Path(__file__).parent in item.path.parents and getattr(item, "originalname", item.name) not in SMOKE:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

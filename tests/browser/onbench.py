@@ -98,6 +98,32 @@ def type_drag_and_err(page: Page) -> None:
     expect(editor(page)).to_have_value(dragged)
 
 
+def type_below_the_first_screen(page: Page) -> None:
+    """Scroll the shipped text to its end, click into the last line and type: the letter stands in the text."""
+    scroller = page.locator(".thermicon .tm-scroller")
+    before = editor(page).input_value()
+    high, shown, area = scroller.evaluate(
+        "scroller => { scroller.scrollTop = scroller.scrollHeight;"
+        " return [scroller.scrollHeight, scroller.clientHeight, scroller.querySelector('.tm-area').clientHeight]; }"
+    )
+    assert high > 2 * shown, "the text fits into one screen, so that this shows nothing"
+    assert area >= high - 1, f"the text area is {area} px high, the text {high} px"
+    box = scroller.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 200, box["y"] + box["height"] - 40)
+    page.keyboard.press("x")
+    expect(editor(page)).to_be_focused()
+    after = editor(page).input_value()
+    places = [k for k in range(len(after)) if after[:k] + after[k + 1 :] == before]
+    assert places, "the letter is not in the text"
+    assert after[: places[0]].count("\n") > after.count("\n") - 4, "the letter is not near the end of the text"
+    page.locator(".tm-numbers > div").last.click()
+    page.keyboard.press("x")
+    assert len(editor(page).input_value()) == len(before) + 2
+    page.locator(".tm-button", has_text="Undo").click()
+    expect(root(page)).to_be_visible()
+
+
 def wait_until_refined(page: Page) -> None:
     """Wait until the set view has ranked as many people as make numbers of it."""
     expect(page.locator(".thermicon-top .th-status")).to_have_text("200 people", timeout=2 * SETTLES_MS)

@@ -16,6 +16,7 @@ from tests.browser.onbench import (
     editor,
     open_tab,
     root,
+    type_below_the_first_screen,
     type_drag_and_err,
     type_text,
     wait_until_drawn,
@@ -48,6 +49,13 @@ def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
     shot("lab-design-dark")
     dark(bench, False)
     type_drag_and_err(bench)
+
+
+def test_text_below_the_first_screen_can_be_edited(bench: Page) -> None:
+    cells = bench.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Notebook .jp-Cell")
+    before = cells.count()
+    type_below_the_first_screen(bench)
+    assert cells.count() == before
 
 
 def test_an_error_and_an_icon_that_is_not_reached_are_shown(bench: Page, shot: Shot) -> None:

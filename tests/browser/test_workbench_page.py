@@ -13,6 +13,7 @@ from tests.browser.jupyter import Server
 from tests.browser.onbench import (
     click_a_confusion,
     root,
+    type_below_the_first_screen,
     type_drag_and_err,
     wait_until_drawn,
     write_drives,
@@ -29,6 +30,7 @@ def test_the_page_designs_compares_and_exports(
     wait_until_drawn(page)
     expect(root(page)).to_have_attribute("data-icon", "cooling-step")
     shot("page-design")
+    type_below_the_first_screen(page)
     type_drag_and_err(page)
     click_a_confusion(page)
     shot("page-set")

@@ -8,6 +8,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,15 @@ def run(sources: Path, cache: Path) -> tuple[float, int, str]:
     )
     value, hits = done.stdout.split()
     return float(value), int(hits), done.stderr
+
+
+def test_processes_that_compile_the_same_at_once_share_a_folder(sources: Path, tmp_path: Path) -> None:
+    shutil.rmtree(tmp_path / "cache")
+    with ThreadPoolExecutor() as pool:
+        assert {result[0] for result in pool.map(run, [sources] * 3, [tmp_path / "cache"] * 3)} == {7.0}
+    assert run(sources, tmp_path / "cache") == (7.0, 1, "")
+    (kept,) = (tmp_path / "cache" / "compiled").iterdir()
+    assert sorted(path.name.partition("-")[0] for path in kept.iterdir()) == ["part", "total"]
 
 
 def test_machine_code_is_kept_and_read_again(sources: Path, tmp_path: Path) -> None:

@@ -242,7 +242,7 @@ FAMILIES = [
     header("a in 3..1 step 1 K)", "E228", 13, "1 does not lie above 3", "a in 1..3 step 1 K)"),
     header("a in 1..3 step 0.7 K)", "E228", 13, "3 is not reached from 1 in steps of 0.7"),
     header("a in 1..3 step 0 K)", "E228", 13, "a step is positive"),
-    header("a in 0..9999999 step 1e-3 K)", "E228", 13, "more than 10,000,000 values"),
+    header("a in 0..9999999 step 1e-3 K)", "E228", 13, "more than 100,000 values"),
     header("a in [1] K, b in [1] s)", "E227", 20, "b is never used"),
     header('a in [1] K) means "{b} x"', "E226", 27, '"b" is not a parameter', 'a in [1] K) means "{a} x"'),
     Mistake("cue 1\nicon x(a\n in [1] K) { " + DOWN + " }", "E118", 2, 8, "a parameter stands on one line"),

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import nbformat
+import pytest
 from nbclient import NotebookClient
 
 NOTEBOOK = Path(__file__).parents[2] / "notebooks/06_the_papers_figures.ipynb"
@@ -16,6 +17,7 @@ def test_it_is_thin_and_has_no_outputs() -> None:
     assert "def " not in "".join(cell.source for cell in code)
 
 
+@pytest.mark.slow
 def test_every_cell_runs_and_shows_something(tmp_path: Path) -> None:
     notebook = nbformat.read(NOTEBOOK, as_version=4)
     resources = {"metadata": {"path": str(tmp_path)}}

@@ -137,8 +137,8 @@ def events_in(delivery: DeliveredDrive) -> tuple[Event, ...]:
     """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
     icon, rig = delivery.icon, delivery.rig
     base = baseline_C(icon, rig)
-    start = steady_state(rig, "display", base)[0] if icon.frame.control == "current" else base
-    return events_of(icon.lower(start), 0.0 if isinstance(delivery.played, Setpoints) else delivery.lead_s)
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
+    return events_of(icon.corners(start), 0.0 if isinstance(delivery.played, Setpoints) else delivery.lead_s)
 
 
 def command_column(delivery: DeliveredDrive) -> Column:

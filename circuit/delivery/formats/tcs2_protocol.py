@@ -69,12 +69,12 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 def write(delivery: DeliveredDrive) -> bytes:
     """Return the protocol; raises FormatError for a cue that is not a ramp, plateau and return of the display."""
     icon = delivery.icon
-    if icon.frame.control != "display":
+    if icon.context.control != "display":
         raise FormatError(
             f"tcs2-protocol-ini needs an icon that prescribes the display; {icon.name} prescribes the "
-            f"{icon.frame.control}: use tcs2-serial"
+            f"{icon.context.control}: use tcs2-serial"
         )
-    stimulus = stimulus_of(icon.lower(baseline_C(icon, delivery.rig)), delivery.device.most("ramp rate"))
+    stimulus = stimulus_of(icon.corners(baseline_C(icon, delivery.rig)), delivery.device.most("ramp rate"))
     return ("\n".join(_lines(stimulus)) + "\n").encode("ascii")
 
 

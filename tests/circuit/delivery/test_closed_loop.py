@@ -140,7 +140,7 @@ def sampled_loop(rig: Rig, cue: Icon, end_s: float) -> str:
     bias = steady_state(rig, "display", 32.0)[0]
     text = netlist(rig, Drive([0.0, end_s], [bias, bias]), out_file="out.txt")
     text = re.sub(r"Vcommand command 0 PWL\(\n(\+.*\n)+", "", text)
-    corners = cue.lower(32.0)
+    corners = cue.corners(32.0)
     points = " ".join(f"{t!r} {v!r}" for t, v in zip(corners.time_s, corners.value, strict=True))
     lag, period = GAINS["lag_s"], 1 / rig.driver.update_Hz
     low, high = rig.driver.current_min_A, rig.driver.current_max_A
@@ -188,7 +188,7 @@ def test_a_batch_runs_the_loop_too() -> None:
     batch = simulate_many(cues, [LOOP, other], nominal=LOOP, end_s=9.0, probes=("display_C",))
     for r, rig in enumerate((LOOP, other)):
         for c, cue in enumerate(cues):
-            alone = simulate(cue, rig, tail_s=9.0 - cue.lower(32.0).duration_s)
+            alone = simulate(cue, rig, tail_s=9.0 - cue.corners(32.0).duration_s)
             assert np.abs(batch["display_C"][r, c] - alone.display_C).max() < 1e-4
     skin = [icon("cool by 3 °C at 1 °C/s\nhold for 5 s", "skin")]
     replayed = simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, probes=("skin_C",))

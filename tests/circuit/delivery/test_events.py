@@ -15,7 +15,7 @@ from thermicon.icons import Corners, load_library
 
 
 def test_ramps_levels_and_returns_on_the_clock_of_the_file() -> None:
-    corners = load_library("six-icons")["cold-to-warm"].lower()
+    corners = load_library("six-icons")["cold-to-warm"].corners()
     found = [(event.name, round(event.time_s, 3), event.level) for event in events_of(corners, 0.01)]
     assert found == [
         ("ramp start", 0.01, 32.0),

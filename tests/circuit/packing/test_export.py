@@ -200,7 +200,7 @@ class TestSidecar:
         assert told["thermicon"] == version("thermicon")
         assert told["icon"]["content_hash"] == SIX["cooling-step"].content_hash
         assert parse(told["icon"]["text"])["cooling-step"] == replace(
-            SIX["cooling-step"], frame=parse(told["icon"]["text"])["cooling-step"].frame
+            SIX["cooling-step"], context=parse(told["icon"]["text"])["cooling-step"].context
         )
         rig = one.delivery.rig
         assert told["rig"]["content_hash"] == hashlib.sha256(rig.document.encode()).hexdigest()

@@ -30,7 +30,7 @@ def test_display_tracking_is_each_rigs_own_run() -> None:
     batch = simulate_many(SIX, OTHERS, nominal=THENAR, end_s=12.0, tracking="display", probes=("cold_receptor_C",))
     for r, rig in enumerate(OTHERS):
         for i, icon in enumerate(SIX):
-            alone = simulate(icon, rig, tail_s=12.0 - icon.lower(32.0).duration_s)
+            alone = simulate(icon, rig, tail_s=12.0 - icon.corners(32.0).duration_s)
             assert batch["cold_receptor_C"][r, i] == pytest.approx(alone.cold_receptor_C, abs=1e-4)
 
 

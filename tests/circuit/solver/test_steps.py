@@ -106,13 +106,13 @@ def test_an_icon_that_plays_another_has_a_nearest_one() -> None:
     icon = parse(text + "; icon b { play a; rest for 1 s; play a }")["b"]
     near = nearest_reachable(icon, THENAR)
     assert near is not None
-    assert near.icon.lower().duration_s == pytest.approx(5.6)
+    assert near.icon.corners().duration_s == pytest.approx(5.6)
 
 
 def test_waves_of_current_are_played_as_written() -> None:
     icon = cue("square by 0.5 A every 2 s for 4 s starting up; step to 0.2 A; hold for 1 s", "current")
     trace = simulate(icon, THENAR)
-    rest = float(icon.lower().value[0])
+    rest = float(icon.corners().value[0])
     assert rest == 0.0
     assert trace.reachable
     assert trace.current_A[50] - trace.current_A[150] == pytest.approx(1.0)

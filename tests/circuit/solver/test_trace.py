@@ -1,5 +1,6 @@
 """Traces: columns, rows, files, pictures and safety."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, Trace, judge_safety, simulate, simulate_current, write_trace
+from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rules import limit_table
 from thermicon.circuit.solver.draw import plot_current, plot_heat_flow
 from thermicon.circuit.solver.trace import judge
@@ -64,6 +66,13 @@ def test_files_read_back(trace: Trace, tmp_path: Path, suffix: str) -> None:
     assert list(back.columns) == COLUMNS
     assert len(back) == 2 * 801
     assert back["skin_C"].to_numpy()[:801] == pytest.approx(trace.skin_C, abs=1e-6)
+
+
+def test_parquet_without_pyarrow_names_the_cure(trace: Trace, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(InputError, match=r'a\.parquet.* pyarrow.*pip install "thermicon\[parquet\]".*\.csv'):
+        write_trace(trace, tmp_path / "a.parquet")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_trace_is_frozen_and_read_only(trace: Trace) -> None:

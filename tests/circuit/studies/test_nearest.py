@@ -37,12 +37,12 @@ def test_a_cue_with_a_steep_corner_is_reached_slower() -> None:
 def test_changes_keep_their_durations_and_levels() -> None:
     text = "cue 1\nicon x { repeat 2 { cool to 28 °C at 2 °C/s; hold for 1 s; return over 3 s } }"
     icon = parse(text).icons[0]
-    smaller = changed(icon, 32.0, smaller=0.5).lower(32.0)
-    assert smaller.time_s == icon.lower(32.0).time_s
+    smaller = changed(icon, 32.0, smaller=0.5).corners(32.0)
+    assert smaller.time_s == icon.corners(32.0).time_s
     assert smaller.value == pytest.approx([32, 30, 30, 32, 30, 30, 32])
-    slower = changed(icon, 32.0, slower=2.0).lower(32.0)
+    slower = changed(icon, 32.0, slower=2.0).corners(32.0)
     assert slower.time_s == pytest.approx([0, 4, 5, 11, 15, 16, 22])
-    assert slower.value == icon.lower(32.0).value
+    assert slower.value == icon.corners(32.0).value
 
 
 def test_nothing_is_reached_where_the_baseline_is_not() -> None:

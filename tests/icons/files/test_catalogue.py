@@ -1,4 +1,4 @@
-"""Every example of the catalogue of errors does what it promises. Run as a script, this file writes docs/errors.md."""
+"""Every example of the catalogue of errors does what it promises. As a script: writes docs/reference/errors.md."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ from thermicon.icons.files.catalogue import Entry, catalogue, explain, page
 from thermicon.icons.files.exchange import from_json
 from thermicon.icons.model.errors import TITLES
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "errors.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "errors.md"
 ENTRIES = list(catalogue().values())
 SHOWN = [entry for entry in ENTRIES if entry.wrong]
 

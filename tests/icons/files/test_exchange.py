@@ -11,11 +11,10 @@ from jsonschema import Draft202012Validator
 
 from tests.icons.files.test_exchange_errors import error, with_body
 from thermicon.icons import (
-    Change,
+    Context,
     CueErrors,
-    Drive,
+    Current,
     Family,
-    Frame,
     Hold,
     Icon,
     IconSet,
@@ -23,6 +22,7 @@ from thermicon.icons import (
     Parameter,
     Play,
     Pulse,
+    Ramp,
     Repeat,
     Rest,
     Return,
@@ -184,8 +184,8 @@ def bodies(draw: Any, depth: int = 2) -> tuple[Statement, ...]:
                 [
                     (Hold(time),),
                     (Rest(time),),
-                    (Change("cool", by_K=size, rate_K_per_s=draw(SIZES)), Return(draw(SIZES))),
-                    (Change("change", to_C=33 + size, duration_s=time), Return(duration_s=time)),
+                    (Ramp("cool", by_K=size, rate_K_per_s=draw(SIZES)), Return(draw(SIZES))),
+                    (Ramp("change", to_C=33 + size, duration_s=time), Return(duration_s=time)),
                     (Step("change", by_K=-size), Hold(time), Step("warm", to_C=34), Return(duration_s=time)),
                     (Pulse("warm", by_K=size, duration_s=time), Pulse("change", by_K=-size, duration_s=time)),
                     (Wave("sine", by_K=size, period_s=time, duration_s=time, start="cool"),),
@@ -203,24 +203,24 @@ def bodies(draw: Any, depth: int = 2) -> tuple[Statement, ...]:
 
 @st.composite
 def sets(draw: Any) -> IconSet:
-    frame = Frame(
+    context = Context(
         draw(st.sampled_from(["skin", "display"])), draw(st.none() | st.just(32.5)), draw(st.none() | st.just("arm"))
     )
     metadata = st.builds(
         Metadata, means=st.none() | TEXTS, by=st.none() | TEXTS, tags=st.just(("a", "b c")) | st.just(())
     )
     try:
-        first = Icon("first", draw(bodies()), frame, draw(metadata))
-        second = Icon("second", (*draw(bodies(0)), Hold(1), Return(1)), frame) if draw(st.booleans()) else None
+        first = Icon("first", draw(bodies()), context, draw(metadata))
+        second = Icon("second", (*draw(bodies(0)), Hold(1), Return(1)), context) if draw(st.booleans()) else None
         parts = [first, *([second] if second else [])]
         if not any(isinstance(part, Total) for part in first.statements):
-            parts.append(Icon("third", (Play(first), Hold(1)), frame, draw(metadata)))
+            parts.append(Icon("third", (Play(first), Hold(1)), context, draw(metadata)))
         parameter = Parameter("x", "s", draw(st.lists(TIMES, min_size=1, max_size=3, unique=True)))
         body = (Repeat(2, (Hold(parameter.si(0, "time")),)),)
-        parts.append(Family("f", (parameter,), body, (Slot((0, 0), "duration_s", "time", "x"),), frame))  # type: ignore[arg-type]
+        parts.append(Family("f", (parameter,), body, (Slot((0, 0), "duration_s", "time", "x"),), context))  # type: ignore[arg-type]
         title = draw(st.just("") | TEXTS)
         return IconSet(
-            draw(st.sampled_from(["", "é-1"])), title, frame, draw(metadata), tuple(draw(st.permutations(parts)))
+            draw(st.sampled_from(["", "é-1"])), title, context, draw(metadata), tuple(draw(st.permutations(parts)))
         )
     except CueErrors:
         assume(False)
@@ -292,7 +292,7 @@ def test_a_damaged_set_raises_nothing_else(data: st.DataObject) -> None:
 
 
 def test_drives_in_python() -> None:
-    frame = Frame("current", None, "arm")
-    icon = Icon("a", (Drive(0.5, rate_A_per_s=1), Step(by_A=-0.1), Pulse(by_A=0.1, duration_s=1), Return(2)), frame)
-    icons = IconSet("", "", frame, Metadata(), (icon,))
+    context = Context("current", None, "arm")
+    icon = Icon("a", (Current(0.5, rate_A_per_s=1), Step(by_A=-0.1), Pulse(by_A=0.1, duration_s=1), Return(2)), context)
+    icons = IconSet("", "", context, Metadata(), (icon,))
     assert from_json(to_json(icons)) == icons

@@ -251,7 +251,7 @@ def test_icons_that_cannot_be_together() -> None:
         "BODY", '{"do": "repeat", "count": {"parameter": "x"}, "statements": [{"do": "hold", "duration_s": 1}]}'
     )
     text = f"{head}{family}, {icon.replace('NAME', 'p')}]}}"
-    assert from_json(text.replace("PLAYED", "f_x=3"))["p"].lower().duration_s == 3
+    assert from_json(text.replace("PLAYED", "f_x=3"))["p"].corners().duration_s == 3
     assert '"f_x=4" is no member of the family f\n  such as f_x=2' in error(text.replace("PLAYED", "f_x=4"))
     assert "is no member" in error(text.replace("PLAYED", "f"))
     clash = icon.replace("NAME", "f_x=2").replace("PLAYED", "f_x=3")

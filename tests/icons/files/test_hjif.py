@@ -142,8 +142,8 @@ def follow(icons: IconSet) -> None:
     start = 0.0
     tick = 1 / document["timescale"]
     for icon in icons:
-        corners = icon.lower()
-        baseline = icon.frame.baseline_C
+        corners = icon.corners()
+        baseline = icon.context.baseline_C
         assert baseline is not None
         steps = {corners.time_s[place] for place in corners.steps} | {corners.duration_s}
         slack = 2e-9 + 2 * tick * corners.steepest_per_s

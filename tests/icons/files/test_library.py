@@ -25,7 +25,7 @@ def test_the_shipped_sets() -> None:
         icons = load_library(name)
         assert icons.name == name
         assert icons.title
-        assert icons.frame.baseline_C == 32.0
+        assert icons.context.baseline_C == 32.0
         assert all(entry.metadata.means and entry.metadata.by for entry in icons.entries)
         assert parse(str(icons)) == icons
         assert format_text(str(icons)) == str(icons)
@@ -38,7 +38,7 @@ def test_what_is_not_published_is_marked_as_reconstruction() -> None:
 
 @pytest.mark.parametrize("icon", SIX, ids=lambda icon: icon.name)
 def test_the_six_icons_are_comparable(icon: object) -> None:
-    corners = icon.lower()  # type: ignore[attr-defined]
+    corners = icon.corners()  # type: ignore[attr-defined]
     assert 8 <= corners.duration_s <= 10
     assert corners.value[0] == corners.value[-1] == 32.0
     assert corners.lowest >= 20
@@ -48,7 +48,7 @@ def test_the_six_icons_are_comparable(icon: object) -> None:
 def test_no_two_of_the_six_are_one_shape_scaled() -> None:
     shapes = []
     for icon in SIX:
-        corners = icon.lower()
+        corners = icon.corners()
         changes = [corners.at(0.1 * n) - 32 for n in range(80)]
         norm = math.sqrt(sum(c * c for c in changes))
         shapes.append([c / norm for c in changes])
@@ -60,20 +60,20 @@ def test_no_two_of_the_six_are_one_shape_scaled() -> None:
 
 def test_the_published_steps() -> None:
     for icons in (SIX, load_library("cooling-step-skin")):
-        corners = icons["cooling-step"].lower()
+        corners = icons["cooling-step"].corners()
         assert (corners.time_s, corners.value) == ((0.0, 2.0, 6.0, 8.0), (32.0, 26.0, 26.0, 32.0))
-    assert (SIX.frame.control, load_library("cooling-step-skin").frame.control) == ("display", "skin")
+    assert (SIX.context.control, load_library("cooling-step-skin").context.control) == ("display", "skin")
 
 
 def test_the_waves() -> None:
     waves = load_library("wave-shapes")
     for icon in waves:
-        corners = icon.lower()
+        corners = icon.corners()
         assert (corners.duration_s, corners.lowest, corners.highest) == (8.0, 29.0, 35.0)
-    sine = waves["sine"].lower()
+    sine = waves["sine"].corners()
     for time in [n / 1000 for n in range(8001)]:
         assert sine.at(time) == pytest.approx(32 + 3 * math.sin(2 * math.pi * time / 4), abs=0.001001)
-    assert (waves["square"].lower().steps, len(waves["triangle"].lower())) == ((0, 2, 4, 6, 8), 6)
+    assert (waves["square"].corners().steps, len(waves["triangle"].corners())) == ((0, 2, 4, 6, 8), 6)
 
 
 def test_files_are_read_and_an_existing_path_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,9 +8,9 @@ from dataclasses import FrozenInstanceError
 import pytest
 
 from thermicon.icons import (
+    Context,
     CueErrors,
     Family,
-    Frame,
     Hold,
     Icon,
     IconSet,
@@ -50,7 +50,7 @@ def family(
     parameters: tuple[Parameter, ...] | None = None,
 ) -> Family:
     own = (Parameter("a", unit, values),) if parameters is None else parameters
-    return Family(name, own, template, slots, Frame(control), Metadata(means=means))  # type: ignore[arg-type]
+    return Family(name, own, template, slots, Context(control), Metadata(means=means))  # type: ignore[arg-type]
 
 
 def test_it_is_a_sequence() -> None:
@@ -60,7 +60,7 @@ def test_it_is_a_sequence() -> None:
     assert RAMP[3] in RAMP
     assert "ramp_amount=6_rate=2.5" in RAMP
     assert "ramp_amount=6_rate=2.6" not in RAMP
-    assert Icon("ramp_amount=6_rate=1", (Hold(1),), RAMP.frame) not in RAMP
+    assert Icon("ramp_amount=6_rate=1", (Hold(1),), RAMP.context) not in RAMP
     assert 3 not in RAMP
     for index in (20, -21):
         with pytest.raises(IndexError, match=f"family ramp has 20 members, so there is none at {index}"):
@@ -82,8 +82,8 @@ def test_members_are_whole_icons() -> None:
     member = RAMP[6]
     assert member.name == "ramp_amount=-3_rate=1.5"
     assert member.metadata == Metadata(means="ramp -3 °C at 1.5 °C/s", tags=("a", "b"))
-    assert member.lower().value == (32.0, 29.0, 32.0)
-    assert Icon(member.name, member.statements, member.frame, member.metadata) == member
+    assert member.corners().value == (32.0, 29.0, 32.0)
+    assert Icon(member.name, member.statements, member.context, member.metadata) == member
     assert hash(RAMP[6]) == hash(member)
 
 
@@ -184,8 +184,8 @@ def test_a_start_that_a_member_cannot_take_is_told() -> None:
         (lambda: family(values=(1, -2)), "a change has a positive size"),
         (lambda: family(slots=(Slot((5,), "by_K", "difference", "a"),)), r"there is no statement at \(5,\)"),
         (lambda: family(slots=(Slot((0, 1), "by_K", "difference", "a"),)), r"there is no statement at \(0, 1\)"),
-        (lambda: family(slots=(Slot((0,), "to_C", "absolute", "a"),)), "to_C is not given by Change"),
-        (lambda: family(slots=(Slot((0,), "direction", "count", "a"),)), "direction is not given by Change"),
+        (lambda: family(slots=(Slot((0,), "to_C", "absolute", "a"),)), "to_C is not given by Ramp"),
+        (lambda: family(slots=(Slot((0,), "direction", "count", "a"),)), "direction is not given by Ramp"),
         (lambda: family(slots=(Slot((0,), "by_K", "change", "a"),)), "by_K is here of kind difference, not change"),
         (
             lambda: family((1, 2), "A/s", slots=(AMPERES_PER_S,), template=(cool(by=1, at=1), back(at=1))),
@@ -211,9 +211,9 @@ def test_a_start_that_a_member_cannot_take_is_told() -> None:
         (lambda: Parameter("a", "K", span=(1, 3, 0.7)), "3 is not reached from 1 in steps of 0.7"),
         (lambda: Parameter("a", "K", span=(3, 1, 1)), "1 does not lie above 3"),
         (lambda: Parameter("a", "K", span=(1, 3, -1)), "a step is positive"),
-        (lambda: Parameter("a", "K", span=(0, 1e8, 1e-3)), "more than 10,000,000 values"),
-        (lambda: IconSet("", "", RAMP.frame, Metadata(), (RAMP, RAMP[0])), "has the name of a member of family ramp"),
-        (lambda: IconSet("", "", RAMP.frame, Metadata(), (SET["last"],)), "plays ramp_.*, which is not in the set"),
+        (lambda: Parameter("a", "K", span=(0, 1e8, 1e-3)), "more than 100,000 values"),
+        (lambda: IconSet("", "", RAMP.context, Metadata(), (RAMP, RAMP[0])), "has the name of a member of family ramp"),
+        (lambda: IconSet("", "", RAMP.context, Metadata(), (SET["last"],)), "plays ramp_.*, which is not in the set"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused(make: Callable[[], object], message: str) -> None:

@@ -87,7 +87,7 @@ def test_another_content_has_another_hash(old: str, new: str) -> None:
 
 def test_order_counts() -> None:
     one, two = Icon("one", [hold(1)]), Icon("two", [rest(1)])
-    made = IconSet("", "", one.frame, one.metadata, (one, two))
+    made = IconSet("", "", one.context, one.metadata, (one, two))
     assert replace(made, entries=(two, one)).content_hash != made.content_hash
     assert Icon("one", [rest(1)]).content_hash != one.content_hash
 

@@ -9,16 +9,16 @@ from dataclasses import FrozenInstanceError, fields
 import pytest
 
 from thermicon.icons import (
-    Change,
+    Context,
     CueErrors,
-    Drive,
-    Frame,
+    Current,
     Hold,
     Icon,
     IconSet,
     Metadata,
     Play,
     Pulse,
+    Ramp,
     Repeat,
     Rest,
     Return,
@@ -33,7 +33,7 @@ from thermicon.icons.model.statements import Broken
 HOLD = (Hold(1),)
 WAIT = Icon("wait", (Rest(1),))
 EVERYTHING = (
-    Change("change", by_K=-1, duration_s=1),
+    Ramp("change", by_K=-1, duration_s=1),
     Return(duration_s=1),
     Step("cool", by_K=1),
     Step(to_C=32),
@@ -47,19 +47,19 @@ EVERYTHING = (
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: Change("up", by_K=1, duration_s=1), 'direction must be "warm", "cool" or "change", not \'up\''),
-        (lambda: Change("change", by_K=0, duration_s=1), "a change of nothing is no change"),
-        (lambda: Change("warm", duration_s=1), "either by_K or to_C"),
-        (lambda: Change("warm", by_K=1, to_C=40, duration_s=1), "and not both"),
-        (lambda: Change("warm", by_K=1), "either rate_K_per_s or duration_s"),
-        (lambda: Change("warm", by_K=-1, duration_s=1), r"Change.by_K = -1.0: a change has a positive size"),
-        (lambda: Change("warm", by_K=1, rate_K_per_s=0), "a rate is positive"),
-        (lambda: Change("warm", to_C=61, duration_s=1), "61 °C is outside the −10 to 60 °C"),
-        (lambda: Change("warm", by_K=math.nan, duration_s=1), "nan is not a number that the language takes"),
-        (lambda: Change("warm", by_K="1", duration_s=1), "must be a number, not '1'"),
-        (lambda: Drive(21, duration_s=1), "21 A is outside the ±20 A"),
-        (lambda: Drive(None, duration_s=1), "to_A must be a number"),
-        (lambda: Drive(1), "either rate_A_per_s or duration_s"),
+        (lambda: Ramp("up", by_K=1, duration_s=1), 'direction must be "warm", "cool" or "change", not \'up\''),
+        (lambda: Ramp("change", by_K=0, duration_s=1), "a change of nothing is no change"),
+        (lambda: Ramp("warm", duration_s=1), "either by_K or to_C"),
+        (lambda: Ramp("warm", by_K=1, to_C=40, duration_s=1), "and not both"),
+        (lambda: Ramp("warm", by_K=1), "either rate_K_per_s or duration_s"),
+        (lambda: Ramp("warm", by_K=-1, duration_s=1), r"Ramp.by_K = -1.0: a change has a positive size"),
+        (lambda: Ramp("warm", by_K=1, rate_K_per_s=0), "a rate is positive"),
+        (lambda: Ramp("warm", to_C=61, duration_s=1), "61 °C is outside the −10 to 60 °C"),
+        (lambda: Ramp("warm", by_K=math.nan, duration_s=1), "nan is not a number that the language takes"),
+        (lambda: Ramp("warm", by_K="1", duration_s=1), "must be a number, not '1'"),
+        (lambda: Current(21, duration_s=1), "21 A is outside the ±20 A"),
+        (lambda: Current(None, duration_s=1), "to_A must be a number"),
+        (lambda: Current(1), "either rate_A_per_s or duration_s"),
         (lambda: Hold(0), "a time is positive"),
         (lambda: Hold(None), "duration_s must be a number, not None"),
         (lambda: Rest(3601), "more than the hour"),
@@ -87,12 +87,12 @@ EVERYTHING = (
         (lambda: Icon("x", (Wave("sine", by_A=1),)), "E210 unit does not fit the control"),
         (lambda: Icon("x", (Step(by_K=1),)), "E223 icon without duration"),
         (lambda: Icon("x", (*HOLD, Total(2))), "E222 total not kept"),
-        (lambda: Icon("x", (Change("warm", by_K=1, duration_s=1), Play(WAIT))), "E224 play away from baseline"),
-        (lambda: Icon("x", (Play(WAIT),), Frame("display")), "plays wait, whose frame differs"),
+        (lambda: Icon("x", (Ramp("warm", by_K=1, duration_s=1), Play(WAIT))), "E224 play away from baseline"),
+        (lambda: Icon("x", (Play(WAIT),), Context("display")), "plays wait, whose context differs"),
         (lambda: Icon("wait", (Play(WAIT),)), "plays two different icons that are both called wait"),
-        (lambda: Frame("heat"), "control must be one of skin, display, current, not 'heat'"),
-        (lambda: Frame(baseline_C=99), "baseline_C: 99 °C is outside"),
-        (lambda: Frame(site="left thumb"), "site: 'left thumb' is not a name"),
+        (lambda: Context("heat"), "control must be one of skin, display, current, not 'heat'"),
+        (lambda: Context(baseline_C=99), "baseline_C: 99 °C is outside"),
+        (lambda: Context(site="left thumb"), "site: 'left thumb' is not a name"),
         (lambda: Metadata(means=" "), "means: the text is empty"),
         (lambda: Metadata(by="a\x00"), r"by: the text holds the control character U\+0000"),
         (lambda: Metadata(tags="a"), "tags must be a tuple"),
@@ -101,14 +101,14 @@ EVERYTHING = (
         (lambda: Icon("x", ()), "at least one statement"),
         (lambda: Icon("x", (Repeat(2, (Broken(),)),)), "nothing but statements"),
         (lambda: Icon("x", (Return(1),)), "E206 already at baseline"),
-        (lambda: Icon("x", (Change("warm", to_C=30, duration_s=1),)), "E201 target on the wrong side"),
-        (lambda: Icon("x", (Drive(1, duration_s=1),)), "E209 to without warm or cool"),
+        (lambda: Icon("x", (Ramp("warm", to_C=30, duration_s=1),)), "E201 target on the wrong side"),
+        (lambda: Icon("x", (Current(1, duration_s=1),)), "E209 to without warm or cool"),
         (lambda: Icon("x", (Repeat(10**6, HOLD),)), "E220 too many corners"),
-        (lambda: IconSet("a", "", Frame(), Metadata(), ()), "at least one icon"),
-        (lambda: IconSet("1", "", Frame(), Metadata(), (Icon("x", HOLD),)), "set: '1' is not a name"),
-        (lambda: IconSet("a", " ", Frame(), Metadata(), (Icon("x", HOLD),)), "title: the text is empty"),
-        (lambda: IconSet("a", "", Frame(), Metadata(), (Icon("x", HOLD),) * 2), "two icons are called x"),
-        (lambda: IconSet("a", "", Frame("display"), Metadata(), (Icon("x", HOLD),)), "is not that of the set"),
+        (lambda: IconSet("a", "", Context(), Metadata(), ()), "at least one icon"),
+        (lambda: IconSet("1", "", Context(), Metadata(), (Icon("x", HOLD),)), "set: '1' is not a name"),
+        (lambda: IconSet("a", " ", Context(), Metadata(), (Icon("x", HOLD),)), "title: the text is empty"),
+        (lambda: IconSet("a", "", Context(), Metadata(), (Icon("x", HOLD),) * 2), "two icons are called x"),
+        (lambda: IconSet("a", "", Context("display"), Metadata(), (Icon("x", HOLD),)), "is not that of the set"),
     ],
 )
 def test_what_cannot_be_is_refused(make: Callable[[], object], message: str) -> None:
@@ -117,7 +117,7 @@ def test_what_cannot_be_is_refused(make: Callable[[], object], message: str) -> 
 
 
 def test_numbers_become_floats_and_equal_icons_are_equal() -> None:
-    by_hand = Icon("dip", (Change("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
+    by_hand = Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
     read = parse("cue 1\nicon dip {\n cool by 6 K at 3 K/s; hold for 4000 ms\n return at 180 °C/min }").icons[0]
     assert by_hand == read
     assert hash(by_hand) == hash(read)
@@ -137,7 +137,7 @@ def test_one_line_reprs_with_units() -> None:
     assert repr(icons) == "<IconSet six-icons: 6 icons, 8 s, control display, baseline 32 °C>"
     assert repr(icons["cooling-step"]) == "<Icon cooling-step: 8 s, 26 to 32 °C, at most 3 °C/s, control display>"
     assert repr(Icon("x", HOLD)).endswith("control skin, baseline 32 °C assumed>")
-    drive = Icon("x", (Drive(1, duration_s=2),), Frame("current"))
+    drive = Icon("x", (Current(1, duration_s=2),), Context("current"))
     assert repr(drive) == "<Icon x: 2 s, 0 to 1 A, at most 0.5 A/s, control current>"
 
 
@@ -157,13 +157,13 @@ def test_errors_of_an_icon_show_its_canonical_text() -> None:
     with pytest.raises(
         CueErrors, match=r"<icon x>:1:1  E205 (?s:.)*1 \| rest for 2 s\n    \| \^{12} the level is 31"
     ) as caught:
-        Icon("x", (Change("cool", by_K=1, duration_s=1), Rest(2)))
+        Icon("x", (Ramp("cool", by_K=1, duration_s=1), Rest(2)))
     assert len(caught.value.errors) == 1
 
 
 def test_statements_are_frozen_and_travel() -> None:
     icon = Icon("x", EVERYTHING)
-    for part in (*EVERYTHING, icon, IconSet("", "", Frame(), Metadata(), (WAIT, icon))):
+    for part in (*EVERYTHING, icon, IconSet("", "", Context(), Metadata(), (WAIT, icon))):
         for again in (pickle.loads(pickle.dumps(part)), copy.copy(part), copy.deepcopy(part)):
             assert again == part
             assert hash(again) == hash(part)

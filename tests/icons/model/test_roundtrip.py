@@ -9,11 +9,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.icons import (
-    Change,
+    Context,
     CueErrors,
-    Drive,
+    Current,
     Family,
-    Frame,
     Hold,
     Icon,
     IconSet,
@@ -21,6 +20,7 @@ from thermicon.icons import (
     Parameter,
     Play,
     Pulse,
+    Ramp,
     Repeat,
     Rest,
     Return,
@@ -68,7 +68,11 @@ def moves(draw: Any, current: bool) -> tuple[Statement, ...]:
     if current:
         away = draw(
             st.sampled_from(
-                [Drive(draw(st.floats(0.1, 2)), **draw(pace("rate_A_per_s"))), Step(by_A=-0.5), Step(to_A=draw(STEPS))]
+                [
+                    Current(draw(st.floats(0.1, 2)), **draw(pace("rate_A_per_s"))),
+                    Step(by_A=-0.5),
+                    Step(to_A=draw(STEPS)),
+                ]
             )
         )
     else:
@@ -78,9 +82,9 @@ def moves(draw: Any, current: bool) -> tuple[Statement, ...]:
         away = draw(
             st.sampled_from(
                 [
-                    Change(draw(st.sampled_from(["warm", "cool"])), **by, **how),
-                    Change("change", by_K=-by["by_K"], **how),
-                    Change(draw(st.sampled_from(["warm", "change"])), **warm, **how),
+                    Ramp(draw(st.sampled_from(["warm", "cool"])), **by, **how),
+                    Ramp("change", by_K=-by["by_K"], **how),
+                    Ramp(draw(st.sampled_from(["warm", "change"])), **warm, **how),
                     Step(draw(st.sampled_from(["warm", "cool", "change"])), **by),
                     Step(draw(st.sampled_from(["warm", "change"])), **warm),
                 ]
@@ -124,8 +128,8 @@ METADATA = st.builds(
 )
 
 
-FRAMES = st.builds(
-    Frame,
+CONTEXTS = st.builds(
+    Context,
     st.sampled_from(["skin", "display", "current"]),
     st.none() | st.floats(28, 32.5),
     st.none() | NAMES,
@@ -133,21 +137,21 @@ FRAMES = st.builds(
 
 
 @st.composite
-def icons(draw: Any, frame: Frame | None = None, name: str | None = None, known: tuple[Icon, ...] = ()) -> Icon:
-    frame = draw(FRAMES) if frame is None else frame
-    body = draw(bodies(frame.control, known=known))
+def icons(draw: Any, context: Context | None = None, name: str | None = None, known: tuple[Icon, ...] = ()) -> Icon:
+    context = draw(CONTEXTS) if context is None else context
+    body = draw(bodies(context.control, known=known))
     try:
-        return Icon(name or draw(NAMES), body, frame, draw(METADATA))
+        return Icon(name or draw(NAMES), body, context, draw(METADATA))
     except CueErrors:
         assume(False)
         raise
 
 
 TEMPLATE = (
-    Change("warm", by_K=1, rate_K_per_s=1),
+    Ramp("warm", by_K=1, rate_K_per_s=1),
     Hold(1),
     Return(1),
-    Repeat(2, (Pulse(by_K=-1, duration_s=1), Change("change", to_C=36, duration_s=1), Return(duration_s=1))),
+    Repeat(2, (Pulse(by_K=-1, duration_s=1), Ramp("change", to_C=36, duration_s=1), Return(duration_s=1))),
     Wave("sawtooth", by_K=1, period_s=1, duration_s=4, start="cool", cut=True),
     Step("cool", by_K=1),
     Step(to_C=40),
@@ -172,9 +176,9 @@ KINDS = {
 
 
 @st.composite
-def families(draw: Any, frame: Frame | None = None, name: str | None = None) -> Family:
+def families(draw: Any, context: Context | None = None, name: str | None = None) -> Family:
     """A family of one template, in which some of the numbers vary."""
-    frame = draw(FRAMES.filter(lambda made: made.control != "current")) if frame is None else frame
+    context = draw(CONTEXTS.filter(lambda made: made.control != "current")) if context is None else context
     parameters, slots, template = [], [], TEMPLATE
     for each in draw(st.lists(st.sampled_from(list(SLOTS)), min_size=1, max_size=3, unique=True)):
         values, units = KINDS[each]
@@ -194,7 +198,7 @@ def families(draw: Any, frame: Frame | None = None, name: str | None = None) -> 
     metadata = replace(metadata, means="x" + (metadata.means or "").replace("{", "") + hole)
     try:
         return Family(
-            name or draw(NAMES), tuple(parameters), template, tuple(draw(st.permutations(slots))), frame, metadata
+            name or draw(NAMES), tuple(parameters), template, tuple(draw(st.permutations(slots))), context, metadata
         )
     except CueErrors:
         assume(False)
@@ -211,13 +215,13 @@ def changed(body: tuple[Any, ...], path: tuple[int, ...], field: str, value: flo
 @st.composite
 def sets(draw: Any) -> IconSet:
     """A set of icons that play each other, and families."""
-    frame = draw(FRAMES.filter(lambda made: made.control != "current"))
+    context = draw(CONTEXTS.filter(lambda made: made.control != "current"))
     names = draw(st.lists(NAMES, min_size=1, max_size=4, unique=True))
     entries: list[Icon | Family] = []
     for name in names:
         known = tuple(entry[0] if isinstance(entry, Family) else entry for entry in entries)
-        entries.append(draw(st.one_of(icons(frame, name, known), families(frame, name))))
-    return IconSet(draw(st.just("") | NAMES), draw(st.just("") | TEXTS), frame, draw(METADATA), tuple(entries))
+        entries.append(draw(st.one_of(icons(context, name, known), families(context, name))))
+    return IconSet(draw(st.just("") | NAMES), draw(st.just("") | TEXTS), context, draw(METADATA), tuple(entries))
 
 
 @settings(max_examples=200)
@@ -226,7 +230,7 @@ def test_an_icon_reads_back_equal(icon: Icon) -> None:
     again = parse(str(icon)).icons[0]
     assert again == icon
     assert str(again) == str(icon)
-    assert again.lower() == icon.lower()
+    assert again.corners() == icon.corners()
     assert repr(icon).startswith(f"<Icon {icon.name}: ")
     assert "\n" not in repr(icon)
 
@@ -241,7 +245,7 @@ def test_a_family_and_its_members_read_back_equal(family: Family) -> None:
     assert "\n" not in repr(family)
     for member in family.sample(2):
         assert parse(str(member)).entries == (member,)
-        assert Icon(member.name, member.statements, member.frame, member.metadata) == member
+        assert Icon(member.name, member.statements, member.context, member.metadata) == member
         assert member in family
         assert family.find(member.name) == member
 
@@ -292,7 +296,7 @@ def test_a_header_may_take_several_lines_and_any_order() -> None:
 
 def test_words_of_the_language_may_be_names() -> None:
     made = parse("cue 1\nset set { site to; site-2 }\nicon hold { hold for 1 s }".replace("; site-2", ""))
-    assert (made.name, made.frame.site, made.icons[0].name) == ("set", "to", "hold")
+    assert (made.name, made.context.site, made.icons[0].name) == ("set", "to", "hold")
 
 
 def test_a_comma_is_a_text_but_no_tag() -> None:

@@ -6,13 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from thermicon.icons import Corners, Frame, Icon, Statement, parse, pulse, sine, square, step
+from thermicon.icons import Context, Corners, Icon, Statement, parse, pulse, sine, square, step
 from thermicon.icons.model.corners import STEP_S
 from thermicon.icons.model.shapes import Shape, Wave
 
 
-def lowered(body: str, settings: str = "") -> Corners:
-    return parse(f"cue 1; set {{ {settings} }}; icon x {{ {body} }}").icons[-1].lower()
+def corners_of(body: str, settings: str = "") -> Corners:
+    return parse(f"cue 1; set {{ {settings} }}; icon x {{ {body} }}").icons[-1].corners()
 
 
 def nominal(corners: Corners) -> list[tuple[float, float]]:
@@ -34,7 +34,7 @@ UNIT: dict[Shape, list[tuple[float, float]]] = {
 @pytest.mark.parametrize("start", ["warm", "cool"])
 @pytest.mark.parametrize("shape", UNIT)
 def test_one_period(shape: Shape, start: str) -> None:
-    corners = lowered(f"{shape} by 3 °C every 4 s for 4 s starting {start}")
+    corners = corners_of(f"{shape} by 3 °C every 4 s for 4 s starting {start}")
     sign = 1 if start == "warm" else -1
     assert nominal(corners) == [(4 * phase, 32 + sign * 3 * value) for phase, value in UNIT[shape]]
     assert corners.duration_s == 4.0
@@ -62,7 +62,7 @@ def test_one_period(shape: Shape, start: str) -> None:
     ],
 )  # fmt: skip
 def test_corners_by_hand(body: str, points: list[tuple[float, float]]) -> None:
-    assert nominal(lowered(body)) == points
+    assert nominal(corners_of(body)) == points
 
 
 @pytest.mark.parametrize(
@@ -77,18 +77,18 @@ def test_corners_by_hand(body: str, points: list[tuple[float, float]]) -> None:
     ],
 )
 def test_a_cut_wave_stops_where_it_is(wave: str, points: list[tuple[float, float]]) -> None:
-    assert nominal(lowered(wave)) == points
+    assert nominal(corners_of(wave)) == points
 
 
 @pytest.mark.parametrize("shape", [*UNIT, "sine"])
 def test_of_whole_periods_nothing_is_cut(shape: str) -> None:
     wave = f"{shape} by 3 °C every 0.7 s for 2.1 s"
-    assert lowered(f"{wave} cut") == lowered(wave)
+    assert corners_of(f"{wave} cut") == corners_of(wave)
 
 
 def test_where_a_cut_sine_stops() -> None:
     for time in (0.1, 1.0, 1.7, 2.0, 3.3, 5.9):
-        corners = lowered(f"sine by 3 °C every 4 s for {time} s cut")
+        corners = corners_of(f"sine by 3 °C every 4 s for {time} s cut")
         assert corners.time_s[-1] == time
         assert corners.value[-1] == pytest.approx(32 + 3 * math.sin(2 * math.pi * time / 4), abs=5e-9)
 
@@ -97,7 +97,7 @@ def test_where_a_cut_sine_stops() -> None:
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-3, 0.02])
 def test_a_sine_lies_within_its_tolerance(size: float, tolerance: float) -> None:
     icon = Icon("x", [sine(by=size, every=4, duration=8, starting="cool")])
-    corners = icon.lower(tolerance=tolerance)
+    corners = icon.corners(tolerance=tolerance)
     time = np.linspace(0, 8, 200_001)
     error = np.abs(corners.at(time) - (32 - size * np.sin(2 * np.pi * time / 4)))
     assert error.max() <= tolerance * 1.001 + 2e-9 * size
@@ -108,14 +108,14 @@ def test_a_sine_lies_within_its_tolerance(size: float, tolerance: float) -> None
 
 def test_the_default_tolerance_is_a_millikelvin() -> None:
     icon = Icon("x", [sine(by=3, every=4, duration=12)])
-    assert icon.lower() == icon.lower(tolerance=1e-3)
-    assert len(icon.lower()) < 300
+    assert icon.corners() == icon.corners(tolerance=1e-3)
+    assert len(icon.corners()) < 300
     with pytest.raises(ValueError, match="tolerance = 0 must lie above 0 and below 10"):
-        icon.lower(tolerance=0)
+        icon.corners(tolerance=0)
 
 
 def test_steps_are_marked_and_take_a_tenth_of_a_microsecond() -> None:
-    corners = lowered("hold for 1 s; step by 3 °C; hold for 1 s; step by -1 °C")
+    corners = corners_of("hold for 1 s; step by 3 °C; hold for 1 s; step by -1 °C")
     assert corners.steps == (1, 3)
     assert corners.time_s == (0.0, 1.0, 1.0 + STEP_S, 2.0 - STEP_S, 2.0)
     assert corners.duration_s == 2.0
@@ -135,7 +135,7 @@ def test_steps_are_marked_and_take_a_tenth_of_a_microsecond() -> None:
     ],
 )
 def test_pieces_shorter_than_a_step_keep_their_order(body: str) -> None:
-    corners = lowered(body)
+    corners = corners_of(body)
     assert all(a < b for a, b in pairwise(corners.time_s))
     assert corners.steps
 
@@ -145,20 +145,20 @@ def test_durations_add_up_exactly(shape: Shape) -> None:
     wave = Wave(shape, by_K=1, period_s=0.1, duration_s=0.7)
     body: list[Statement] = [pulse(by=1, duration=0.1), wave, step(by=1)]
     icon = Icon("x", [*body * 10, square(by=1, every=0.3, duration=0.9)])
-    assert icon.lower().duration_s == 8.9
+    assert icon.corners().duration_s == 8.9
 
 
 def test_currents() -> None:
-    corners = lowered(
+    corners = corners_of(
         "step to 0.5 A; hold for 1 s; triangle by 0.5 A every 1 s for 1 s; return at 1 A/s", "control current"
     )
     assert corners.quantity == "current_A"
     assert nominal(corners) == [(0, 0), (0, 0.5), (1, 0.5), (1.25, 1), (1.75, 0), (2, 0.5), (2.5, 0)]
-    icon = Icon("x", [sine(by_A=0.5, every=1, duration=1)], Frame("current"))
-    error = np.abs(icon.lower().at(np.linspace(0, 1, 9999)) - 0.5 * np.sin(2 * np.pi * np.linspace(0, 1, 9999)))
+    icon = Icon("x", [sine(by_A=0.5, every=1, duration=1)], Context("current"))
+    error = np.abs(icon.corners().at(np.linspace(0, 1, 9999)) - 0.5 * np.sin(2 * np.pi * np.linspace(0, 1, 9999)))
     assert error.max() <= 1.001e-3
 
 
 def test_a_played_icon_stands_for_its_statements() -> None:
     text = "cue 1\nicon a { pulse by 1 K for 1 s; rest for 1 s }\nicon b { repeat 2 { play a }; hold for 1 s }"
-    assert parse(text)["b"].lower() == lowered("repeat 2 { pulse by 1 K for 1 s; rest for 1 s }; hold for 1 s")
+    assert parse(text)["b"].corners() == corners_of("repeat 2 { pulse by 1 K for 1 s; rest for 1 s }; hold for 1 s")

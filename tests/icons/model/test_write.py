@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from thermicon.icons import (
-    Frame,
+    Context,
     Icon,
     Statement,
     back,
     cool,
-    drive,
+    current,
     hold,
     parse,
     play,
@@ -62,8 +62,8 @@ def test_a_builder_gives_what_the_text_gives(made: Statement, line: str) -> None
 @pytest.mark.parametrize(
     ("made", "line"),
     [
-        (drive(to=0.5, at=1), "to 0.5 A at 1 A/s"),
-        (drive(to=-0.5, over=2), "to -500 mA over 2 s"),
+        (current(to=0.5, at=1), "to 0.5 A at 1 A/s"),
+        (current(to=-0.5, over=2), "to -500 mA over 2 s"),
         (step(by_A=-0.5), "step by -0.5 A"),
         (step(to_A=0.5), "step to 0.5 A"),
         (pulse(by_A=0.5, duration=2), "pulse by 0.5 A for 2 s"),
@@ -84,7 +84,7 @@ def test_an_icon_of_builders_is_the_icon_of_the_text() -> None:
         "icon twice { repeat 2 { play dip; rest for 1 s }; total 18 s; total at most 20 s; total at least 1 s }"
     )
     assert played == parse(text)["twice"]
-    assert Icon("a", [drive(to=1, over=1), back(over=2)], Frame("current")).lower().duration_s == 3.0
+    assert Icon("a", [current(to=1, over=1), back(over=2)], Context("current")).corners().duration_s == 3.0
 
 
 def test_numbers_of_any_kind_become_floats() -> None:
@@ -105,9 +105,9 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: ramp(by=0, at=3), r"ramp\(by=0\): a change of nothing is no change"),
         (lambda: warm(to=70, at=3), r"warm\(to=70\): 70 °C is outside the −10 to 60 °C"),
         (lambda: warm(by=1, at=0), r"warm\(at=0\): a rate is positive"),
-        (lambda: drive(to=30, at=1), r"drive\(to=30\): 30 A is outside the ±20 A"),
-        (lambda: drive(to=None, at=1), r"drive\(\) needs to$"),
-        (lambda: drive(to=1), r"drive\(\) needs either at or over"),
+        (lambda: current(to=30, at=1), r"current\(to=30\): 30 A is outside the ±20 A"),
+        (lambda: current(to=None, at=1), r"current\(\) needs to$"),
+        (lambda: current(to=1), r"current\(\) needs either at or over"),
         (lambda: hold("4 s"), r"hold\(duration='4 s'\): a number is needed, in s$"),
         (lambda: hold(True), r"hold\(duration=True\): a number is needed, in s$"),
         (lambda: hold(None), r"hold\(\) needs duration$"),

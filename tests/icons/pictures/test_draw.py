@@ -9,7 +9,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from thermicon.icons import Frame, Hold, Icon, IconSet, Metadata, library, load_library, parse, plot_icon
+from thermicon.icons import Context, Hold, Icon, IconSet, Metadata, library, load_library, parse, plot_icon
 from thermicon.icons.model.corners import Corners
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
 from thermicon.icons.pictures.draw import plot_icons
@@ -82,9 +82,9 @@ def test_steps_are_vertical_strokes_in_the_colour_of_their_direction() -> None:
 
 
 def test_pieces_have_the_colours_of_their_direction() -> None:
-    corners = SIX["cooling-step"].lower()
+    corners = SIX["cooling-step"].corners()
     assert directions(corners) == ["cool", "stay", "warm"]
-    assert directions(CURRENT["drive"].lower()) == ["cool", "stay", "warm"]
+    assert directions(CURRENT["drive"].corners()) == ["cool", "stay", "warm"]
     svg = picture(SIX["cooling-step"])
     assert all(f'stroke="{colour}"' in svg for colour in (COOL, WARM, STAY))
     assert 'stroke-dasharray="4 3"' in svg
@@ -141,8 +141,8 @@ EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">
 
 @pytest.mark.parametrize("show", ["set", "icon", "thumbnail", "library"])
 def test_texts_cannot_become_markup(show: str) -> None:
-    icon = Icon("a", (Hold(1),), Frame("skin", 32), Metadata(means=EVIL, by=EVIL))
-    icons = IconSet("s", EVIL, icon.frame, Metadata(by=EVIL), (icon,))
+    icon = Icon("a", (Hold(1),), Context("skin", 32), Metadata(means=EVIL, by=EVIL))
+    icons = IconSet("s", EVIL, icon.context, Metadata(by=EVIL), (icon,))
     from thermicon.icons.files.gallery import Library
 
     made = {
@@ -233,7 +233,7 @@ def test_plots_draw_on_the_axes_they_are_given() -> None:
 
 
 def test_dollars_in_titles_are_no_formula() -> None:
-    icons = IconSet("", "costs $1 and ${", Frame(), Metadata(), (Icon("a", (Hold(1),)), Icon("b", (Hold(2),))))
+    icons = IconSet("", "costs $1 and ${", Context(), Metadata(), (Icon("a", (Hold(1),)), Icon("b", (Hold(2),))))
     ax = icons.plot()
     ax.figure.canvas.draw()
     assert ax.get_title() == "costs $1 and ${"
@@ -244,7 +244,7 @@ def test_what_cannot_share_axes_is_refused() -> None:
         plot_icons([])
     with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on axes of their own"):
         plot_icons([CURRENT["drive"], SIX["cooling-step"]])
-    mixed = plot_icons([Icon("a", (Hold(1),), Frame("skin")), Icon("b", (Hold(1),), Frame("display"))])
+    mixed = plot_icons([Icon("a", (Hold(1),), Context("skin")), Icon("b", (Hold(1),), Context("display"))])
     assert mixed.get_ylabel() == "temperature (°C)"
     assert plot_icons([CURRENT["drive"]]).get_ylabel() == "current (A)"
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from thermicon.icons import Change, Hold, Icon, Rest, Return, Step, parse
+from thermicon.icons import Hold, Icon, Ramp, Rest, Return, Step, parse
 from thermicon.icons.recordings.recorded import from_csv
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ def table(time: Array, value: Array, column: str = "display_C") -> str:
 
 
 DIP = "time_s,display_C\n0,32\n1,32\n3,26\n7,26\n9,32\n"
-DIP_ICON = (Rest(1), Change("cool", to_C=26, duration_s=2), Hold(4), Return(duration_s=2))
+DIP_ICON = (Rest(1), Ramp("cool", to_C=26, duration_s=2), Hold(4), Return(duration_s=2))
 
 
 def test_a_recording_becomes_an_icon_that_reads_well(tmp_path: Path) -> None:
@@ -38,7 +38,7 @@ def test_a_recording_becomes_an_icon_that_reads_well(tmp_path: Path) -> None:
         "  cool to 26 °C over 2 s\n  hold for 4 s\n  return over 2 s\n  rest for 2 s\n}\n"
     )
     assert parse(str(icon))["my-dip-2"] == icon
-    assert np.abs(icon.lower().at(time) - value).max() <= 0.05
+    assert np.abs(icon.corners().at(time) - value).max() <= 0.05
 
 
 @pytest.mark.parametrize(
@@ -64,13 +64,13 @@ def test_a_recording_becomes_an_icon_that_reads_well(tmp_path: Path) -> None:
 def test_tables_as_programs_write_them(tmp_path: Path, text: str) -> None:
     icon = from_csv(written(tmp_path, text))
     assert icon.statements == DIP_ICON
-    assert (icon.name, icon.frame.control, icon.frame.baseline_C) == ("rec", "display", 32.0)
+    assert (icon.name, icon.context.control, icon.context.baseline_C) == ("rec", "display", 32.0)
 
 
 def test_the_control_follows_the_column_that_tells(tmp_path: Path) -> None:
     def control(header: str, **more: str) -> str:
         path = written(tmp_path, DIP.replace("display_C", header))
-        return from_csv(path, **more).frame.control  # type: ignore[arg-type]
+        return from_csv(path, **more).context.control  # type: ignore[arg-type]
 
     assert control("skin_C") == "skin"
     assert control("display_C", control="skin") == "display"
@@ -82,10 +82,10 @@ def test_the_control_follows_the_column_that_tells(tmp_path: Path) -> None:
 def test_one_of_several_temperatures_is_named(tmp_path: Path) -> None:
     path = written(tmp_path, "time_s,display_C,skin_C\n0,30,32\n1,30,31\n")
     icon = from_csv(path, column="skin_C", name="fall")
-    assert (icon.name, icon.frame.control, icon.statements) == (
+    assert (icon.name, icon.context.control, icon.statements) == (
         "fall",
         "skin",
-        (Change("cool", to_C=31, duration_s=1),),
+        (Ramp("cool", to_C=31, duration_s=1),),
     )
 
 
@@ -98,9 +98,9 @@ def test_a_step_of_the_recording_is_a_step_of_the_icon(tmp_path: Path) -> None:
 
 def test_baseline_can_be_prescribed(tmp_path: Path) -> None:
     path = written(tmp_path, DIP.replace("32", "32.03"))
-    assert from_csv(path).frame.baseline_C == 32.03
+    assert from_csv(path).context.baseline_C == 32.03
     icon = from_csv(path, baseline_C=32)
-    assert icon.frame.baseline_C == 32
+    assert icon.context.baseline_C == 32
     assert isinstance(icon.statements[0], Rest) and isinstance(icon.statements[-1], Return)
 
 
@@ -109,7 +109,7 @@ def test_a_minute_at_a_kilohertz(tmp_path: Path) -> None:
     value = 32 - 3 * np.interp(time % 6, [0, 1, 2, 3, 6], [0, 1, 1, 0, 0])
     value += np.random.default_rng(0).uniform(-0.04, 0.04, len(time))
     icon = from_csv(written(tmp_path, table(time, value)))
-    assert icon.statements[:4] == (Change("cool", to_C=29, duration_s=1), Hold(1), Return(duration_s=1), Rest(3))
+    assert icon.statements[:4] == (Ramp("cool", to_C=29, duration_s=1), Hold(1), Return(duration_s=1), Rest(3))
     assert len(icon.statements) == 40
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -177,6 +178,16 @@ def test_a_file_that_is_missing_or_no_parquet(cli: Cli, tmp_path: Path) -> None:
     assert "no such trace or log" in cli("compare", good, tmp_path / "absent.csv").stderr
     assert "no such trace or log" in cli("compare", good, tmp_path / "absent.parquet").stderr
     assert "not a Parquet file that can be read" in cli("compare", good, odd).stderr
+
+
+def test_a_parquet_file_without_pyarrow(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    good, packed = tmp_path / "good.csv", tmp_path / "packed.parquet"
+    good.write_text(GOOD, encoding="utf-8")
+    packed.write_bytes(b"PAR1")
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    said = cli("compare", good, packed)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert 'pip install "thermicon[parquet]"' in " ".join(said.stderr.split())
 
 
 USAGE = [

@@ -90,8 +90,8 @@ def test_a_recording_becomes_an_icon(cli: Cli, tmp_path: Path) -> None:
     assert (said.exit_code, said.stdout) == (0, "")
     assert said.stderr == f"cold: 4 corners, 8 s\nwrote {out}: 1 icon\n"
     (icon,) = read_cue(out)
-    assert (icon.name, icon.frame.control) == ("cold", "skin")
-    assert abs(icon.lower().at(4) - 26) < 0.2
+    assert (icon.name, icon.context.control) == ("cold", "skin")
+    assert abs(icon.corners().at(4) - 26) < 0.2
     assert cli("convert", path, "-o", tmp_path / "dip.json", *options).exit_code == 0
     assert read_cue(tmp_path / "dip.json") == read_cue(out)
 

@@ -162,8 +162,15 @@ def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pyte
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
-@pytest.mark.parametrize(("words", "path"), [((), "/api"), (("--page",), "/voila/static/style.css")])
-@pytest.mark.parametrize("how", ["Ctrl-C", "asked to end"])
+@pytest.mark.parametrize(
+    ("words", "path", "how"),
+    [
+        ((), "/api", "Ctrl-C"),
+        pytest.param((), "/api", "asked to end", marks=pytest.mark.slow),
+        pytest.param(("--page",), "/voila/static/style.css", "Ctrl-C", marks=pytest.mark.slow),
+        pytest.param(("--page",), "/voila/static/style.css", "asked to end", marks=pytest.mark.slow),
+    ],
+)
 def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: str, how: str) -> None:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))

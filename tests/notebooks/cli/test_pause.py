@@ -14,7 +14,7 @@ import pytest
 from tests.notebooks.surerig import sure_rig
 from thermicon.circuit import Gate, Rig, pack
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.files.exporting import Ready, prepare_icons
+from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
 from thermicon.notebooks.text.gate_words import gate_words
 from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
 
@@ -27,12 +27,12 @@ icon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }
 
 
 @pytest.fixture(scope="module")
-def glow() -> Ready:
+def glow() -> PreparedExport:
     """Two icons for PsychoPy, played a minute apart on a rig that is known exactly."""
     return prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form="psychopy", pause_s=60.0)
 
 
-def verdict(ready: Ready, place: int = 0) -> Gate:
+def verdict(ready: PreparedExport, place: int = 0) -> Gate:
     found = ready.prepared[place].verdict
     assert isinstance(found, Gate)
     return found
@@ -73,7 +73,7 @@ class TestCommand:
 class TestFiles:
     """What the gate says stands beside the drive and in what plays it."""
 
-    def test_the_sidecar_has_repetition_and_the_demands(self, glow: Ready) -> None:
+    def test_the_sidecar_has_repetition_and_the_demands(self, glow: PreparedExport) -> None:
         gate = verdict(glow)
         about = json.loads(pack(glow.prepared, glow.form)["glow.json"])
         safety, demands = about["safety"], about["hardware_must_prevent"]
@@ -102,7 +102,7 @@ class TestFiles:
         assert numbers["REST_S"] == max(one.rest_before_first_play_s or 0.0 for one in demands) != 60.0
         assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
 
-    def test_the_player_for_psychopy_has_them_too(self, glow: Ready) -> None:
+    def test_the_player_for_psychopy_has_them_too(self, glow: PreparedExport) -> None:
         player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
         demands = [verdict(glow, place).demands for place in (0, 1)]
         low, high = (
@@ -117,7 +117,7 @@ class TestFiles:
 class TestWords:
     """What holds for a set is said once, and the strictest of what differs."""
 
-    def test_a_set_in_two_lines(self, glow: Ready) -> None:
+    def test_a_set_in_two_lines(self, glow: PreparedExport) -> None:
         (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
         assert (again, hardware) == ("played again and again, in any order", "the hardware must provide")
         assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
@@ -126,7 +126,7 @@ class TestWords:
         assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
         assert "rest held for " in demanded
 
-    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: Ready) -> None:
+    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: PreparedExport) -> None:
         gate = verdict(glow)
         worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
         ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]

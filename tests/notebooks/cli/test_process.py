@@ -67,9 +67,19 @@ def test_an_interrupt_is_told_wherever_it_comes(
     [
         (("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"), ("l.json", "fl/distance.png")),
         (("simulate", "two.cue", "-o", "t.csv", "--figure", "t.png"), ("t.csv", "t-cool-step.png", "t-warm-step.png")),
-        (("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png")),
-        (("sweep", "two.cue", "--vary", "contact.area_cm2=4:9:2", "-o", "-", "--figure", "s.png"), ("s.png",)),
-        (("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"), ("c.png",)),
+        pytest.param(
+            ("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png"), marks=pytest.mark.slow
+        ),
+        pytest.param(
+            ("sweep", "two.cue", "--vary", "contact.area_cm2=4:9:2", "-o", "-", "--figure", "s.png"),
+            ("s.png",),
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            ("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"),
+            ("c.png",),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tuple[str, ...], files: Any) -> None:
@@ -131,3 +141,30 @@ def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFix
     show(made, "[b]plain[/b]")
     assert "[b]plain[/b]" in (said := capsys.readouterr().out)
     assert "[red]loud[/red]" in said
+
+
+def test_a_checkout_that_hides_the_installed_package_is_reported(tmp_path: Path) -> None:
+    """The metadata name a distribution in another folder than the one that is imported."""
+    from thermicon.notebooks import startup
+
+    assert startup.hidden_by("/a/notebooks", []) is None
+    installed = tmp_path / "site"
+    (installed / "thermicon/notebooks").mkdir(parents=True)
+    info = installed / "thermicon-9.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: thermicon\nVersion: 9\n", encoding="utf-8")
+    program = (
+        "import sys, importlib.metadata as m\n"
+        f"m.distributions = lambda **_: [m.PathDistribution(__import__('pathlib').Path({str(info)!r}))]\n"
+        "from thermicon.notebooks.startup import warn_if_hidden\nwarn_if_hidden()\n"
+    )
+    run = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True)
+    (line,) = run.stderr.splitlines()
+    assert str(installed / "thermicon/notebooks") in line
+    assert "hides the installed" in line
+
+
+def test_the_installed_package_runs_without_a_warning() -> None:
+    from thermicon.notebooks import startup
+
+    assert startup.hidden_by(str(Path(startup.__file__).parent), startup.installed_folders()) is None

@@ -16,13 +16,19 @@ TOP = {
 }
 ICON = {
     *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
-    *("percent_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "outside_data"),
+    *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "outside_data"),
 }
 PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit", "told_apart_by_rules"}
 SET = {
-    *("percent_correct", "percent_correct_interval", "information_bits", "information_bits_interval", "bits_per_s"),
+    *(
+        "proportion_correct",
+        "proportion_correct_interval",
+        "information_bits",
+        "information_bits_interval",
+        "bits_per_s",
+    ),
     *("information_bits_plugin", "trials", "worst_pair", "rules_disagree", "norm_sensitivity"),
-    *("percent_correct_parameter_interval", "information_bits_parameter_interval", "rules_score", "rules"),
+    *("proportion_correct_parameter_interval", "information_bits_parameter_interval", "rules_score", "rules"),
 }
 
 
@@ -231,7 +237,7 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     said = cli("rank", two, "--people", 8, "--parameters", 8, "--json", out)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
-    (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("percent_correct", "information_bits"))
+    (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("proportion_correct", "information_bits"))
     assert f"     {100 * low:.0f} % to {100 * high:.0f} % over the range of the model's parameters\n" in said.stdout
     assert f"     {least:.2f} to {most:.2f} over the range of the model's parameters\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
@@ -266,7 +272,7 @@ def test_by_rules_the_table_has_no_number_of_the_model(cli: Cli, tmp_path: Path)
     assert "Scored by rules of thumb alone on the thenar rig: the share of rules passed" in words
     assert "Rules on latency and felt peak need the model and are not counted" in words
     found = json.loads(out.read_text(encoding="utf-8"))
-    assert (found["by"], found["set"]["percent_correct"]) == ("rules", None)
+    assert (found["by"], found["set"]["proportion_correct"]) == ("rules", None)
     for each in found["set"]["rules_disagree"]:
         assert each["text"].split(": rules say")[0] in words
 

@@ -23,8 +23,8 @@ def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Pat
     frame = pd.read_csv(out)
     words = " ".join(said.stdout.split())
     assert words.startswith("Two for a test parameter interval correct bits correct low–high ")
-    assert f"Measure these first; the rest moves the prediction less: - {frame['parameter'][0]}" in words
-    assert "(total Sobol indices); beside them per cent correct at the low and at the high end" in words
+    assert f"Measure these first; all others influence the prediction less: - {frame['parameter'][0]}" in words
+    assert "(total Sobol indices); beside them the proportion correct at the low and at the high end" in words
     assert "predictions for 3 virtual people on the thenar rig (seed 0, max norm), " in words
     assert {"memory noise (max)", "contact resistance"} <= set(frame["parameter"])
     assert picture.stat().st_size > 10_000
@@ -37,10 +37,9 @@ def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path) -> None:
     assert list(pd.read_csv(io.StringIO(said[0])).columns[:5]) == ["parameter", "unit", "low", "value", "high"]
 
 
-def test_morris_and_a_what_if(cli: Cli, two: Path) -> None:
-    said = cli("sensitivity", two, *QUICK, "--method", "morris", "--set", "contact.area_cm2=4")
-    words = " ".join(said.stdout.split())
-    assert "in points of per cent correct and in bits (Morris)" in words
+def test_a_what_if(cli: Cli, two: Path) -> None:
+    printed = cli("sensitivity", two, *QUICK, "--set", "contact.area_cm2=4")
+    words = " ".join(printed.stdout.split())
     assert "on the thenar rig with contact.area_cm2=4 (seed 0, max norm)" in words
 
 
@@ -51,7 +50,7 @@ def test_morris_and_a_what_if(cli: Cli, two: Path) -> None:
         (("--samples", 1), "'--samples': 1 is outside 2 to 65536"),
         (("--samples", 10), "'--samples': 10 is not a power of 2, which sobol needs, such as 64"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
-        (("--method", "luck"), "'--method': 'luck' is none of sobol, morris"),
+        (("--method", "luck"), "'--method': 'luck' is not one of sobol"),
         (("--norm", "mean"), "'--norm': 'mean' is none of max, rms, integral"),
     ],
 )
@@ -75,26 +74,13 @@ def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path
     assert "a table of sensitivities is written as .csv or .parquet, not .txt" in said.stderr
 
 
-def test_without_salib_the_cure_is_told(cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import sys
-
-    for part in ("sample", "analyze"):
-        monkeypatch.setitem(sys.modules, f"SALib.{part}.morris", None)
-    said = cli("sensitivity", two, *QUICK, "--method", "morris")
-    assert said.exit_code == 1
-    assert said.stderr == (
-        "the method morris needs SALib, which is not installed: "
-        'pip install "thermicon[psychometrics]", or use the method sobol\n'
-    )
-
-
 def test_nothing_that_moves_and_what_to_do() -> None:
     from thermicon.notebooks.cli.sensitivity import HOW, how, sentences
     from thermicon.perception import Sensitivity, observer_parameters
     from thermicon.perception.sensitivity.simulation_grid import OTHERS
 
-    still = Sensitivity("sobol", "thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
-    assert sentences(still)[0] == "None of these moves the prediction."
+    still = Sensitivity("thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
+    assert sentences(still)[0] == "None of these parameters influences the prediction."
     assert "1 virtual person on the thenar rig" in sentences(still)[-1]
     known = {parameter.name.split(" (")[0] for parameter in observer_parameters()} | set(OTHERS)
     assert set(HOW) <= known

@@ -61,6 +61,34 @@ def test_equal_ratios(cli: Cli, two: Path) -> None:
     assert frame["cold_receptor_peak_change_K"].is_monotonic_increasing
 
 
+def test_two_keys_make_a_grid(cli: Cli, two: Path, tmp_path: Path) -> None:
+    limit, out, figure = "driver.current_limit_A", tmp_path / "grid.csv", tmp_path / "grid.png"
+    options = ("--vary", f"{AREA}=4:16:2", "--vary", f"{limit}=0.7:1.5:3", "--figure", figure)
+    said = cli("sweep", two, *options, "-o", out)
+    assert said.exit_code == 0, said.stderr
+    frame = pd.read_csv(out)
+    assert list(frame.columns[:3]) == ["icon", AREA, limit]
+    one = frame[frame["icon"] == "cool-step"]
+    assert list(zip(one[AREA], one[limit], strict=True)) == [(a, c) for a in (4, 16) for c in (0.7, 1.1, 1.5)]
+    assert len(frame) == 12
+    rig = Rig.load("thenar").with_(**{AREA: 16.0, limit: 0.7})
+    alone = summarise(simulate(read_cue(two)["cool-step"], rig))
+    row = one[(one[AREA] == 16) & (one[limit] == 0.7)].iloc[0]
+    assert row["skin_min_C"] == pytest.approx(alone.skin_min_C, rel=1e-8)
+    assert "of 6 combinations" in said.stderr
+    assert figure.stat().st_size > 20_000
+
+
+def test_more_than_two_keys_or_one_key_twice_are_refused(cli: Cli, two: Path) -> None:
+    for keys, words in (
+        ((AREA, "driver.current_limit_A", "skin.rest_C"), "3 keys are given; at most 2 can be varied"),
+        ((AREA, AREA), f"{AREA} is given twice"),
+    ):
+        said = cli("sweep", two, *(word for key in keys for word in ("--vary", f"{key}=1:2:2")), "-o", "-")
+        assert (said.exit_code, said.stdout) == (2, "")
+        assert words in " ".join(said.stderr.split())
+
+
 def test_a_layer_of_the_skin_can_be_swept(two: Path) -> None:
     frame = sweep(read_cue(two), Rig.load("thenar"), "skin.layer.stratum corneum.thickness_mm", [0.1, 0.4])
     peaks = frame.loc[frame["icon"] == "cool-step", "warm_receptor_peak_change_K"]
@@ -100,7 +128,7 @@ def test_all_impossible_is_an_error_and_leaves_no_file(cli: Cli, two: Path, tmp_
     out = tmp_path / "sweep.csv"
     said = cli("sweep", two, "--vary", f"{AREA}=-3:-1:3", "-o", out)
     assert (said.exit_code, said.stdout) == (1, "")
-    assert f"--vary {AREA}: none of its 3 values can be played; the first: rig thenar: {AREA} = -3.0 cm²" in said.stderr
+    assert f"--vary {AREA}: none of the 3 values can be played; the first: rig thenar: {AREA} = -3.0 cm²" in said.stderr
     assert not out.exists()
 
 

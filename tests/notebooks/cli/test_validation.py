@@ -14,7 +14,7 @@ from nbclient import NotebookClient
 from thermicon.notebooks.cli.main import validation
 from thermicon.notebooks.cli.validation import draw_pictures, show_report, write_report
 from thermicon.notebooks.files.outputs import OutputError
-from thermicon.notebooks.pages.pages import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
+from thermicon.notebooks.pages.blocks import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
 from thermicon.notebooks.pages.validation_page import page, target_rows
 from thermicon.perception.validation.validate import ValidationReport, validate
 
@@ -22,8 +22,8 @@ NOTEBOOK = Path(__file__).parents[3] / "notebooks/07_validation.ipynb"
 
 
 @pytest.fixture(scope="module")
-def report() -> ValidationReport:
-    return validate(people=6, draws=8)
+def report(validation_report: ValidationReport) -> ValidationReport:
+    return validation_report
 
 
 @pytest.fixture(scope="module")
@@ -82,6 +82,7 @@ def test_the_table_of_targets_comes_first(report: ValidationReport) -> None:
     assert [title[0] for title in titles[2:-1]] == [str(k) for k in range(1, 9)]
 
 
+@pytest.mark.slow
 def test_the_same_report_gives_the_same_files(report: ValidationReport, written: Path, tmp_path: Path) -> None:
     write_report(report, tmp_path)
     for path in written.rglob("*"):
@@ -114,6 +115,7 @@ def test_the_table_on_a_terminal(report: ValidationReport, capsys: pytest.Captur
     assert max(len(line) for line in said.splitlines()) <= 80
 
 
+@pytest.mark.slow
 def test_without_draws(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bare = validate(people=2, draws=0)
     write_report(bare, tmp_path / "r")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,15 @@ def test_another_suffix_names_the_two_that_work(tmp_path: Path) -> None:
 def test_no_suffix_is_told_as_that(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match=r"\.csv or \.parquet, and this name has no ending$"):
         check_output(tmp_path / "out", TRACE_SUFFIXES, "a trace")
+
+
+def test_parquet_without_pyarrow_names_the_cure_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(OutputError, match=r'a\.parquet.* pyarrow.*pip install "thermicon\[parquet\]".*\.csv'):
+        check_output(tmp_path / "a.parquet", TRACE_SUFFIXES, "a trace")
+    check_output(tmp_path / "a.csv", TRACE_SUFFIXES, "a trace")
 
 
 def test_a_missing_folder_is_told_before_anything_is_computed(tmp_path: Path) -> None:

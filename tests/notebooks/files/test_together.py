@@ -192,6 +192,7 @@ def test_exports_that_are_asked_to_end_leave_no_draft(tmp_path: Path, number: in
 
 
 @posix
+@pytest.mark.slow
 def test_exports_killed_at_any_moment_leave_no_partial_file(tmp_path: Path) -> None:
     chance = random.Random(3)
     for turn in range(4):

@@ -102,6 +102,7 @@ def test_no_file_of_the_folder_is_served(served: tuple[str, Path]) -> None:
         assert "secret" not in text
 
 
+@pytest.mark.slow
 def test_one_page_is_rendered_and_too_many_are_refused(served: tuple[str, Path]) -> None:
     from concurrent.futures import ThreadPoolExecutor
 

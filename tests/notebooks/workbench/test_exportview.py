@@ -10,7 +10,7 @@ import pytest
 from tests.notebooks.surerig import sure_rig
 from thermicon.notebooks.files.exporting import prepare_icons, write
 from thermicon.notebooks.files.outputs import OutputError
-from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
 
 TWO = """cue 1
@@ -23,7 +23,7 @@ class Bench:
     """An export view that is shown."""
 
     def __init__(self, folder: Path, text: str = TWO) -> None:
-        self.design = Designing(text, sure_rig())
+        self.design = DesignModel(text, sure_rig())
         self.view = ExportView(self.design, folder)
         self.design.on_change(self.view.renew)
         self.view.shown = True

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.workbench.frames import MOST_POINTS, Frame, frame_of, traces_of
+from thermicon.notebooks.workbench.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
 from thermicon.notebooks.workbench.scene import Scene, scene
 
 ROLES = {"ink", "grey", "cool", "warm", "target", "limit"}
@@ -25,7 +25,7 @@ def rig() -> Rig:
     return Rig.load("thenar")
 
 
-def keep_promises(frame: Frame) -> dict[str, dict[str, Any]]:
+def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
     """Hold a frame against the contract; its panels by key."""
     meta = json.loads(json.dumps(frame.meta, allow_nan=False))
     assert meta == frame.meta

@@ -39,7 +39,7 @@ def failed(shell: InteractiveShell, cell: str, capsys: pytest.CaptureFixture[str
 def test_a_cell_becomes_a_set(shell: InteractiveShell) -> None:
     result = shell.run_cell("%%cue\n" + GOOD)
     assert result.result is shell.user_ns["cues"]
-    assert result.result["dip"].lower().duration_s == 4
+    assert result.result["dip"].corners().duration_s == 4
     assert result.result == parse("cue 1\n" + GOOD)
     assert shell.run_cell("%%cue alerts\n" + GOOD).result is shell.user_ns["alerts"]
 
@@ -71,7 +71,7 @@ def test_mistakes_read_as_well_outside_of_the_magic(
     assert said.startswith("<text>:1:26  E102 missing unit")
     said = failed(
         shell,
-        "from thermicon.icons import *\nIcon('a', (Change('warm', by_K=3, duration_s=1), Rest(1)))",
+        "from thermicon.icons import *\nIcon('a', (Ramp('warm', by_K=3, duration_s=1), Rest(1)))",
         capsys,
     )
     assert said.startswith("<icon a>:1:1  E205 rest away from baseline")

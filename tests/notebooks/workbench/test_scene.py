@@ -13,7 +13,7 @@ from thermicon.notebooks.workbench.cue_check import MOST_NAMES, mended, read_tex
 from thermicon.notebooks.workbench.event_times import missed_spans
 from thermicon.notebooks.workbench.knobs import aged
 from thermicon.notebooks.workbench.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.notebooks.workbench.threshold_band import just_felt_K
+from thermicon.notebooks.workbench.threshold_band import threshold_change_K
 from thermicon.perception import Observer, perceive, receptor_drive, sensation
 from thermicon.perception.sensation.features import passing_s
 
@@ -66,7 +66,7 @@ def test_an_icon_of_both_directions_has_peaks_of_both(rig: Rig) -> None:
 @pytest.mark.parametrize("channel", ["cold", "warm"])
 def test_a_change_at_the_edge_of_the_band_has_a_sensation_of_one(channel: str) -> None:
     person = Observer.load()
-    size = just_felt_K(person, channel, 4e-4, "forearm")  # type: ignore[arg-type]
+    size = threshold_change_K(person, channel, 4e-4, "forearm")  # type: ignore[arg-type]
     ramp = 33.0 + (-1 if channel == "cold" else 1) * np.minimum(np.arange(0.0, size + 3.0, 0.01), size)
     drive = receptor_drive(ramp, 0.01, channel, person)  # type: ignore[arg-type]
     felt = sensation(drive, channel, person, area_m2=4e-4, site="forearm")  # type: ignore[arg-type]

@@ -10,11 +10,11 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.workbench.apply_edit import CannotApply, with_edit
-from thermicon.notebooks.workbench.background import Newest, Superseded, Turn
-from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
+from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
-from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
 
 TWO = """cue 1
 
@@ -33,7 +33,7 @@ class Bench:
     """A set view that is shown, on a text."""
 
     def __init__(self, text: str) -> None:
-        self.design = Designing(text, Rig.load("thenar"))
+        self.design = DesignModel(text, Rig.load("thenar"))
         self.view = SetView(self.design, lambda new: self.type(new))
         self.design.on_change(self.view.renew)
         self.view.shown = True
@@ -76,7 +76,7 @@ def ranked() -> Bench:
 
 def test_a_set_is_ranked_with_its_intervals_and_worst_pair(ranked: Bench) -> None:
     assert "24 people" in ranked.said("status")
-    assert "parameters" in ranked.said("scores")
+    assert "model uncertainty" in ranked.said("scores")
     assert ranked.said("table").count("<tr>") == 4
     assert "near" in ranked.said("pair")
     assert "nearer" in ranked.said("pair")
@@ -106,7 +106,7 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
     assert "told apart already" in ranked.said("edit_text")
     assert ranked.view.apply.disabled
     ranked.click(place("near"), place("near"))
-    assert "two icons" in ranked.said("edit_text")
+    assert "two different icons" in ranked.said("edit_text")
     assert "there is no cell" in str(ranked.click(0, 9)) or "there is no cell" in ranked.said("status")
 
 
@@ -139,14 +139,14 @@ def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
     bench.type(TWO.replace("by 4 °C", "by 4"))
     assert bench.stale
     assert "line 4, missing unit" in bench.said("status")
-    assert "last good set is shown" in bench.said("status")
+    assert "last valid set is shown" in bench.said("status")
     bench.type(TWO)
     bench.wait()
     assert not bench.stale
 
 
 def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
-    design = Designing(TWO, Rig.load("thenar"))
+    design = DesignModel(TWO, Rig.load("thenar"))
     view = SetView(design, lambda text: None)
     design.on_change(view.renew)
     design.receive({"type": "text", "text": THREE})
@@ -157,7 +157,7 @@ def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
 
 def test_a_set_of_one_says_that_it_is_never_confused() -> None:
     bench = Bench("cue 1; icon dip { cool by 4 °C at 2 °C/s; return at 2 °C/s }")
-    assert "never confused" in bench.said("scores")
+    assert "no distance" in bench.said("scores")
     assert "dip" in bench.said("table")
     assert bench.view._maps.layout.display == "none"
 
@@ -206,17 +206,17 @@ def test_a_map_stays_where_it_was_when_an_icon_changes(ranked: Bench) -> None:
 
 
 def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
-    worker, done = Newest(), list[str]()
+    worker, done = BackgroundWorker(), list[str]()
 
-    def slow(turn: Turn) -> None:
+    def slow(job: Job) -> None:
         with pytest.raises(Superseded):
             while True:
-                turn.go_on()
+                job.go_on()
         done.append("ended")
-        turn.tell(lambda: done.append("never"))
+        job.on_page(lambda: done.append("never"))
 
     worker.ask(slow)
-    worker.ask(lambda turn: turn.tell(lambda: done.append("newest")))
+    worker.ask(lambda job: job.on_page(lambda: done.append("newest")))
     assert worker.wait(10)
     assert "never" not in done
     assert done[-1] == "newest"

@@ -14,7 +14,7 @@ import pytest
 from thermicon.circuit import Rig, RigError
 from thermicon.icons import CueErrors, load_library, parse
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.workbench.design_model import Designing
+from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.workbench import text_of
 
 DIP = """cue 1
@@ -198,7 +198,7 @@ def test_python_sets_the_text_as_one_step(bench: Workbench, send: Send) -> None:
 
 
 def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
-    design = Designing(text_of(None), Rig.load("thenar"))
+    design = DesignModel(text_of(None), Rig.load("thenar"))
     spent = []
     for step in range(60):
         text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")

@@ -7,28 +7,28 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, perceive
-from thermicon.perception.comparison.distance_components import PARTS, Part, distance_parts
+from thermicon.perception.comparison.distance_components import COMPONENTS, DistanceComponent, distance_components
 from thermicon.perception.identification.distance import smooth
 from thermicon.perception.sensation.features import excursion_rate_K_per_s
 
 Cue = Callable[..., Any]
 
 
-def named(parts: tuple[Part, ...]) -> dict[str, Part]:
-    assert tuple(part.name for part in parts) == PARTS
+def named(parts: tuple[DistanceComponent, ...]) -> dict[str, DistanceComponent]:
+    assert tuple(part.name for part in parts) == COMPONENTS
     return {part.name: part for part in parts}
 
 
 def test_icons_that_are_the_same_have_no_distance(cue: Cue, observer: Observer) -> None:
-    parts = named(distance_parts(cue(-4.0), cue(-4.0), observer))
+    parts = named(distance_components(cue(-4.0), cue(-4.0), observer))
     assert parts.pop("rate").value == 1.0
     assert [part.value for part in parts.values()] == pytest.approx([0.0] * 5)
     assert not any(part.above for part in parts.values())
 
 
 def test_each_part_answers_to_what_was_changed(cue: Cue, observer: Observer) -> None:
-    def between(a: Any, b: Any) -> dict[str, Part]:
-        return named(distance_parts(a, b, observer))
+    def between(a: Any, b: Any) -> dict[str, DistanceComponent]:
+        return named(distance_components(a, b, observer))
 
     direction = between(cue(-4.0), cue(4.0))["direction"]
     assert direction.above
@@ -53,7 +53,7 @@ def test_a_double_dip_has_a_pattern_of_its_own() -> None:
         simulate(icons[name], rig, tail_s=10) for name in ("cooling-step", "double-dip", "linear-cooling")
     )
     person = Observer.load()
-    double, single = (named(distance_parts(step, other, person)) for other in (dip, slow))
+    double, single = (named(distance_components(step, other, person)) for other in (dip, slow))
     assert double["direction"].value == 0.0
     assert double["pattern"].value > 2 * single["pattern"].value
     assert double["pattern"].above
@@ -64,8 +64,8 @@ def test_every_number_can_be_computed_from_the_traces_again() -> None:
     a, b = (simulate(icons[name], rig, tail_s=10) for name in ("warming-step", "linear-warming"))
     person = Observer.load()
     felt = perceive(a, person), perceive(b, person)
-    parts = named(distance_parts(a, b, person, felt))
-    assert parts == named(distance_parts(a, b, person))
+    parts = named(distance_components(a, b, person, felt))
+    assert parts == named(distance_components(a, b, person))
     totals = []
     for percept in felt:
         both = [smooth(psi, percept.dt_s, person.onset_uncertainty_s) for psi in (percept.psi_cold, percept.psi_warm)]
@@ -90,21 +90,29 @@ def test_the_order_of_directions_counts() -> None:
     for name, first, second in (("a", "cool", "warm"), ("b", "warm", "cool")):
         text += f"icon {name} {{ {first} by 3 °C at 3 °C/s; {second} by 6 °C at 3 °C/s; return at 3 °C/s }}\n"
     icons, rig = parse(text), Rig.load("thenar")
-    parts = named(distance_parts(*(simulate(icon, rig, tail_s=10) for icon in icons)))
+    parts = named(distance_components(*(simulate(icon, rig, tail_s=10) for icon in icons)))
     assert parts["direction"].above
 
 
 def test_of_what_is_not_felt_there_is_nothing_to_compare(cue: Cue, observer: Observer) -> None:
-    parts = named(distance_parts(cue(-4.0), cue(0.0), observer))
+    parts = named(distance_components(cue(-4.0), cue(0.0), observer))
     for name in ("rate", "duration", "pattern", "onset"):
         assert parts[name].value is None
         assert (parts[name].above, parts[name].times) == (None, None)
-        assert repr(parts[name]) == f"Part({name}: nothing to compare)"
+        assert repr(parts[name]) == f"DistanceComponent({name}: nothing to compare)"
     assert parts["direction"].above
     assert parts["onset"].to_dict()["b"] is None
 
 
 def test_a_part_says_what_it_is() -> None:
-    assert repr(Part("onset", 0.5, "s", 0.2)) == "Part(onset 0.5 s, just noticed 0.2 s)"
-    assert repr(Part("rate", 2.0, "1", 1.43)) == "Part(rate 2, just noticed 1.43)"
-    assert list(Part("rate", 2.0, "1", 1.43).to_dict()) == ["part", "value", "unit", "noticeable", "above", "a", "b"]
+    assert repr(DistanceComponent("onset", 0.5, "s", 0.2)) == "DistanceComponent(onset 0.5 s, just noticed 0.2 s)"
+    assert repr(DistanceComponent("rate", 2.0, "1", 1.43)) == "DistanceComponent(rate 2, just noticed 1.43)"
+    assert list(DistanceComponent("rate", 2.0, "1", 1.43).to_dict()) == [
+        "part",
+        "value",
+        "unit",
+        "noticeable",
+        "above",
+        "a",
+        "b",
+    ]

@@ -11,7 +11,6 @@ from thermicon.perception import (
     Percept,
     attack_K_per_s,
     delay_s,
-    difference,
     difference_trace,
     excursion_K,
     identification_dprime,
@@ -21,6 +20,7 @@ from thermicon.perception import (
     pair_reasons,
     peak_change_K,
     perceive,
+    percept_distance,
 )
 
 
@@ -84,8 +84,8 @@ def test_every_number_of_the_largest_difference_can_be_computed_again(cue: Any, 
 
     over_time = np.abs(difference_trace(*felt, observer))
     k = int(np.hypot(*over_time).argmax())
-    total = difference(*felt, observer, "max")
-    apart = difference(*felt, observer, norm)
+    total = percept_distance(*felt, observer, "max")
+    apart = percept_distance(*felt, observer, norm)
     left = float(identification_dprime(apart, observer, norm, float(felt[0].time_s[-1])))
     cold, warm = over_time[:, k]
     assert np.hypot(cold, warm) == pytest.approx(total)

@@ -4,7 +4,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, RuleResult, icon_rules, load_rules, pair_rules, perceive, rig_rules
-from thermicon.perception.comparison.rules import TOLD_APART
+from thermicon.perception.comparison.rules import DISTINGUISHABLE
 
 
 def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:
@@ -82,7 +82,7 @@ def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: 
 def test_directions_tell_apart(cue: Any) -> None:
     found = pair(cue, {"change": -4.0}, {"change": 4.0})
     assert found["direction"].text == "direction: a cools, b warms: directions differ"
-    assert found[TOLD_APART].passed
+    assert found[DISTINGUISHABLE].passed
     assert not any(name.startswith("amplitude") for name in found)
 
 
@@ -93,18 +93,18 @@ def test_equal_cues_are_not_told_apart(cue: Any) -> None:
     assert found["rate ratio (cold)"].value == pytest.approx(1.0)
     assert found["rate ratio (cold)"].text == "rate ratio (cold): 1 against at least 1.43: fails"
     assert found["onset (cold)"].text.endswith("s against at least 0.2 s: fails")
-    assert found[TOLD_APART].text == "told apart: no rule separates the two"
-    assert not found[TOLD_APART].passed
+    assert found[DISTINGUISHABLE].text == "distinguishable: no rule separates the two"
+    assert not found[DISTINGUISHABLE].passed
 
 
 def test_each_of_ours_alone_tells_apart(cue: Any) -> None:
     peak = pair(cue, {"change": 4.0}, {"change": 4.1})
-    assert peak[TOLD_APART].text == "told apart: by peak (warm)"
+    assert peak[DISTINGUISHABLE].text == "distinguishable: by peak (warm)"
     assert peak["amplitude difference (warm)"].margin == pytest.approx(0.01)
     rate = pair(cue, {"change": -4.0, "rate": 3.0}, {"change": -4.0, "rate": 4.5})
-    assert rate[TOLD_APART].text == "told apart: by rate ratio (cold)"
+    assert rate[DISTINGUISHABLE].text == "distinguishable: by rate ratio (cold)"
     late = pair(cue, {"change": -4.0}, {"change": -4.0, "lag_s": 0.3})
-    assert late[TOLD_APART].text == "told apart: by onset (cold)"
+    assert late[DISTINGUISHABLE].text == "distinguishable: by onset (cold)"
 
 
 def test_icons_below_every_threshold_have_no_onset(cue: Any) -> None:
@@ -122,7 +122,7 @@ def test_rules_are_records_that_say_whose_they_are() -> None:
         assert record.get("basis") in ("trace", "rig", "model")
         assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
-    assert {r.quantity for r in ours} == {"direction", "peak", "rate ratio", "onset", TOLD_APART}
+    assert {r.quantity for r in ours} == {"direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
 
 
 def test_every_rule_of_the_design_is_there() -> None:

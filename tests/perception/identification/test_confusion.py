@@ -4,7 +4,7 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import confuse, equal_percent_correct, percent_correct
+from thermicon.perception import confuse, equal_proportion_correct, proportion_correct
 from thermicon.perception.identification.confusion import SAMPLES, embed, sampling_error
 
 
@@ -14,9 +14,11 @@ def equal(d: float, icons: int = 6) -> np.ndarray:
 
 @pytest.mark.parametrize(("d", "published"), [(2.78, 0.91), (2.17, 0.80), (3.67, 0.98)])
 def test_equally_distant_icons_follow_the_integral(d: float, published: float) -> None:
-    assert equal_percent_correct(d, 6) == pytest.approx(published, abs=0.005)
+    assert equal_proportion_correct(d, 6) == pytest.approx(published, abs=0.005)
     found = confuse(np.repeat(equal(d)[None], 20, axis=0), lapse=0.0)
-    assert percent_correct(found.pooled) == pytest.approx(equal_percent_correct(d, 6), abs=4 * found.standard_error)
+    assert proportion_correct(found.pooled) == pytest.approx(
+        equal_proportion_correct(d, 6), abs=4 * found.standard_error
+    )
 
 
 def test_two_icons_are_exact() -> None:
@@ -68,12 +70,12 @@ def test_two_hundred_people_are_quick() -> None:
 @pytest.mark.parametrize("d", [0.5, 1.5, 3.0])
 def test_one_person_is_within_the_stated_error_of_the_integral(icons: int, d: float) -> None:
     found = confuse(equal(d, icons), lapse=0.0, seed=3)
-    exact = equal_percent_correct(d, icons)
+    exact = equal_proportion_correct(d, icons)
     assert found.person_standard_error <= 0.005
     assert np.diagonal(found.probability[0]) == pytest.approx(np.full(icons, exact), abs=4 * 0.005)
     off = (1.0 - exact) / (icons - 1)
     assert found.probability[0][~np.eye(icons, dtype=bool)] == pytest.approx(off, abs=4 * 0.005)
-    assert percent_correct(found.pooled) == pytest.approx(exact, abs=0.005)
+    assert proportion_correct(found.pooled) == pytest.approx(exact, abs=0.005)
 
 
 def test_sampling_agrees_with_brute_force() -> None:

@@ -7,9 +7,9 @@ from thermicon.perception import (
     Observer,
     Percept,
     back_to_back_dprime,
-    difference,
-    differences,
     identification_dprime,
+    percept_distance,
+    percept_distances,
 )
 from thermicon.perception.identification.distance import memory_from_task, sensory_noise, smooth
 from thermicon.perception.observer.observer import check_norm
@@ -40,7 +40,7 @@ def test_smoothing_holds_the_ends() -> None:
 def test_norms_of_a_constant_difference(observer: Observer) -> None:
     cold = np.stack([np.full(1001, 3.0), np.zeros(1001)])[None]
     warm = np.stack([np.zeros(1001), np.full(1001, 4.0)])[None]
-    apart = differences(cold, warm, 0.01, observer)
+    apart = percept_distances(cold, warm, 0.01, observer)
     assert apart["max"][0, 0, 1] == pytest.approx(5.0, rel=1e-9)
     assert apart["rms"][0, 1, 0] == pytest.approx(5.0, rel=1e-9)
     assert apart["integral"][0, 0, 1] == pytest.approx(5.0 * 10.01, rel=1e-9)
@@ -49,9 +49,9 @@ def test_norms_of_a_constant_difference(observer: Observer) -> None:
 
 def test_a_shorter_percept_is_held_at_its_end(observer: Observer) -> None:
     long, short = percept(np.full(2000, 7.0)), percept(np.full(500, 7.0))
-    assert difference(long, short, observer) == pytest.approx(0.0, abs=1e-12)
+    assert percept_distance(long, short, observer) == pytest.approx(0.0, abs=1e-12)
     with pytest.raises(ValueError, match=r"on clocks of 0.01 s and 0.02 s: simulate both at one rate"):
-        difference(long, percept(np.zeros(9), 0.02), observer)
+        percept_distance(long, percept(np.zeros(9), 0.02), observer)
 
 
 def test_dprime_from_memory_and_back_to_back(observer: Observer) -> None:
@@ -74,4 +74,4 @@ def test_messages(observer: Observer) -> None:
     with pytest.raises(ValueError, match=r"there is no norm 'mean': choose one of max, rms, integral"):
         check_norm("mean")
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\)"):
-        differences(np.zeros((2, 9)), np.zeros((2, 9)), 0.01, observer)
+        percept_distances(np.zeros((2, 9)), np.zeros((2, 9)), 0.01, observer)

@@ -26,7 +26,7 @@ def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
     assert found.draws == 16
     assert "slope of sensation" in found.parameters
     for (low, high), value, most in (
-        (found.percent_correct, ranking.percent_correct, 1.0),
+        (found.proportion_correct, ranking.proportion_correct, 1.0),
         (found.information_bits, ranking.information_bits, math.log2(6)),
     ):
         assert 0.0 <= low < value < high <= most
@@ -42,7 +42,7 @@ def test_they_are_in_the_file(ranking: Ranking) -> None:
     held = json.loads(ranking.to_json())
     found = ranking.parameter_intervals
     assert found is not None
-    assert held["set"]["percent_correct_parameter_interval"] == list(found.percent_correct)
+    assert held["set"]["proportion_correct_parameter_interval"] == list(found.proportion_correct)
     assert held["set"]["information_bits_parameter_interval"] == list(found.information_bits)
     assert held["set"]["parameter_draws"] == 16
     assert held["icons"][0]["detected_parameter_interval"] == list(found.detected[0])
@@ -55,7 +55,7 @@ def test_same_arguments_same_intervals(ranking: Ranking, rig: Rig) -> None:
     assert other.parameter_intervals is None
     assert np.array_equal(other.confusion, ranking.confusion)  # the draws leave the prediction alone
     held: Any = json.loads(other.to_json())
-    assert held["set"]["percent_correct_parameter_interval"] is None
+    assert held["set"]["proportion_correct_parameter_interval"] is None
     assert held["set"]["parameter_draws"] is None
     assert held["icons"][0]["detected_parameter_interval"] is None
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception import information_bits, percent_correct, plugin_bits
+from thermicon.perception import information_bits, plugin_bits, proportion_correct
 
 
 def spread(correct: float, icons: int = 6) -> np.ndarray:
@@ -38,8 +38,8 @@ def test_plugin_loses_its_bias_and_repeats() -> None:
     assert plugin_bits(spread(0.8), 50, seed=3) == plugin_bits(spread(0.8), 50, seed=3)
 
 
-def test_percent_correct_is_the_mean_of_the_diagonal() -> None:
-    assert percent_correct(np.stack([spread(0.8), np.eye(6)])) == pytest.approx([0.8, 1.0])
+def test_proportion_correct_is_the_mean_of_the_diagonal() -> None:
+    assert proportion_correct(np.stack([spread(0.8), np.eye(6)])) == pytest.approx([0.8, 1.0])
 
 
 def test_messages() -> None:

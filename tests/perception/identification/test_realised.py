@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate_current
-from thermicon.perception import Change, FeltChange, judge_delivered
+from thermicon.perception import DeliveredChange, PerceivedChange, judge_delivered
 
 RIG = Rig.load("thenar")
 REST_A = 0.0824
@@ -43,18 +43,20 @@ def test_an_icon_that_fades_is_told_with_detection_and_pair() -> None:
     ("designed", "delivered", "lost"), [(2.0, 1.85, False), (2.0, 1.75, True), (0.05, 0.01, False), (1.0, 1.5, False)]
 )
 def test_a_drop_counts_from_a_tenth_on_unless_it_is_tiny(designed: float, delivered: float, lost: bool) -> None:
-    change = FeltChange("a", Change(1.0, 1.0), (("b", Change(designed, delivered)),))
+    change = PerceivedChange("a", DeliveredChange(1.0, 1.0), (("b", DeliveredChange(designed, delivered)),))
     assert bool(change.losses()) is lost
 
 
 def test_it_prints_the_worst_pair_and_becomes_a_dictionary() -> None:
-    change = FeltChange("a", Change(1.0, 0.9), (("b", Change(2.0, 1.9)), ("c", Change(3.0, 2.0))))
-    assert repr(change) == "FeltChange(a: detected 1.000 → 0.900, d′ to c 3 → 2)"
+    change = PerceivedChange(
+        "a", DeliveredChange(1.0, 0.9), (("b", DeliveredChange(2.0, 1.9)), ("c", DeliveredChange(3.0, 2.0)))
+    )
+    assert repr(change) == "PerceivedChange(a: detected 1.000 → 0.900, d′ to c 3 → 2)"
     told = change.to_dict()
     assert told["detected_probability"] == {"designed": 1.0, "delivered": 0.9}
     assert told["d_prime"] == {"b": {"designed": 2.0, "delivered": 1.9}, "c": {"designed": 3.0, "delivered": 2.0}}
     assert told["losses"] == list(change.losses())
-    assert repr(FeltChange("a", Change(1.0, 1.0), ())) == "FeltChange(a: detected 1.000 → 1.000)"
+    assert repr(PerceivedChange("a", DeliveredChange(1.0, 1.0), ())) == "PerceivedChange(a: detected 1.000 → 1.000)"
 
 
 def test_an_unknown_norm_is_refused() -> None:

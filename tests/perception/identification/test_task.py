@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import CarryOver, Choosing, Observer, Ranking, Task, carry_over, rank
+from thermicon.perception import CarryOver, Observer, Ranking, Selection, Task, carry_over, rank
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
@@ -75,8 +75,8 @@ def test_a_narrower_set_is_remembered_better_in_context() -> None:
 
 def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOver) -> None:
     near, far = ranked(task=Task(gap_s=2.0)), ranked(task=Task(gap_s=600.0))
-    assert near.percent_correct < usual.percent_correct - 0.05
-    assert far.percent_correct == pytest.approx(usual.percent_correct, abs=1e-6)
+    assert near.proportion_correct < usual.proportion_correct - 0.05
+    assert far.proportion_correct == pytest.approx(usual.proportion_correct, abs=1e-6)
     told = near.to_dict()["icons"][0]["carry_over"]
     assert told["after"] in usual.labels and told["d_prime"] > 0.5
     noise = float(left_behind.noise[0])
@@ -88,18 +88,18 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
-    from thermicon.perception import differences
+    from thermicon.perception import percept_distances
     from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]
-    both = Icon("both", [*first.statements, rest(2.0), *second.statements], frame=second.frame)
-    gap = round((first.lower().duration_s + 2.0) * 25)
+    both = Icon("both", [*first.statements, rest(2.0), *second.statements], context=second.context)
+    gap = round((first.corners().duration_s + 2.0) * 25)
     after = perceive(simulate(both, RIG, rate_Hz=25.0, tail_s=18.0))
-    alone = perceive(simulate(second, RIG, rate_Hz=25.0, tail_s=18.0 - second.lower().duration_s))
+    alone = perceive(simulate(second, RIG, rate_Hz=25.0, tail_s=18.0 - second.corners().duration_s))
     rows = alone.psi_cold.size
     stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip
-    found = differences(*stacks, 0.04, Observer.load())
+    found = percept_distances(*stacks, 0.04, Observer.load())
     place = {name: k for k, name in enumerate(left_behind.names)}
     for k, norm in enumerate(NORMS):
         told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
@@ -108,7 +108,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
 
 def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
     biased = ranked(task=Task(bias=1.0))
-    assert biased.percent_correct < usual.percent_correct
+    assert biased.proportion_correct < usual.proportion_correct
     assert [p.d_prime for p in biased.pairs] == [p.d_prime for p in usual.pairs]
     drawn = Task(bias=2.0).favour(0, 500, 6, seed=3)
     assert isinstance(drawn, np.ndarray)
@@ -150,11 +150,11 @@ def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
     hot = "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"
     pool = parse(str(SIX) + "\n" + hot)
     for task in (Task(gap_s=3.0), Task(context=1.0), Task(bias=1.5)):
-        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Choosing(3)).chosen
+        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Selection(3)).chosen
         assert chosen is not None and "hot" not in chosen.icons
         alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
         if not task.bias:  # favoured names hang on places in the pool
-            assert chosen.at_own_range.percent_correct == pytest.approx(alone.percent_correct, abs=2e-3)
+            assert chosen.at_own_range.proportion_correct == pytest.approx(alone.proportion_correct, abs=2e-3)
         assert chosen.at_own_range.d_prime == pytest.approx(min(p.d_prime for p in alone.pairs), rel=1e-2)
 
 
@@ -170,12 +170,12 @@ def test_what_is_not_safe_leaves_nothing_behind() -> None:
 
 def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
     plain, biased = (
-        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Choosing(3, "correct")).chosen
+        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Selection(3, "correct")).chosen
         for bias in (0.0, 3.0)
     )
     assert plain is not None and biased is not None
     assert biased.value < plain.value - 0.005
-    assert biased.value == pytest.approx(biased.at_own_range.percent_correct, abs=0.02)
+    assert biased.value == pytest.approx(biased.at_own_range.proportion_correct, abs=0.02)
 
 
 def test_messages() -> None:

@@ -9,7 +9,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.map import between, map_of, perceptual_map
-from thermicon.perception.identification.spread import MOST_PEOPLE, Spread, place_probability, spread_over_people
+from thermicon.perception.identification.spread import MOST_PEOPLE, PersonSpread, place_probability, spread_over_people
 from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
 from thermicon.perception.plots.draw_heat import clustered_order, heat, light_map
 from thermicon.perception.plots.draw_map import label_offsets, text_width
@@ -117,7 +117,7 @@ def test_places_are_probabilities(ranking: Ranking) -> None:
     assert held.sum(axis=0) == pytest.approx(1.0)
     assert held.sum(axis=1) == pytest.approx(1.0)
     axes = plot_places(ranking)
-    best = sorted(ranking.icons, key=lambda icon: (-icon.percent_correct, icon.name))
+    best = sorted(ranking.icons, key=lambda icon: (-icon.proportion_correct, icon.name))
     assert [label.get_text() for label in axes.get_yticklabels()] == [icon.name for icon in best]
     assert [label.get_text() for label in axes.get_xticklabels()] == [str(k) for k in range(1, 9)]
     assert axes.get_title() == "place of each icon, % of 8 people"
@@ -133,7 +133,7 @@ def test_equal_icons_share_their_places() -> None:
 def test_few_people_are_kept_of_many() -> None:
     crowd, icons = MOST_PEOPLE + 5, 3
     kept = spread_over_people(np.zeros((crowd, icons, icons)), np.ones((crowd, icons)))
-    assert isinstance(kept, Spread)
+    assert isinstance(kept, PersonSpread)
     assert kept.d_prime.shape == (MOST_PEOPLE, 3, 3)
     assert spread_over_people(np.zeros((9, 400, 400)), np.ones((9, 400))).d_prime.shape == (2, 400, 400)
     with pytest.raises(ValueError, match="read-only"):
@@ -146,7 +146,7 @@ def test_the_ranking_as_a_picture(ranking: Ranking) -> None:
     assert [label.get_text() for label in axes.get_yticklabels()] == [row["icon"] for row in rows]
     told = [t.get_text() for t in axes.texts]
     for row in rows:
-        assert f"{100 * row['percent_correct']:.0f} %" in told
+        assert f"{100 * row['proportion_correct']:.0f} %" in told
     assert {"correct", "detected", "onset", "felt as", "most confused with"} <= set(told)
     assert "plays" not in told
     broken = replace(ranking, icons=(replace(ranking.icons[0], safe=False, reason="hot"), *ranking.icons[1:]))

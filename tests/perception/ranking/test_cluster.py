@@ -15,7 +15,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import rank
-from thermicon.perception.ranking import chunks, cluster
+from thermicon.perception.ranking import batches, cluster
 from thermicon.perception.ranking.cluster import ClusterError, on_cluster
 
 ICONS, RIG = load_library("six-icons"), Rig.load("thenar")
@@ -69,7 +69,7 @@ def test_an_address_that_is_none(address: str) -> None:
 
 def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    asked = chunks.Work(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "max")
+    asked = batches.Job(tuple(ICONS), RIG, 18.0, 2, 0, 48, None, "max")
     with pytest.raises(ClusterError, match=r"needs the package distributed: install it with pip install 'thermicon\["):
         list(on_cluster(asked, [0], "tcp://127.0.0.1:1"))
 
@@ -93,10 +93,10 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
         over = threading.Event()
 
         def kill_one() -> None:
-            while not list(kept.glob("*/*.parquet")) and not over.is_set():
+            while not list(kept.glob("*/*.npz")) and not over.is_set():
                 time.sleep(0.01)
             os.kill(workers[0].pid, signal.SIGKILL)
-            killed.append(len(list(kept.glob("*/*.parquet"))))
+            killed.append(len(list(kept.glob("*/*.npz"))))
 
         assassin = threading.Thread(target=kill_one)
         assassin.start()
@@ -110,5 +110,5 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
             codes = [one.wait(60) for one in workers]
     assert codes[0] == -signal.SIGKILL
     assert killed
-    assert killed[0] < len(list(kept.glob("*/*.parquet")))
+    assert killed[0] < len(list(kept.glob("*/*.npz")))
     assert far == local

@@ -10,14 +10,14 @@ from thermicon.perception import Ranking, perceive, rank
 
 TOP = "thermicon rig rig_changes seed people tracking by norm content_hash task icons pairs confusion set chosen map"
 ICON = (
-    "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s percent_correct reachable safe "
+    "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
     "reason cautions rules rules_score rules_margin outside_data detected_parameter_interval carry_over"
 )
 PAIR = "a b d_prime confused_probability why rules edit told_apart_by_rules rules_margin no_edit parts"
 SET = (
-    "percent_correct percent_correct_interval information_bits information_bits_interval bits_per_s "
+    "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
     "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity norm_changes "
-    "percent_correct_parameter_interval information_bits_parameter_interval parameter_draws rules_score rules"
+    "proportion_correct_parameter_interval information_bits_parameter_interval parameter_draws rules_score rules"
 )
 
 
@@ -55,11 +55,11 @@ def test_numbers_hang_together(held: Any) -> None:
     matrix = np.array(held["confusion"]["probability"])
     assert matrix.sum(axis=1) == pytest.approx(1.0, abs=1e-12)
     assert [icon["name"] for icon in held["icons"]] == held["confusion"]["labels"]
-    assert [icon["percent_correct"] for icon in held["icons"]] == pytest.approx(np.diag(matrix))
+    assert [icon["proportion_correct"] for icon in held["icons"]] == pytest.approx(np.diag(matrix))
     whole = held["set"]
-    assert whole["percent_correct"] == pytest.approx(np.trace(matrix) / 6)
-    low, high = whole["percent_correct_interval"]
-    assert low <= whole["percent_correct"] <= high
+    assert whole["proportion_correct"] == pytest.approx(np.trace(matrix) / 6)
+    low, high = whole["proportion_correct_interval"]
+    assert low <= whole["proportion_correct"] <= high
     assert whole["bits_per_s"] == pytest.approx(whole["information_bits"] / 8.0, rel=0.01)
     assert set(whole["norm_sensitivity"]) == {"rms", "integral"}
     assert set(whole["norm_changes"]) == {"rms", "integral"}
@@ -88,7 +88,7 @@ def test_same_arguments_same_bytes(ranking: Ranking, rig: Rig) -> None:
 
 def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     rows = ranking.rows()
-    correct = [row["percent_correct"] for row in rows]
+    correct = [row["proportion_correct"] for row in rows]
     assert correct == sorted(correct, reverse=True)
     assert ranking.to_frame().shape == (6, len(rows[0]))
     assert repr(ranking).startswith("Ranking(predicted: 6 icons on thenar, 12 people, ")
@@ -169,8 +169,8 @@ def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
     )
     (found,) = rank(parse(head + a + b), rig, people=2, parameters=0).rules_disagree
     assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
-    assert found["text"].startswith("a and b: rules say told apart, the model d′ ")
-    assert float(found["text"].split("d′ ")[1].split()[0]) < 2.563
+    assert found["text"].startswith("a and b: rules: distinguishable; model: d′ ")
+    assert float(found["text"].split("d′ ")[1].split(",")[0]) < 2.563
     assert found["text"].endswith(" (apart from 2.563)")
 
 
@@ -192,7 +192,7 @@ def test_changes_of_order_under_another_norm_are_told(rig: Rig) -> None:
     by = {norm: rank(icons, rig, people=10, parameters=0, norm=norm) for norm in ("max", "rms")}
     changes = by["max"].norm_changes["rms"]
     assert changes
-    places = {norm: {icon.name: icon.percent_correct for icon in ranking.icons} for norm, ranking in by.items()}
+    places = {norm: {icon.name: icon.proportion_correct for icon in ranking.icons} for norm, ranking in by.items()}
     for better, worse in changes:
         assert places["max"][better] > places["max"][worse] + 0.01
         assert places["rms"][worse] > places["rms"][better]
@@ -202,7 +202,7 @@ def test_identical_icons_are_guessed(rig: Rig) -> None:
     body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
     text = f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon a {body}\nicon b {body}"
     ranking = rank(parse(text), rig, people=3, parameters=0)
-    assert ranking.percent_correct == pytest.approx(0.5)
+    assert ranking.proportion_correct == pytest.approx(0.5)
     assert ranking.information_bits == pytest.approx(0.0, abs=1e-9)
     assert ranking.pairs[0].d_prime == pytest.approx(0.0)
     assert not ranking.pairs[0].rules_pass
@@ -226,7 +226,7 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     assert list(held["set"]) == SET.split()
     for icon in held["icons"]:
         assert list(icon) == ICON.split()
-        for key in ("detected_probability", "onset_s", "channel", "percent_correct", "detected_parameter_interval"):
+        for key in ("detected_probability", "onset_s", "channel", "proportion_correct", "detected_parameter_interval"):
             assert icon[key] is None
         assert 0.0 <= icon["rules_score"] <= 1.0
     for pair in held["pairs"]:
@@ -234,9 +234,9 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
         assert pair["why"] == [rule["text"] for rule in pair["rules"]]
         assert pair["told_apart_by_rules"] == pair["rules"][-1]["pass"]
     whole = held["set"]
-    for key in ("percent_correct", "percent_correct_interval", "information_bits", "information_bits_interval"):
+    for key in ("proportion_correct", "proportion_correct_interval", "information_bits", "information_bits_interval"):
         assert whole[key] is None
-    for key in ("bits_per_s", "information_bits_plugin", "percent_correct_parameter_interval", "parameter_draws"):
+    for key in ("bits_per_s", "information_bits_plugin", "proportion_correct_parameter_interval", "parameter_draws"):
         assert whole[key] is None
     assert whole["norm_sensitivity"] == {}
     assert held["confusion"]["probability"] is None
@@ -246,7 +246,7 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     model = json.loads(ranking.to_json())
     assert whole["rules_disagree"] == model["set"]["rules_disagree"]
     assert [icon["rules_score"] for icon in held["icons"]] == [icon["rules_score"] for icon in model["icons"]]
-    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs told apart, worst pair ")
+    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs distinguishable, worst pair ")
 
 
 def test_the_worst_pair_by_rules_is_the_one_nearest_to_failing(rig: Rig) -> None:

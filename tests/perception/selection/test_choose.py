@@ -7,9 +7,9 @@ import pytest
 
 from thermicon.circuit import Rig, Trace, duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
-from thermicon.perception import ChoiceError, Choosing, appraise, choose, draw_people, energy_J, rank
+from thermicon.perception import ChoiceError, Selection, appraise, choose, draw_people, energy_J, rank
 from thermicon.perception.observer.people import People
-from thermicon.perception.selection.appraise import distances
+from thermicon.perception.selection.appraise import population_dprime
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (
@@ -41,10 +41,10 @@ class Pool:
         self.icons: list[Icon] = list(parse(HEAD + text))
         self.rig, self.crowd = rig, crowd
         self.traces: tuple[Trace, ...] = simulate_all(self.icons, rig, end_s=30.0)
-        self.d, self.durations = distances(self.icons, rig, crowd)
+        self.d, self.durations = population_dprime(self.icons, rig, crowd)
 
     def choose(self, *arguments: Any, **more: Any) -> Any:
-        return choose(Choosing(*arguments, **more), self.icons, self.rig, self.traces, self.d, self.crowd, seed=1)
+        return choose(Selection(*arguments, **more), self.icons, self.rig, self.traces, self.d, self.crowd, seed=1)
 
 
 @pytest.fixture(scope="module")
@@ -123,21 +123,21 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     assert one == pool.choose(3, objective, ("a",))
     assert "a" in one.icons
     assert list(one.to_dict()["at_own_range"]) == [
-        *("worst_pair", "d_prime", "percent_correct", "information_bits", "bits_per_s"),
-        *("percent_correct_parameter_interval", "information_bits_parameter_interval"),
+        *("worst_pair", "d_prime", "proportion_correct", "information_bits", "bits_per_s"),
+        *("proportion_correct_parameter_interval", "information_bits_parameter_interval"),
     ]
 
 
 def test_intervals_are_those_of_the_chosen() -> None:
     six, rig = read_cue("six-icons"), Rig.load("thenar")
-    found = rank(six, rig, people=8, parameters=8, choosing=Choosing(3))
+    found = rank(six, rig, people=8, parameters=8, choosing=Selection(3))
     assert found.parameter_intervals is None and found.chosen is not None
     own = found.chosen.to_dict()["at_own_range"]
-    low, high = own["percent_correct_parameter_interval"]
-    assert low < own["percent_correct"] < high
+    low, high = own["proportion_correct_parameter_interval"]
+    assert low < own["proportion_correct"] < high
     alone = rank(replace(six, entries=tuple(six[name] for name in found.chosen.icons)), rig, people=8, parameters=8)
     assert alone.parameter_intervals is not None
-    assert (low, high) == pytest.approx(alone.parameter_intervals.percent_correct, abs=0.02)
+    assert (low, high) == pytest.approx(alone.parameter_intervals.proportion_correct, abs=0.02)
 
 
 def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:
@@ -183,12 +183,12 @@ def test_one_icon_is_no_pool(rig: Rig, crowd: People) -> None:
 
 def test_what_no_set_can_answer() -> None:
     with pytest.raises(ChoiceError, match=r"^1 cannot be chosen: at least 2 icons are needed"):
-        Choosing(1)
+        Selection(1)
     with pytest.raises(ChoiceError, match=r"^3 icons must be among 2: choose more, or ask for fewer$"):
-        Choosing(2, must=("a", "b", "c"))
+        Selection(2, must=("a", "b", "c"))
     with pytest.raises(ChoiceError, match=r"^the objective is one of worst, correct, bits, bits-per-s, not 'best'$"):
-        Choosing(2, "best")  # type: ignore[arg-type]
+        Selection(2, "best")  # type: ignore[arg-type]
     with pytest.raises(ChoiceError, match=r"^the total time must be above 0, not -1 s$"):
-        Choosing(2, most_s=-1.0)
+        Selection(2, most_s=-1.0)
     with pytest.raises(ChoiceError, match=r"^the total energy must be above 0, not nan J$"):
-        Choosing(2, most_J=float("nan"))
+        Selection(2, most_J=float("nan"))

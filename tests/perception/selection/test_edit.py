@@ -6,9 +6,9 @@ import pytest
 from thermicon.circuit import Rig, duration_s, judge_safety, simulate
 from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import Edit, NoEdit, cheapest_edit, draw_people, rank
-from thermicon.perception.criteria import APART_DPRIME
-from thermicon.perception.selection.appraise import distances
-from thermicon.perception.selection.numbers import numbers_of, repeated, with_number
+from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+from thermicon.perception.selection.appraise import population_dprime
+from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
 
 PEOPLE = 40
 
@@ -46,12 +46,12 @@ def test_it_parts_the_pair_for_people_and_harms_no_other(six: list[Icon], found:
     crowd = draw_people(PEOPLE, 0)
     names = [icon.name for icon in six]
     i, j, edited = names.index("warming-step"), names.index("linear-warming"), names.index(found.icon)
-    before = np.median(distances(six, rig, crowd)[0], axis=0)
-    after = np.median(distances(changed(six, found), rig, crowd)[0], axis=0)
-    assert before[i, j] < APART_DPRIME <= after[i, j]
+    before = np.median(population_dprime(six, rig, crowd)[0], axis=0)
+    after = np.median(population_dprime(changed(six, found), rig, crowd)[0], axis=0)
+    assert before[i, j] < DISTINGUISHABLE_DPRIME <= after[i, j]
     assert found.d_prime == pytest.approx(after[i, j], abs=0.01)
     for k in set(range(6)) - {i, j}:
-        assert after[edited, k] >= min(before[edited, k] - 0.11, 2.0 * APART_DPRIME)
+        assert after[edited, k] >= min(before[edited, k] - 0.11, 2.0 * DISTINGUISHABLE_DPRIME)
 
 
 def test_it_is_safe_and_reached_and_costs_what_is_said(six: list[Icon], found: Edit, rig: Rig) -> None:
@@ -96,7 +96,7 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     assert "total at most 9 s" in str(twice)
     edit = cheapest_edit(icons, rig, "x", "y", people=8)
     assert isinstance(edit, Edit)
-    assert edit.d_prime >= APART_DPRIME
+    assert edit.d_prime >= DISTINGUISHABLE_DPRIME
 
 
 def test_numbers_are_found_and_changed_within_repeats() -> None:
@@ -134,7 +134,7 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
     found = cheapest_edit(icons, rig, "up", "down", people=12)
     assert isinstance(found, Edit)
     edited = [found.edited if icon.name == found.icon else icon for icon in icons]
-    again = np.median(distances(edited, rig, draw_people(12))[0], axis=0)[0, 1]
+    again = np.median(population_dprime(edited, rig, draw_people(12))[0], axis=0)[0, 1]
     assert again == pytest.approx(found.d_prime, rel=1e-6) and again >= 2.56
 
 

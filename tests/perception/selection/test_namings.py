@@ -5,21 +5,21 @@ import numpy as np
 import pytest
 
 from thermicon.perception.identification.confusion import confuse
-from thermicon.perception.identification.measures import information_bits, percent_correct
+from thermicon.perception.identification.measures import information_bits, proportion_correct
 from thermicon.perception.selection.choose import pick
-from thermicon.perception.selection.subset_identification import Namings, Objective
+from thermicon.perception.selection.max_min_subset import Limits
+from thermicon.perception.selection.subset_identification import Objective, SubsetIdentification
 from thermicon.perception.selection.upper_bounds import pair_losses, upper_bound
-from thermicon.perception.selection.widest import Limits
 
 OBJECTIVES: tuple[Objective, ...] = ("correct", "bits", "bits-per-s")
 
 
-def pool(seed: int, n: int, people: int = 3, size: float = 1.5) -> Namings:
+def pool(seed: int, n: int, people: int = 3, size: float = 1.5) -> SubsetIdentification:
     rng = np.random.default_rng(seed)
     x = rng.normal(size=(n, 2)) * size
     d = np.linalg.norm(x[:, None] - x[None], axis=-1)
     each = d[None] * rng.uniform(0.7, 1.3, size=(people, 1, 1))
-    return Namings.of(each, np.full(people, 0.03), rng.uniform(2.0, 8.0, size=n), seed)
+    return SubsetIdentification.of(each, np.full(people, 0.03), rng.uniform(2.0, 8.0, size=n), seed)
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES)
@@ -51,9 +51,9 @@ def test_a_score_is_what_the_confusions_of_the_set_give() -> None:
     rng = np.random.default_rng(4)
     x = rng.normal(size=(5, 2)) * 2.0
     d = np.linalg.norm(x[:, None] - x[None], axis=-1)[None].repeat(24, axis=0)
-    held = Namings.of(d, np.full(24, 0.02), np.full(5, 4.0), 0)
+    held = SubsetIdentification.of(d, np.full(24, 0.02), np.full(5, 4.0), 0)
     named = confuse(d, lapse=0.02).probability
-    assert held.score(range(5), "correct") == pytest.approx(float(percent_correct(named).mean()), abs=0.01)
+    assert held.score(range(5), "correct") == pytest.approx(float(proportion_correct(named).mean()), abs=0.01)
     assert held.score(range(5), "bits") == pytest.approx(float(information_bits(named).mean()), abs=0.06)
     assert held.score(range(5), "bits-per-s") == held.score(range(5), "bits") / 4.0
 
@@ -70,7 +70,7 @@ def test_no_choice_exceeds_the_bound(objective: Objective, size: float) -> None:
 
 def test_two_alike_lose_a_bit_and_two_far_apart_none() -> None:
     d = np.array([[0.0, 0.0, 9.0], [0.0, 0.0, 9.0], [9.0, 9.0, 0.0]])
-    lost = pair_losses(Namings.of(d[None], np.zeros(1), np.ones(3), 0))
+    lost = pair_losses(SubsetIdentification.of(d[None], np.zeros(1), np.ones(3), 0))
     assert lost[0, 1] == pytest.approx(1.0, abs=1e-6)
     assert lost[0, 2] < 1e-4
 

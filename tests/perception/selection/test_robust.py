@@ -3,8 +3,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import ChoiceError, beats, draw_people, survives
-from thermicon.perception.selection.appraise import distances
+from thermicon.perception import ChoiceError, best_set_probability, compare_sets, draw_people
+from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.robust import drawn_rigs
 
 
@@ -20,17 +20,17 @@ def six() -> list[Icon]:
 
 def test_shares_add_up_and_are_recomputed(six: list[Icon], rig: Rig) -> None:
     one, two = six[:3], six[2:5]
-    found = survives({"one": one, "two": two}, rig, draws=16, seed=2)
+    found = best_set_probability({"one": one, "two": two}, rig, draws=16, seed=2)
     assert sum(found.best) == pytest.approx(1.0)
     crowd = draw_people(16, 2)
-    d = distances(six[:5], rig, crowd, rigs=drawn_rigs(crowd.rigs(rig), 2), end_s=None)[0]
+    d = population_dprime(six[:5], rig, crowd, rigs=drawn_rigs(crowd.rigs(rig), 2), end_s=None)[0]
     first, second = np.triu_indices(3, 1)
     mine = d[:, :3, :3][:, first, second].min(axis=1)
     other = d[:, 2:5, 2:5][:, first, second].min(axis=1)
     assert found.values[0] == pytest.approx(mine)
     assert found.values[1] == pytest.approx(other)
     assert found.best[0] == pytest.approx(np.mean(mine > other))
-    duel = beats(one, two, rig, draws=16, seed=2)
+    duel = compare_sets(one, two, rig, draws=16, seed=2)
     assert duel.probability == found.best[0]
     assert duel.gain == pytest.approx(np.median(mine - other))
     assert found.survivor == ("one" if found.best[0] >= 0.5 else "two")
@@ -38,12 +38,12 @@ def test_shares_add_up_and_are_recomputed(six: list[Icon], rig: Rig) -> None:
 
 def test_a_set_beats_itself_half_of_the_time(six: list[Icon], rig: Rig) -> None:
     for objective in ("worst", "correct", "bits", "bits-per-s"):
-        duel = beats(six[:3], six[:3], rig, objective=objective, draws=6)  # type: ignore[arg-type]
+        duel = compare_sets(six[:3], six[:3], rig, objective=objective, draws=6)  # type: ignore[arg-type]
         assert (duel.probability, duel.gain) == (0.5, 0.0)
 
 
 def test_fewer_of_the_same_are_never_worse_in_the_worst_pair(six: list[Icon], rig: Rig) -> None:
-    assert np.all(np.diff(survives({"all": six, "few": six[:4]}, rig, draws=8).values, axis=0) >= 0)
+    assert np.all(np.diff(best_set_probability({"all": six, "few": six[:4]}, rig, draws=8).values, axis=0) >= 0)
 
 
 def test_rigs_are_drawn_about_their_own_values(rig: Rig) -> None:
@@ -58,11 +58,11 @@ def test_rigs_are_drawn_about_their_own_values(rig: Rig) -> None:
 
 def test_bad_questions(six: list[Icon], rig: Rig) -> None:
     with pytest.raises(ChoiceError, match=r"^two sets at least are needed"):
-        survives({"only": six}, rig)
+        best_set_probability({"only": six}, rig)
     with pytest.raises(ChoiceError, match=r"^B has only 1 icon: two at least"):
-        beats(six, six[:1], rig)
+        compare_sets(six, six[:1], rig)
     with pytest.raises(ChoiceError, match=r"^at least one draw is needed, not 0$"):
-        beats(six, six, rig, draws=0)
+        compare_sets(six, six, rig, draws=0)
     other = list(parse(str(load_library("six-icons")).replace("cool by 6 °C at 3", "cool by 5 °C at 3")))
     with pytest.raises(ChoiceError, match=r"^the objective is one of"):
-        beats(six, other, rig, objective="good")  # type: ignore[arg-type]
+        compare_sets(six, other, rig, objective="good")  # type: ignore[arg-type]

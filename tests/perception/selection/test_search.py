@@ -3,8 +3,8 @@ import pytest
 
 from thermicon.circuit import Rig, judge_safety, simulate
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.perception import ChoiceError, Searched, appraise, search
-from thermicon.perception.selection.candidates import born, drawn, member, value_at
+from thermicon.perception import ChoiceError, SearchResult, appraise, search
+from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 
 SMALL = (
     "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"
@@ -25,11 +25,11 @@ def small() -> IconSet:
 
 
 @pytest.fixture(scope="module")
-def found(small: IconSet, rig: Rig) -> Searched:
+def found(small: IconSet, rig: Rig) -> SearchResult:
     return search(small, rig, count=4, evaluations=150, people=12, seed=3)
 
 
-def test_the_set_is_plain_icons_that_say_where_they_come_from(found: Searched, small: IconSet) -> None:
+def test_the_set_is_plain_icons_that_say_where_they_come_from(found: SearchResult, small: IconSet) -> None:
     assert parse(str(found.found)) == found.found
     assert not found.found.families
     assert len(found.found) == 4
@@ -41,20 +41,20 @@ def test_the_set_is_plain_icons_that_say_where_they_come_from(found: Searched, s
             assert icon.metadata.tags[-1].startswith(("from dip depth=", "from rise height="))
 
 
-def test_every_icon_is_safe_and_reached(found: Searched, rig: Rig) -> None:
+def test_every_icon_is_safe_and_reached(found: SearchResult, rig: Rig) -> None:
     for icon in found.found:
         trace = simulate(icon, rig)
         assert trace.reachable
         assert judge_safety(trace).safe
 
 
-def test_before_and_after_are_recomputed(found: Searched, rig: Rig) -> None:
+def test_before_and_after_are_recomputed(found: SearchResult, rig: Rig) -> None:
     assert found.after == appraise(tuple(found.found), rig, people=12, seed=3)
     assert found.before == appraise(found.start, rig, people=12, seed=3)
     assert found.after.d_prime >= found.before.d_prime
 
 
-def test_the_same_seed_gives_the_same_set(found: Searched, small: IconSet, rig: Rig) -> None:
+def test_the_same_seed_gives_the_same_set(found: SearchResult, small: IconSet, rig: Rig) -> None:
     again = search(small, rig, count=4, evaluations=150, people=12, seed=3)
     assert str(again.found) == str(found.found)
     assert again == found
@@ -70,7 +70,7 @@ def test_one_icon_of_each_family(small: IconSet, rig: Rig, objective: str) -> No
 def test_a_span_is_continuous_and_a_list_is_not() -> None:
     family = load_library("search-space").families[0]
     rng = np.random.default_rng(0)
-    gene = born(family, (0.5, 0.5, 0.5, 0.5))
+    gene = candidate_at(family, (0.5, 0.5, 0.5, 0.5))
     assert gene is not None
     moved = [gene.moved(rng, 0.2) for _ in range(40)]
     made = [one for one in moved if one is not None]
@@ -83,7 +83,7 @@ def test_a_span_is_continuous_and_a_list_is_not() -> None:
 
 def test_a_sample_is_of_members(small: IconSet) -> None:
     dip, rise = small.families
-    genes = drawn((dip, rise), 20, np.random.default_rng(0))
+    genes = sample_candidates((dip, rise), 20, np.random.default_rng(0))
     assert [gene.icon.name for gene in genes] == [icon.name for icon in (*dip, *rise)]
     assert [gene.icon.statements for gene in genes] == [icon.statements for icon in (*dip, *rise)]
     assert member(dip, [0.0, 1.0]).statements == dip.member({"depth": 2, "rate": 3}).statements

@@ -49,7 +49,7 @@ def test_a_curve_may_pause() -> None:
 
 def test_what_is_out_of_reach_is_said() -> None:
     said = repr(Bench(Rig.load("thenar")).play([ramp("cold", 20.0, 20.0)], 2.0))
-    assert said == "Stimuli(1 on thenar, 2 s, 1 not reached)"
+    assert said == "Stimulus(1 on thenar, 2 s, 1 not reached)"
 
 
 def test_messages(bench: Bench) -> None:

@@ -71,4 +71,4 @@ def test_a_ranking_carries_it() -> None:
     said = ["no detection threshold is on record for the fingertip: those of the thenar are used"]
     assert list(ranking.icons[0].outside_data) == said
     assert ranking.to_dict()["icons"][0]["outside_data"] == said
-    assert np.isfinite(ranking.percent_correct)
+    assert np.isfinite(ranking.proportion_correct)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import Record
-from thermicon.perception import CHANNELS, Observer, Parameter, observer_at, observer_parameters
+from thermicon.perception import CHANNELS, Observer, ObserverParameter, observer_at, observer_parameters
 from thermicon.perception.sensation.parameters import _in_thresholds, latin, parameter_name
 
 
@@ -49,13 +49,16 @@ def test_an_unknown_parameter_is_named() -> None:
 
 def test_a_parameter_needs_an_interval() -> None:
     with pytest.raises(ValueError, match=r"t: 1, 1, 1 is not an interval about a value"):
-        Parameter("t", 1.0, 1.0, 1.0, "s", "x", "assumed")
+        ObserverParameter("t", 1.0, 1.0, 1.0, "s", "x", "assumed")
 
 
 def test_wide_intervals_are_drawn_in_logarithms() -> None:
-    assert Parameter("t", 1.0, 5.0, 100.0, "s", "x", "assumed").at(0.5) == pytest.approx(10.0)
-    assert Parameter("t", 1.0, 1.2, 1.4, "s", "x", "assumed").at(0.5) == pytest.approx(1.2)
-    assert repr(Parameter("t", 1.0, 1.2, 1.4, "s", "Me 1999", "assumed")) == "Parameter(t: 1.2 [1, 1.4] s; Me 1999)"
+    assert ObserverParameter("t", 1.0, 5.0, 100.0, "s", "x", "assumed").at(0.5) == pytest.approx(10.0)
+    assert ObserverParameter("t", 1.0, 1.2, 1.4, "s", "x", "assumed").at(0.5) == pytest.approx(1.2)
+    assert (
+        repr(ObserverParameter("t", 1.0, 1.2, 1.4, "s", "Me 1999", "assumed"))
+        == "ObserverParameter(t: 1.2 [1, 1.4] s; Me 1999)"
+    )
 
 
 def test_a_latin_hypercube_has_one_draw_a_stratum() -> None:

@@ -6,7 +6,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
 from thermicon.perception.sensation.bench import Bench
-from thermicon.perception.validation.measured import Measured, crowd_of
+from thermicon.perception.validation.measured import Measurement, crowd_of
 from thermicon.perception.validation.procedures import (
     choice_reaction_time,
     forced_choice,
@@ -124,4 +124,4 @@ def test_messages(person: Observer, bench: Bench) -> None:
     with pytest.raises(ValueError, match=r"a step of 0.005 K is felt already"):
         forced_choice(person, bench, "cold", people=keen)
     with pytest.raises(ValueError, match=r"limits: one number is needed for each person"):
-        Measured("limits", "cold", "K", np.array([np.nan]), "")
+        Measurement("limits", "cold", "K", np.array([np.nan]), "")

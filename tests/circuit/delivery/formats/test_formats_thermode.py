@@ -9,6 +9,7 @@ import io
 import json
 import re
 import sys
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -60,7 +61,7 @@ class TestSerial:
         baseline, pairs = read_profile(load_format("tcs2-serial").write(found).decode("ascii"))
         times = np.cumsum([0.0, *(duration for duration, _ in pairs)])
         levels = [baseline, *(level for _, level in pairs)]
-        corners = icon.lower()
+        corners = icon.corners()
         grid = np.linspace(0, corners.duration_s, 200)
         assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
         assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)
@@ -130,7 +131,9 @@ class TestProtocol:
 class TestPsychopy:
     """Conditions, drives and player."""
 
-    def packed(self, device: str) -> dict[str, bytes]:
+    @staticmethod
+    @cache
+    def packed(device: str) -> dict[str, bytes]:
         form = load_format("psychopy")
         icons = [load_library("six-icons")[name] for name in ("warming-step", "double-dip")]
         return pack([prepare(icon, RIG, Device.load(device), form) for icon in icons], form)

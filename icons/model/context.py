@@ -1,0 +1,84 @@
+"""What icons carry besides statements: the context they are meant in, and metadata; and what names and texts may be."""
+
+import re
+from dataclasses import dataclass
+from typing import get_args
+
+from .cleaning import first_control
+from .value_limits import Control, fault
+
+_WORD = r"[^\W\d_](?:[^\W_]|-)*"
+# Members of a family are named after their values: ramp_amount=-6_rate=1.
+_NAME = re.compile(rf"{_WORD}(?:_{_WORD}=-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)*")
+
+
+def name_fault(name: str) -> str | None:
+    """Return what keeps a text from being a name, or None.
+
+    >>> name_fault("cooling-step"), name_fault("3rd")
+    (None, "'3rd' is not a name: letters, digits and hyphens, beginning with a letter")
+    """
+    if _NAME.fullmatch(name):
+        return None
+    return f"{name!r} is not a name: letters, digits and hyphens, beginning with a letter"
+
+
+def text_fault(text: str) -> str | None:
+    """Return what keeps a text out of metadata, or None: it must show something and hold no control characters."""
+    if not text.strip():
+        return "the text is empty"
+    bad = first_control(text, "\n\t")
+    return f"the text holds the control character {bad}" if bad else None
+
+
+@dataclass(frozen=True, slots=True)
+class Context:
+    """What a set prescribes and where: control, baseline in °C (None: whoever plays it says) and body site.
+
+    Raises ValueError for an unknown control, a baseline outside −10 to 60 °C, or a site that is no name.
+
+    >>> Context("display", 32)
+    Context(control='display', baseline_C=32.0, site=None)
+    """
+
+    control: Control = "skin"
+    baseline_C: float | None = None
+    site: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.control not in get_args(Control):
+            raise ValueError(f"control must be one of {', '.join(get_args(Control))}, not {self.control!r}")
+        if self.site is not None and (wrong := name_fault(self.site)):
+            raise ValueError(f"site: {wrong}")
+        if self.baseline_C is not None:
+            baseline = float(self.baseline_C) + 0.0
+            if found := fault(baseline, "absolute"):
+                raise ValueError(f"baseline_C: {found[1]}")
+            object.__setattr__(self, "baseline_C", baseline)
+
+
+@dataclass(frozen=True, slots=True)
+class Metadata:
+    """What travels with an icon or a set: intent, author or source, DOI, licence, tags; ValueError for an empty text.
+
+    >>> Metadata(means="turn left", tags=("alert",)).means
+    'turn left'
+    """
+
+    means: str | None = None
+    by: str | None = None
+    doi: str | None = None
+    licence: str | None = None
+    tags: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if isinstance(self.tags, str):
+            raise ValueError(f"tags must be a tuple of texts, not the text {self.tags!r}")
+        object.__setattr__(self, "tags", tuple(self.tags))
+        for key in ("means", "by", "doi", "licence"):
+            value = getattr(self, key)
+            if value is not None and (wrong := text_fault(value)):
+                raise ValueError(f"{key}: {wrong}")
+        for tag in self.tags:
+            if (wrong := text_fault(tag)) or "," in tag or tag != tag.strip():
+                raise ValueError(f"tags: {wrong or f'{tag!r} has a comma or blanks around it'}")

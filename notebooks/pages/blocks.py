@@ -1,0 +1,210 @@
+"""Pages as blocks of text, tables and figures, rendered as Markdown and, by Jinja2, as one self-contained HTML file.
+
+Nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
+"""
+
+from __future__ import annotations
+
+import base64
+import unicodedata
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING, Any, ClassVar
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+TEMPLATES = "templates"
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading of level 1 to 3."""
+
+    type: ClassVar[str] = "heading"
+    text: str
+    level: int = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A paragraph; ``kind`` is ``lead``, ``note``, ``warn`` or empty."""
+
+    type: ClassVar[str] = "text"
+    text: str
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """Text in a fixed-width font, with its line breaks."""
+
+    type: ClassVar[str] = "code"
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Bullets:
+    """A list of points; an empty one leaves no trace in HTML."""
+
+    type: ClassVar[str] = "bullets"
+    points: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A cell of a table; ``kind`` is ``holds``, ``misses``, ``shown``, ``strong`` or empty."""
+
+    text: str
+    kind: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A table; every row has one cell per column, and the columns in ``numbers`` are flush right."""
+
+    type: ClassVar[str] = "grid"
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    numbers: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """Pairs of a name and its value, one per line."""
+
+    type: ClassVar[str] = "facts"
+    rows: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Cards:
+    """Large numbers side by side, each with its meaning below."""
+
+    type: ClassVar[str] = "cards"
+    cards: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure: the name of its PNG file without folder and ending, or the ``data`` itself.
+
+    ``alt`` is the text for screen readers (default: the caption), ``media`` the image type, ``width`` in CSS pixels.
+    """
+
+    type: ClassVar[str] = "picture"
+    name: str
+    caption: str
+    alt: str = ""
+    media: str = "png"
+    width: int | None = None
+    data: bytes = b""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Blocks side by side where the page is wide enough; HTML only."""
+
+    type: ClassVar[str] = "row"
+    blocks: tuple[Code | Picture, ...]
+
+
+Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture | Row
+MarkdownBlock = Heading | Text | Bullets | Grid | Picture
+MARK = {"holds": "✓ ", "misses": "✗ "}
+
+
+def grid(columns: Sequence[str], rows: Sequence[Sequence[str | Cell]], numbers: Sequence[str] = ()) -> Grid:
+    """Make a table from texts and cells.
+
+    >>> grid(("a", "b"), [("1", Cell("2", "strong"))]).rows
+    ((Cell(text='1', kind=''), Cell(text='2', kind='strong')),)
+    """
+    cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
+    return Grid(tuple(columns), cells, tuple(numbers))
+
+
+def visible(text: str) -> str:
+    """Remove invisible characters from a text, such as those that reverse the direction of what follows.
+
+    >>> visible("a\u202eb")
+    'ab'
+    """
+    return "".join(char for char in text if char == "\n" or unicodedata.category(char) not in ("Cf", "Cc"))
+
+
+@cache
+def environment() -> Environment:
+    """The Jinja2 environment of all templates: every value is escaped and stripped of invisible characters."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from markupsafe import Markup
+
+    def printed(value: Any) -> Any:
+        return visible(value) if isinstance(value, str) and not isinstance(value, Markup) else value
+
+    folder = resources.files("thermicon.notebooks") / TEMPLATES
+    return Environment(
+        loader=FileSystemLoader(str(folder)),
+        autoescape=True,
+        finalize=printed,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def as_html(blocks: Sequence[Block], title: str, pictures: Mapping[str, bytes] | None = None) -> str:
+    """Render the page as one HTML file; ``pictures`` are PNG files by name.
+
+    >>> "<p>5 &lt; 6</p>" in as_html([Text("5 < 6")], "A page")
+    True
+    """
+
+    def address(picture: Picture) -> str:
+        data = picture.data or (pictures or {})[picture.name]
+        return f"data:image/{picture.media};base64,{base64.b64encode(data).decode('ascii')}"
+
+    return environment().get_template("page.html.j2").render(title=title, blocks=blocks, address=address) + "\n"
+
+
+def as_markdown(blocks: Sequence[MarkdownBlock], folder: str = "figures") -> str:
+    """Render the page as Markdown, with figures as PNG files of a folder next to it.
+
+    >>> print(as_markdown([Heading("A page", 1), Text("5 < 6 * 2")]), end="")
+    # A page
+    <BLANKLINE>
+    5 < 6 \\* 2
+    """
+    return "\n\n".join(_markdown(block, folder) for block in blocks) + "\n"
+
+
+def _markdown(block: MarkdownBlock, folder: str) -> str:
+    if isinstance(block, Heading):
+        return f"{'#' * block.level} {_escaped(block.text)}"
+    if isinstance(block, Text):
+        return _escaped(block.text)
+    if isinstance(block, Bullets):
+        return "\n".join(f"- {_escaped(point)}" for point in block.points)
+    if isinstance(block, Picture):
+        return f"![{_escaped(block.caption)}]({folder}/{block.name}.png)\n\n*{_escaped(block.caption)}*"
+    rows = [[_escaped(column) for column in block.columns], ["---"] * len(block.columns)]
+    rows += [[MARK.get(cell.kind, "") + _escaped(cell.text) for cell in row] for row in block.rows]
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+
+def _escaped(text: str) -> str:
+    for letter in "\\*_|`":
+        text = text.replace(letter, f"\\{letter}")
+    return text
+
+
+def fragment(name: str, *values: object) -> str:
+    """Render a macro of the workbench's template: a small piece of HTML, with every value escaped.
+
+    >>> fragment("notes", ["5 < 6"])
+    '<div class="th-note">5 &lt; 6</div>'
+    """
+    macro = getattr(environment().get_template("workbench.html.j2").module, name)
+    return str(macro(*values)).strip()

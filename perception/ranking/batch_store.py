@@ -1,0 +1,79 @@
+"""Finished batches on disk, one .npz file each, so that an interrupted run continues where it stopped.
+
+A file is complete or absent. Zip checksums and the key of the job guard its content: a file that is damaged, or belongs
+to another job, counts as absent.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+
+
+class BatchStoreError(ValueError):
+    """Finished batches cannot be kept where they should be; the text states why."""
+
+
+@dataclass(frozen=True, slots=True)
+class BatchStore:
+    """The folder that holds the finished batches of one job, named by the key of the job."""
+
+    folder: Path
+    key: str
+
+    @classmethod
+    def of(cls, key: str, keep: Path) -> BatchStore:
+        """The store of a job inside a folder; both folders are made. Raises `BatchStoreError` where that fails."""
+        folder = keep / key[:32]
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
+        return cls(folder, key)
+
+    def path(self, number: int) -> Path:
+        """File of a batch."""
+        return self.folder / f"{number:06d}.npz"
+
+    def put(self, number: int, arrays: Mapping[str, Array]) -> None:
+        """Write a batch under a temporary name and rename it, so that an incomplete file is never read."""
+        goal = self.path(number)
+        draft = goal.with_name(f".{goal.stem}.{os.getpid()}.{threading.get_ident()}.part")
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with draft.open("wb") as file:
+                np.savez(file, allow_pickle=False, key=np.array(self._label(number)), **arrays)
+            draft.replace(goal)
+        except OSError as error:
+            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error.strerror or error}") from error
+        finally:
+            draft.unlink(missing_ok=True)
+
+    def get(self, number: int) -> dict[str, Array] | None:
+        """The arrays of a finished batch; None where there is no file, or none that can be trusted."""
+        if not self.path(number).exists():
+            return None
+        try:
+            with np.load(self.path(number), allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            return arrays if str(arrays.pop("key")) == self._label(number) else None
+        except Exception:
+            # Whatever is wrong with the file, computing the batch again is the remedy.
+            return None
+
+    def clear(self) -> None:
+        """Remove the files of this job, and the folder when nothing else is in it."""
+        for file in [*self.folder.glob("*.npz"), *self.folder.glob(".*.part")]:
+            file.unlink(missing_ok=True)
+        if not any(self.folder.iterdir()):
+            self.folder.rmdir()
+
+    def _label(self, number: int) -> str:
+        return f"{self.key} {number}"

@@ -1,0 +1,322 @@
+"""A ranking computed in batches of people, each of which gives the same numbers wherever and whenever it is computed.
+
+A batch has all icons, since they are compared within a person, and as many people as fit into a bounded memory. That
+depends only on the icons and their length, not on the number of workers.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.program import DRIVES
+from thermicon.circuit.program import code_digest as digest_of
+
+from ..arrays import Array
+from ..identification.confusion import SAMPLES, normalised, sampling_error
+from ..identification.intervals import EVERY, PEOPLE
+from ..identification.measures import experiments_bits, information_bits
+from ..identification.population import ReceptorTemperatures, identify, respond
+from ..identification.task import USUAL, Task
+from ..kernels.parallel import in_order
+from ..observer.observer import NORMS, Norm, Observer
+from ..observer.people import People, draw_people
+from .batch_store import BatchStore
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+
+RATE_HZ = 100.0
+SAMPLES_AT_ONCE = 1_200_000
+"""Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
+OTHER_SAMPLES = 512
+EXPERIMENTS = 20
+PROBES = ("cold_receptor_C", "warm_receptor_C")
+
+
+@dataclass(frozen=True, slots=True)
+class BatchResult:
+    """Responses of the people of a batch, one row per person; p people, m icons, q = m(m − 1)/2 pairs.
+
+    `detected` (p, m) and `confusion` (p, m, m) are probabilities, `d_prime` (p, q) from memory, `correct` (p, m) 0–1,
+    `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct` (p, norms, m) by
+    the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
+    """
+
+    detected: Array
+    d_prime: Array
+    confusion: Array
+    correct: Array
+    bits: Array
+    plugin: Array
+    stress: Array
+    other_correct: Array
+    cold_C: Array
+    warm_C: Array
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            values = np.asarray(getattr(self, field.name), dtype=np.float64)
+            if not np.isfinite(values).all():
+                raise ValueError(f"{field.name} of a batch must be finite")
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, by a norm."""
+
+    icons: tuple[Icon, ...]
+    rig: Rig
+    end_s: float
+    people: int
+    seed: int
+    trials: int
+    tracking: str | None
+    norm: Norm
+    task: Task = USUAL
+
+    @property
+    def at_once(self) -> int:
+        """Number of people in a batch."""
+        rows = int(self.end_s * RATE_HZ) + 2
+        return max(1, SAMPLES_AT_ONCE // (rows * len(self.icons)))
+
+    @property
+    def batches(self) -> int:
+        """Number of batches."""
+        return -(-self.people // self.at_once)
+
+    def span(self, number: int) -> tuple[int, int]:
+        """First person of a batch, and the one after its last."""
+        return number * self.at_once, min(self.people, (number + 1) * self.at_once)
+
+    @property
+    def other_norms(self) -> tuple[Norm, ...]:
+        """The norms that are compared with the chosen one."""
+        return tuple(n for n in NORMS if n != self.norm)
+
+    @property
+    def key(self) -> str:
+        """Hash of everything that the numbers of a batch depend on, including the code and data of this version."""
+        parts = [
+            code_digest(),
+            self.rig.document,
+            *self.rig.changes,
+            repr(self.end_s),
+            str(self.people),
+            str(self.seed),
+        ]
+        parts += [str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
+        for icon in self.icons:
+            corners = icon.corners(None if icon.context.control != "current" else 0.0)
+            parts += [icon.name, repr(icon.context), repr(corners.time_s), repr(corners.value), str(icon)]
+        return hashlib.sha256("\0".join(parts).encode("utf-8")).hexdigest()
+
+
+def run(job: Job, number: int) -> BatchResult:
+    """Compute one batch."""
+    from thermicon.circuit import simulate_many
+
+    start, stop = job.span(number)
+    crowd = _crowd(job.people, job.seed).part(start, stop)
+    batch = simulate_many(
+        job.icons,
+        crowd.rigs(job.rig),
+        nominal=job.rig,
+        end_s=job.end_s,
+        rate_Hz=RATE_HZ,
+        tracking=job.tracking,
+        probes=PROBES,
+    )
+    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
+    observer = Observer.load()
+    felt = respond(played, crowd, observer)
+    d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
+    others = [
+        np.diagonal(
+            identify(felt, n, crowd, observer, job.seed, OTHER_SAMPLES, start, job.task)[1].probability,
+            axis1=1,
+            axis2=2,
+        )
+        for n in job.other_norms
+    ]
+    named = confusion.probability
+    first, second = np.triu_indices(len(job.icons), 1)
+    first_people = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
+    return BatchResult(
+        detected=np.asarray(felt.probability),
+        d_prime=d_prime[:, first, second],
+        confusion=named,
+        correct=np.diagonal(named, axis1=1, axis2=2).copy(),
+        bits=information_bits(named),
+        plugin=experiments_bits(named, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1),
+        stress=confusion.stress,
+        other_correct=np.stack(others, axis=1),
+        cold_C=first_people.cold_C,
+        warm_C=first_people.warm_C,
+    )
+
+
+def locally(job: Job, numbers: list[int], workers: int | None = None) -> Iterator[tuple[int, BatchResult]]:
+    """Compute batches in threads of this process, by default one per core, and yield them in order.
+
+    At most two batches per worker are in memory.
+    """
+    from thermicon.circuit.solver.cores import cores
+
+    each = in_order(lambda number: run(job, number), numbers, workers or cores())
+    yield from zip(numbers, each, strict=True)
+
+
+def time_s(job: Job, every: int) -> Array:
+    """Clock of every k-th instant of the job."""
+    from thermicon.circuit.solver.simulate import rows_until
+
+    clock: Array = rows_until(job.end_s, RATE_HZ)[::every]
+    return clock
+
+
+@dataclass(frozen=True, slots=True)
+class Execution:
+    """Where batches are computed and kept: threads of this process (None: one per core) or a cluster; a folder to keep.
+
+    Raises `ValueError` for fewer than one worker.
+    """
+
+    workers: int | None = None
+    cluster: str | None = None
+    keep: Path | None = None
+
+    def __post_init__(self) -> None:
+        if self.workers is not None and self.workers < 1:
+            raise ValueError(f"at least one worker is needed, not {self.workers}")
+
+
+@dataclass(frozen=True, slots=True)
+class PooledResult:
+    """Responses of all people to m icons.
+
+    `detected` (m,) means; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m); `each_correct` (people, m);
+    `bits`, `plugin`, `stress` (people,); `by_norm` (m,) proportion correct of each icon by the other norms.
+    `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and of one person.
+    """
+
+    detected: Array
+    pairs: Array
+    pooled: Array
+    each_correct: Array
+    bits: Array
+    plugin: Array
+    stress: Array
+    by_norm: dict[Norm, Array]
+    standard_error: float
+    person_standard_error: float
+    thin: ReceptorTemperatures
+
+    @property
+    def correct(self) -> Array:
+        """Proportion correct of every person, (people,)."""
+        found: Array = self.each_correct.mean(axis=1)
+        return found
+
+    @property
+    def middle(self) -> Array:
+        """Median d′ of every pair over people, (m, m)."""
+        found: Array = self._square(np.median(self.pairs, axis=0)[None])[0]
+        return found
+
+    @property
+    def d_prime(self) -> Array:
+        """d′ of every pair for every person, (people, m, m)."""
+        return self._square(self.pairs)
+
+    def _square(self, pairs: Array) -> Array:
+        icons = len(self.detected)
+        first, second = np.triu_indices(icons, 1)
+        matrix = np.zeros((len(pairs), icons, icons))
+        matrix[:, first, second] = pairs
+        matrix[:, second, first] = pairs
+        return matrix
+
+
+def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) -> PooledResult:
+    """Compute or read every batch; `step` is called after each. Place and order of work do not change the result."""
+    icons, people = len(job.icons), job.people
+    parts: dict[int, BatchResult] = {}
+    pooled: dict[int, Array] = {}
+    blur = 0.0
+    for number, found in _each_batch(job, execution):
+        pooled[number] = found.confusion.sum(axis=0)
+        blur = max(blur, sampling_error(found.confusion, SAMPLES))
+        parts[number] = _light(found)
+        step()
+    ordered = [parts[number] for number in range(job.batches)]
+
+    def joined(name: str) -> Array:
+        found: Array = np.concatenate([getattr(part, name) for part in ordered])
+        return found
+
+    total = np.zeros((icons, icons))
+    for number in range(job.batches):
+        total += pooled[number]
+    mean, other = normalised(total / people), joined("other_correct").mean(axis=0)
+    return PooledResult(
+        detected=joined("detected").mean(axis=0),
+        pairs=joined("d_prime"),
+        pooled=mean,
+        each_correct=joined("correct"),
+        bits=joined("bits"),
+        plugin=joined("plugin"),
+        stress=joined("stress"),
+        by_norm=dict(zip(job.other_norms, other, strict=True)),
+        standard_error=sampling_error(mean, SAMPLES * people) if icons > 2 else 0.0,
+        person_standard_error=blur if icons > 2 else 0.0,
+        thin=ReceptorTemperatures(
+            joined("cold_C"), joined("warm_C"), time_s(job, EVERY), job.rig.site, job.rig.contact.area_m2
+        ),
+    )
+
+
+def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResult]]:
+    store = None if execution.keep is None else BatchStore.of(job.key, execution.keep)
+    missing = []
+    for number in range(job.batches):
+        arrays = None if store is None else store.get(number)
+        if arrays is None:
+            missing.append(number)
+        else:
+            yield number, BatchResult(**arrays)
+    if not missing:
+        return
+    if execution.cluster is None:
+        results = locally(job, missing, execution.workers)
+    else:
+        from .cluster import on_cluster
+
+        results = on_cluster(job, missing, execution.cluster)
+    for number, result in results:
+        if store is not None:
+            store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})
+        yield number, result
+
+
+def _light(found: BatchResult) -> BatchResult:
+    """A batch without the confusions of every person, which are most of it and are needed only as their sum."""
+    return replace(found, confusion=np.empty((0, 0, 0)))
+
+
+@lru_cache(maxsize=2)
+def _crowd(people: int, seed: int) -> People:
+    return draw_people(people, seed)
+
+
+def code_digest() -> str:
+    """Hash of the version and of all code that computes a batch: batches of another version are not used."""
+    return digest_of((*DRIVES, "thermicon.perception"))

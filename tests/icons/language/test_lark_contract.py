@@ -1,0 +1,38 @@
+"""What recovery relies on in the private state of lark's parser; a new version that changes it fails here first."""
+
+from lark import Token
+
+from thermicon.icons.language.recover import grammar
+
+TEXT = "cue 1\nicon a { hold for 1 s }\n"
+
+
+def test_the_lexer_can_be_moved_to_an_offset() -> None:
+    parser = grammar().parse_interactive(TEXT)
+    parser.lexer_thread.state.line_ctr.char_pos = TEXT.index("icon")
+    token = next(parser.lexer_thread.lex(parser.parser_state))
+    assert (token.type, token.start_pos) == ("ICON", TEXT.index("icon"))
+
+
+def test_both_stacks_can_be_unwound_together() -> None:
+    parser = grammar().parse_interactive("")
+    state = parser.parser_state
+    depth = len(state.state_stack)
+    parser.feed_token(Token("CUE", "cue", 0, 1, 1, 1, 1, 3))
+    assert (len(state.state_stack), len(state.value_stack)) == (depth + 1, depth)
+    state.state_stack.pop()
+    state.value_stack.pop()
+    parser.feed_token(Token("BROKEN", "", 0, 1, 1, 1, 1, 0))
+    assert [token.type for token in parser.feed_eof().children] == ["BROKEN"]
+
+
+def test_the_table_gives_an_action_and_where_it_leads() -> None:
+    parser = grammar().parse_interactive("")
+    states = parser.parser_state.parse_conf.states
+    first = states[parser.parser_state.state_stack[-1]]
+    action, state = first["CUE"]
+    assert (action.name, type(state)) == ("Shift", int)
+    rules = {entry[1] for table in states.values() for entry in table.values() if entry[0].name == "Reduce"}
+    assert {"icon", "statement"} & {str(rule.origin.name).lstrip("_") for rule in rules}
+    assert all(isinstance(rule.expansion, list | tuple) for rule in rules)
+    assert {kind for kind in first if kind.isupper()} == parser.accepts()

@@ -1,0 +1,182 @@
+"""A family is sound exactly when each member, written as an icon, is; its summary covers them all."""
+
+from itertools import product
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from thermicon.icons import CueErrors, Family, Wave, parse
+from thermicon.icons.model.check import MOST_CORNERS, corner_count
+
+# Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
+VALUES = {
+    "absolute": ("°C", ["24", "26", "29", "30.5", "32", "33", "35", "38", "62"]),
+    "change": ("K", ["-9", "-3", "-2.5", "-1", "1", "1.5", "3", "6", "30", "0"]),
+    "rate": ("°C/s", ["0.5", "1", "1.5", "2", "3", "1e7", "0"]),
+    "time": ("s", ["0.3", "0.5", "1", "1.1", "1.5", "2", "2.2", "4", "2000", "1e-7"]),
+    "count": ("", ["1", "2", "3", "7", "2.5", "60000"]),
+    "amount": ("A", ["-1", "-0.5", "0.5", "1", "2", "15", "0"]),
+    "slope": ("A/s", ["0.5", "1", "2"]),
+}
+SKIN = [
+    "cool by {change} at {rate}",
+    "warm by {change} over {time}",
+    "warm to {absolute} at {rate}",
+    "cool to {absolute} over {time}",
+    "change by {change} at {rate}",
+    "change to {absolute} at {rate}",
+    "return at {rate}",
+    "return over {time}",
+    "step by {change}",
+    "step cool by {change}",
+    "step to {absolute}",
+    "pulse by {change} for {time}",
+    "pulse warm by {change} for {time}",
+    "sine by {change} every {time} for {time}",
+    "square by {change} every {time} for {time} cut",
+    "triangle by {change} every {time} for {time} starting cool cut",
+    "sawtooth by {change} every {time} for {time} cut",
+    "sine by {change} every {time} for {time} starting cool cut",
+]
+CURRENT = [
+    "to {amount} at {slope}",
+    "to {amount} over {time}",
+    "return at {slope}",
+    "step by {amount}",
+    "step to {amount}",
+    "pulse by {amount} for {time}",
+    "square by {amount} every {time} for {time} starting down cut",
+    "sine by {amount} every {time} for {time}",
+    "to 1 A at {rate}",
+]
+BOTH = ["hold for {time}", "rest for {time}", "play other", "return over {time}", "repeat {count} {{{body}}}"]
+ENDS = ["total {time}", "total at most {time}", "total at least {time}"]
+OTHER = {
+    "skin": "icon other { pulse by 2 K for 1 s; hold for 0.5 s; hold for 0.5 s; square by 1 K every 1 s for 2 s }",
+    "current": "icon other { pulse by 1 A for 1 s; hold for 0.5 s; hold for 0.5 s }",
+}
+
+
+class Chooser:
+    """Fills statements with numbers, or with the parameters of the family."""
+
+    def __init__(self, draw: Any) -> None:
+        self.draw = draw
+        self.over = {
+            f"p{letter}": (kind, draw(st.lists(st.sampled_from(VALUES[kind][1]), min_size=1, max_size=3, unique=True)))
+            for letter, kind in zip("abc", draw(st.permutations(list(VALUES)))[:3], strict=True)
+        }
+        self.used: set[str] = set()
+
+    def body(self, control: str, depth: int) -> str:
+        lines = []
+        for _ in range(self.draw(st.integers(1, 3))):
+            line = self.draw(st.sampled_from((SKIN if control == "skin" else CURRENT) + BOTH[: 5 if depth else 4]))
+            lines.append(self.filled(line, control, depth))
+        return "; ".join(lines)
+
+    def filled(self, line: str, control: str, depth: int) -> str:
+        for kind, (unit, numbers) in VALUES.items():
+            while f"{{{kind}}}" in line:
+                own = [name for name, (of, _) in self.over.items() if of == kind]
+                name = own[0] if own and self.draw(st.booleans()) else None
+                text = f"<{name}>" if name else f"{self.draw(st.sampled_from(numbers[:-1]))} {unit}"
+                self.used |= {name} if name else set()
+                line = line.replace(f"{{{kind}}}", text, 1)
+        if "{body}" in line:
+            line = line.replace("{{{body}}}", f"{{ {self.body(control, depth - 1)} }}")
+        return line
+
+
+@st.composite
+def families(draw: Any) -> tuple[str, list[str]]:
+    """The text of a file with a family, and a text for each of its members."""
+    control = draw(st.sampled_from(["skin", "skin", "current"]))
+    chooser = Chooser(draw)
+    body = chooser.body(control, 2)
+    if draw(st.integers(0, 3)) == 0:
+        body += "; " + chooser.filled(draw(st.sampled_from(ENDS)), control, 0)
+    names = [name for name in chooser.over if name in chooser.used]
+    if not names:
+        body, names, chooser.over["pa"] = body + "; hold for <pa>", ["pa"], ("time", ["1", "2"])
+    head = f"cue 1\nset {{ control {control} }}\n{OTHER[control]}\n"
+    over = [f"{name} in [{', '.join(chooser.over[name][1])}] {VALUES[chooser.over[name][0]][0]}" for name in names]
+    members = []
+    for values in product(*(chooser.over[name][1] for name in names)):
+        text = body
+        for name, value in zip(names, values, strict=True):
+            text = text.replace(f"<{name}>", f"{value} {VALUES[chooser.over[name][0]][0]}")
+        members.append(f"{head}icon x {{ {text} }}")
+    plain = body.replace("<", "").replace(">", "")
+    return f"{head}icon x({', '.join(over)}) {{ {plain} }}", members
+
+
+def outcome(text: str) -> Any:
+    try:
+        return parse(text).entries[-1]
+    except CueErrors as found:
+        return found
+
+
+@settings(max_examples=300)
+@given(families())
+def test_a_family_is_sound_exactly_when_its_members_are(made: tuple[str, list[str]]) -> None:
+    text, members = made
+    family, icons = outcome(text), [outcome(member) for member in members]
+    wrong = [str(found) for found in icons if isinstance(found, CueErrors)]
+    if wrong:
+        assert isinstance(family, CueErrors), (text, wrong[0])
+        assert {error.code for error in family.errors} & {
+            error.code for found in icons if isinstance(found, CueErrors) for error in found.errors
+        }, (text, str(family), wrong)
+        return
+    assert isinstance(family, Family), (text, str(family))
+    assert [icon.statements for icon in family] == [icon.statements for icon in icons]
+    found, corners = family.summary(), [icon.corners() for icon in icons]
+    # A corner of a sine that is cut may lie half a tolerance above it; its chords are a little less steep.
+    near, slope = (5.1e-4, 0.05) if "sine" in text else (1e-9, 1e-5)
+    lowest, highest = min(one.lowest for one in corners), max(one.highest for one in corners)
+    assert found.shortest_s == pytest.approx(min(one.duration_s for one in corners), rel=1e-12)
+    assert found.longest_s == pytest.approx(max(one.duration_s for one in corners), rel=1e-12)
+    assert found.lowest <= lowest + near
+    assert found.highest >= highest - near
+    if "step" not in text:  # a level between two steps in one moment is passed, but no corner
+        assert found.lowest >= lowest - near
+        assert found.highest <= highest + near
+    assert found.steepest_per_s == pytest.approx(max(one.steepest_per_s for one in corners), rel=slope, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("family", "message"),
+    [
+        ("x(a in [1, 2] s) { to 1 A over a }", 'E209 .*"to" alone moves a current'),
+        ("x(a in [1, 2] A/s) { cool by 1 K at 1 K/s; return at a }", "E210 .*a is no rate in °C/s; .* the skin"),
+        ("x(a in [1, 2] A/s) { cool by 1 K at a }", "E104 .*a is in A/s; a rate of temperature is needed"),
+        ("x(n in [9000, 11000]) { repeat n { play p } }", "E220 .*110,000 corners .with n=11000"),
+        ("x(a in 1..40 step 1 K) { warm by a at 1 K/s }", "E219 .*leads to 61 °C .with a=29, one of 12 such .* of 40"),
+        ("x(a in [0.1, 0.2] s) { sine by 1 K every 100 ms for a; rest for a; total 0.2 s }", "E222 .*0.4 s, not 0.2 s"),
+        ("x(a in 1..3 step 1 s) { sine by 1 K every 2 s for a }", "E225 .*1 s hold 0.5 periods .*one of 2 such"),
+        ("x(a in [26, 34] °C) { cool to a at 1 K/s }", "E201 .*34 °C is above .*with a=34"),
+        ("x(a in [1, 2] K) { step by a }", "E223 .*lasts 0 s .with a=1"),
+    ],
+)
+def test_what_is_wrong_with_a_member_is_told(family: str, message: str) -> None:
+    holds = "; ".join(["hold for 1 ms"] * 10)
+    with pytest.raises(CueErrors, match=f"(?s){message}"):
+        parse(f"cue 1\nicon p {{ {holds} }}\nicon {family}")
+
+
+def test_quotients_that_floats_miss_are_whole() -> None:
+    text = "cue 1; icon x(a in 0.1..9.9 step 0.1 s) { square by 3 K every 100 ms for a cut; rest for 1 s }"
+    assert len(parse(text).families[0]) == 99
+    assert len(parse(text.replace(" cut", "").replace("square", "sine"))) == 99
+
+
+def test_an_amplitude_counts_with_its_own_corners() -> None:
+    waves = [Wave("sine", by_K=n / 10, period_s=1, duration_s=2500) for n in range(1, 31)]
+    many = sum(corner_count([wave]) > MOST_CORNERS for wave in waves)
+    assert 0 < many < 29
+    with pytest.raises(CueErrors, match=f"E220 (?s:.)*one of {many} such members of 30"):
+        parse("cue 1; icon x(a in 0.1..3 step 0.1 K) { sine by a every 1 s for 2500 s }")
