@@ -1,8 +1,9 @@
-"""Compiled functions and where their machine code is kept: in a folder of this user alone, by what it was made from.
+"""Compiled functions, and the cache of their machine code: in a private folder, keyed by everything it was made from.
 
-numba's own cache lies beside the sources, knows nothing of a change in another file, and is a pickle: whoever can write
-it can run code as whoever reads it, and a damaged one ends every run. Here a file is named after everything that made
-it, begins with a hash of the rest, and is read only from a private folder. What cannot be read is compiled anew.
+numba's own cache lies beside the sources, does not notice a change in another file, and is a pickle: whoever can write
+it can run code as the user who reads it, and a damaged file ends every run. Here the name of a file is a hash of
+everything it was made from, the file begins with a hash of its content, and it is read only from a private folder. What
+cannot be read is compiled again.
 """
 
 # mypy: disable-error-code="no-untyped-call,misc,assignment,import-untyped"
@@ -34,7 +35,7 @@ from .userfolder import NotPrivate, cache_folder, private_folder, read_private, 
 
 HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0
-"""Machine code of versions that nobody has run for so long is removed."""
+"""Machine code that was not used for this long is removed."""
 
 Kernel = Callable[..., Any]
 
@@ -58,7 +59,7 @@ def kernel(**options: Any) -> Callable[[Kernel], Any]:
 
 
 class _KernelCache(FunctionCache):
-    """numba's cache of one function, with another store and without its way of looking for a place."""
+    """numba's cache of one function, with the store of this module in place of numba's own."""
 
     def __init__(self, function: Kernel, options: str) -> None:
         self._name, self._py_func, self._options = repr(function), function, options
@@ -68,24 +69,24 @@ class _KernelCache(FunctionCache):
         self.enable()
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return the compiled function for a signature, or None: whatever is wrong with it, to compile is the cure."""
+        """Return the compiled function for a signature; None for any fault, since compiling again is the cure."""
         try:
             return super().load_overload(sig, target_context)
         except Exception:
             return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Keep a compiled function; without a place for it, later runs compile it again."""
+        """Keep a compiled function; where that fails, later runs compile it again."""
         with suppress(Exception):
             super().save_overload(sig, data)
 
 
 class _Reduced:
-    """What `FunctionCache` needs to know: how a compiled function becomes plain data, and comes back."""
+    """What `FunctionCache` needs: how a compiled function becomes plain data and is rebuilt from it."""
 
     class _Nowhere:
         def ensure_cache_path(self) -> None:
-            """The store looks after its folder itself."""
+            """Nothing to do: the store creates its folder itself."""
 
     locator = _Nowhere()
 
@@ -108,7 +109,7 @@ class _Store:
         self.function, self.options = function, options
 
     def load(self, key: Any) -> Any:
-        """Return what was saved under a key; None where nothing was, or where it is not as it was written."""
+        """Return what was saved under a key; None where nothing was saved or the file is damaged."""
         if (folder := kept_in()) is None or (data := read_private(self._path(folder, key))) is None:
             return None
         if hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
@@ -123,7 +124,7 @@ class _Store:
         write_private(self._path(folder, key), hashlib.sha256(content).digest() + content)
 
     def flush(self) -> None:
-        """Nothing is held back."""
+        """Nothing to do: nothing is buffered."""
 
     def _path(self, folder: Path, key: Any) -> Path:
         made_of = (source_digest(self.function), self.function.__module__, self.options, repr(key))
@@ -133,7 +134,7 @@ class _Store:
 
 @cache
 def kept_in() -> Path | None:
-    """The folder of compiled code; None, and one line on stderr, where there is none that is safe to read from."""
+    """The folder of compiled code; None, with one line on stderr, where no folder is safe to read from."""
     tools = f"numba-{numba.__version__}-llvmlite-{llvmlite.__version__}-{sys.implementation.cache_tag}"
     try:
         folder = private_folder(cache_folder() / "compiled" / f"{tools}-{platform.machine()}")
@@ -155,7 +156,7 @@ def _forget_stale(folder: Path) -> None:
 
 
 def source_digest(function: Kernel) -> str:
-    """Hash of all that a function is compiled from: the files of it and of what it calls, and the constants it uses."""
+    """Hash of everything a function is compiled from: its file, those of what it calls, and the constants used."""
     files: dict[str, bytes] = {}
     constants: list[str] = []
     open_, seen = [function], {function}
@@ -190,7 +191,7 @@ def _file_digest(path: str) -> bytes | None:
 
 
 def _used(function: Any) -> Iterator[tuple[str, Any]]:
-    """Names that a function takes from its module or from around it, with their values."""
+    """Names that a function takes from its module or its closure, with their values."""
     for cell_name, cell in zip(function.__code__.co_freevars, function.__closure__ or (), strict=True):
         yield cell_name, cell.cell_contents
     for name in sorted(_names(function.__code__)):

@@ -26,14 +26,14 @@ TEXT_FAULT = "text"
 
 
 class InputError(Exception):
-    """Bad input, told in plain words: what, where, value, limit, unit, cure; its text is safe to show on a terminal."""
+    """Bad input, reported in plain words (what, where, value, limit, unit, cure); safe to show on a terminal."""
 
     def __init__(self, *texts: object) -> None:
         super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
 
 
 def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str | None:
-    """Return what keeps a text from being a name or title, or None: it is one line without control characters.
+    """Return why a text cannot be a name or title; None where it is one line without control characters.
 
     >>> line_fault("dac-16"), line_fault("\x1b[2J")
     (None, 'holds the control character U+001B; remove it')
@@ -46,12 +46,12 @@ def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str
 
 
 def one_line(text: str) -> str:
-    """Return a text that is one line without control characters; as a validator of a table's field it says why not."""
+    """Validate a text as one line without control characters, for a field of a pydantic table."""
     return _checked(text, line_fault(text))
 
 
 def paragraph(text: str) -> str:
-    """Return a text that may have several lines and tabs, but no other control characters."""
+    """Validate a text that may have several lines and tabs, but no other control characters."""
     return _checked(text, line_fault(text, 10 * LONGEST_LINE, "\n\t"))
 
 
@@ -74,9 +74,9 @@ def quoted(value: object) -> str:
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> str:
-    """Return the text of `path`, or raise `error` with a sentence that says what is wrong with the file.
+    """Return the text of `path`, or raise `error` with a sentence on what is wrong with the file.
 
-    `what` names the kind of file in the message ("rig file"); of files over `limit_MB` no more than that is read.
+    `what` names the kind of file in the message ("rig file"); no more than `limit_MB` of a file is read.
     """
     data = read_bytes(path, what, limit_MB, error)
     if not data.strip():
@@ -90,7 +90,7 @@ def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = 
 
 
 def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> bytes:
-    """Return what is in a regular file of at most `limit_MB`, or raise `error` with a sentence on what is there."""
+    """Return the content of a regular file of at most `limit_MB`, or raise `error` with a sentence on what it is."""
     try:
         return read_limited(path, int(limit_MB * 1e6))
     except NotRegular as found:
@@ -121,7 +121,7 @@ def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> No
 def read_toml(text: str, where: str, error: type[InputError] = InputError) -> dict[str, Any]:
     """Return a TOML text as a dictionary, or raise `error` that says which line is wrong.
 
-    Tables within tables beyond what Python's reader follows, and whole numbers beyond 64 bits (TOML's own range), are
+    Tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits (TOML's own range), are
     errors as well.
     """
     import tomllib
@@ -144,7 +144,7 @@ def read_toml(text: str, where: str, error: type[InputError] = InputError) -> di
 
 
 def _endless_key(text: str) -> int | None:
-    """Number of the line with a key of absurdly many parts, which takes tomllib as its square."""
+    """Number of the line with a key of absurdly many parts, for which tomllib's time grows as the square."""
     for number, line in enumerate(text.splitlines(), 1):
         key, equals, _ = line.partition("=")
         if (equals or key.lstrip().startswith("[")) and key.count(".") > MOST_KEYS_A_LINE:
@@ -153,7 +153,7 @@ def _endless_key(text: str) -> int | None:
 
 
 def _unreadable(document: dict[str, Any]) -> str | None:
-    """What no table of ours could hold: nested deeper than they are, or whole numbers beyond 64 bits."""
+    """What no table of ours can hold: deeper nesting, or whole numbers beyond 64 bits."""
     open_: list[tuple[str, Any, int]] = [(key, value, 1) for key, value in document.items()]
     while open_:
         key, value, depth = open_.pop()

@@ -1,4 +1,4 @@
-"""Which program computed something: its version, and a digest of the source and data files that decide the numbers."""
+"""Which program computed a result: its version, and a digest of the files that determine the numbers."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 
 DRIVES = ("thermicon.icons", "thermicon.circuit")
-"""Packages that decide the bytes of a drive and the verdict on it."""
+"""Packages that determine the bytes of a drive and the verdict on it."""
 
 SUFFIXES = (".py", ".toml", ".csv", ".lark")
 
@@ -30,7 +30,7 @@ def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
 
 
 def this_program() -> dict[str, str]:
-    """Return what a sidecar says of the program: version, and the digest of the code that computes drives.
+    """Return what a sidecar states about the program: its version, and the digest of the code that computes drives.
 
     >>> sorted(this_program())
     ['code_sha256', 'version']
@@ -47,7 +47,7 @@ def own_version() -> str:
 
 
 def _sources(folder: Traversable, within: str) -> Iterator[tuple[str, bytes]]:
-    """Name below a package and content of every file that decides what is computed, rooms and data included."""
+    """Name below a package and content of every file that determines the results, in all rooms and data folders."""
     for entry in sorted(folder.iterdir(), key=lambda one: one.name):
         name = f"{within}/{entry.name}"
         if entry.is_dir():

@@ -1,7 +1,7 @@
-"""Sourced numbers: a number that has no source does not load.
+"""Sourced numbers: a number without a source does not load.
 
 A table is a TOML file with one `[[record]]` block for each number. Every block states a
-quantity, a unit, a source and a value (or an interval), and the conditions it holds under.
+quantity, a unit, a source and a value (or an interval), and the conditions under which it holds.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The user's own cache folder, and whether it is private: what is read from it again must be written by nobody else."""
+"""The user's own cache folder, and whether it is private: nobody else may write what is read from it later."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ def cache_folder() -> Path:
 
 
 class NotPrivate(OSError):
-    """A folder cannot be made, or others could put something into it; the text says why and what helps."""
+    """A folder cannot be created, or others could write into it; the text says why and what to do."""
 
 
 def private_folder(path: Path) -> Path:
-    """Return a folder, made if missing, into which nobody but this user (and the system's administrator) can write.
+    """Return a folder, created if missing, into which only this user (and the system's administrator) can write.
 
-    Its owner, its mode and those of all folders above are looked at, as ssh does with its keys. On Windows, where the
-    user's own folders are private by their access lists, it is only made. Raises NotPrivate.
+    Its owner and mode and those of all folders above are checked, as ssh does with its keys. On Windows, where access
+    lists keep the user's own folders private, it is only created. Raises NotPrivate.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -67,7 +67,7 @@ def _fault(folder: Path, is_last: bool) -> str | None:
 
 
 def read_private(path: Path) -> bytes | None:
-    """Return what is in a file that only this user can have written; None where there is none, or another's."""
+    """Return the content of a file that only this user can have written; None where there is none, or others could."""
     try:
         if not stat.S_ISREG(path.lstat().st_mode):
             return None
@@ -82,7 +82,7 @@ def read_private(path: Path) -> bytes | None:
 
 
 def write_private(path: Path, data: bytes) -> None:
-    """Write a file that only this user can read and write; it is there whole or not at all."""
+    """Write a file that only this user can read and write; it appears complete or not at all."""
     draft = path.with_name(f".{path.name}.{os.getpid()}.part")
     flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     try:

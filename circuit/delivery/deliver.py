@@ -1,7 +1,7 @@
-"""What a device makes of a cue: quantised, held, limited, and simulated again.
+"""What a device delivers of a cue: quantised, held, limited, and simulated again.
 
-The file of a device that plays samples begins with the rest: for one update (`lead_s`) the current or duty that holds
-the baseline, which has been held for ever before. It ends with the rest again, in a row that marks the end.
+The file of a device that plays samples begins at rest: for one update (`lead_s`) it has the current or duty that holds
+the baseline, from the steady state. It ends at rest again, in a row that marks the end.
 """
 
 from __future__ import annotations
@@ -30,20 +30,37 @@ from .setpoints import Setpoints
 from .temperatures import deliver_temperatures, designed_until, follow_samples
 
 BRIDGE_ROUNDS = 3
-"""Rounds in which a bridge's duty and its hot plate are fitted to each other; each leaves under a tenth of the rest."""
+"""Iterations between a bridge's duty and its hot plate; each leaves under a tenth of the previous error."""
 
 
 __all__ = ["Narrowed", "DeliveredDrive", "designed_until", "followed", "deliver", "start_of", "traces_until"]
 
 
 def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> DeliveredDrive:
-    """Return what a device makes of a cue on a rig; the traces have `rate_Hz` rows a second.
+    """Return what a device delivers of a cue on a rig.
 
-    Raises RigError where the baseline cannot be held, DeviceError where the device cannot play the cue at all.
+    Parameters
+    ----------
+    icon, rig, device
+        The cue, the rig that it is designed for, and the device that plays it.
+    tail_s
+        Time in s that is played after the cue's last corner.
+    rate_Hz
+        Rows of the traces per second.
 
+    Raises
+    ------
+    RigError
+        Where the baseline cannot be held.
+    DeviceError
+        Where the device cannot play the cue at all.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
+
     """
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
@@ -56,33 +73,34 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     best = plan if narrow is rig else design(icon, narrow, end)
     possible = led(best, end, rate)
     model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    samples, told = _sampled(device, rig, possible, rate, model)
+    samples, warnings = _sampled(device, rig, possible, rate, model)
     narrowed = _narrowed(device, rig, narrow, plan, best)
     if narrowed is not None:
-        told = (narrowed.text, *told)
+        warnings = (narrowed.text, *warnings)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    found = DeliveredDrive(
+    delivery = DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
-        model, plan.outcome, told, None, narrowed,
+        model, plan.outcome, warnings, None, narrowed,
     )  # fmt: skip
-    return replace(found, trace=simulate_current(found.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(found)))
+    trace = simulate_current(delivery.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(delivery))
+    return replace(delivery, trace=trace)
 
 
 def _sampled(
     device: Device, rig: Rig, possible: Drive, rate_Hz: float, model: Trace
 ) -> tuple[Samples, tuple[str, ...]]:
-    """The codes of a drive; those of a bridge also make up for the heat that its hotter hot plate lets back."""
+    """The codes of a drive; those of a bridge also compensate the heat that leaks back from its hotter hot plate."""
     hotter = np.zeros_like(model.time_s)
-    samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    samples, warnings = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
     if device.driven_by != "duty" or device.duty_rule != "equal heat":
-        return samples, told
+        return samples, warnings
     for _ in range(BRIDGE_ROUNDS):
         drive = current_of(device, rig, samples)
         hot = simulate_current(drive, rig, start_C=_start_of(device, rig, samples))
         hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
-        samples, told = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
-    return samples, told
+        samples, warnings = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    return samples, warnings
 
 
 def start_of(delivery: DeliveredDrive) -> Array | None:
@@ -98,7 +116,7 @@ def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | 
 
 
 def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
-    """Return the traces (designed, delivered) until a time in s on the clock of the files, the rest held at the end."""
+    """Return the traces (designed, delivered) until a time in s on the clock of the files, ending at rest."""
     rig, played = delivery.rig, delivery.played
     if isinstance(played, Setpoints):
         designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s, rate_Hz)
@@ -111,7 +129,7 @@ def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0)
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
-    """A held drive that ends at a time in s: its last sample may end a little later than what it is compared with."""
+    """A held drive cut at a time in s: its last sample may end slightly later than what it is compared with."""
     if drive.time_s[-1] <= end_s + 1e-9:
         return drive
     kept = drive.time_s < end_s - 1e-9
@@ -119,7 +137,7 @@ def _cut(drive: Drive, end_s: float) -> Drive:
 
 
 def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
-    """What a device's range lacks for a design, and the cure; None where the range is wide enough."""
+    """How a device's range is too small for a design, with a cure; None where it is wide enough."""
     asked, held = plan.drive.current_A, narrow.driver
     if asked.min() >= held.current_min_A - 1e-9 and asked.max() <= held.current_max_A + 1e-9:
         return None
@@ -149,7 +167,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
 
 
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
-    """Return the current by which the display follows set-points from `lead_s` on; RigError where there is no rest."""
+    """Return the current by which the display follows set-points from `lead_s` on; RigError without a steady state."""
     rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
     bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = int(np.ceil(end_s / period - 1e-9))

@@ -18,9 +18,9 @@ from .setpoints import Setpoints
 
 @dataclass(frozen=True, slots=True)
 class Narrowed:
-    """A device whose range is smaller than a design asks for: in words, the most it plays in A, and what that misses.
+    """A device whose range is too small for a design: a sentence, the most it plays in A, and the resulting outcome.
 
-    `outcome` says whether the best design within the range reaches the target; None where the cue prescribes current.
+    `outcome` is that of the best design within the range; None where the cue prescribes current.
     """
 
     text: str
@@ -32,11 +32,11 @@ class Narrowed:
 class DeliveredDrive:
     """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
 
-    The device gets the best that its range allows: a design within that range. `played` is what goes into files,
-    `drives` the currents designed and delivered, None for a thermode, which has none; `trace` what the delivery does,
-    `designed_trace` the same without the device. `prompt_trace` is the delivery of a thermode without its lag: a
-    constant lag is a delay and not a loss. `outcome` says whether the design reaches its target,
-    `narrowed` where the range of the device is too small for it.
+    The device receives the best design within its range. `played` is what goes into files, `drives` the currents
+    designed and delivered (None for a thermode, which has none), `trace` the simulated delivery and `designed_trace`
+    the same without the device. `prompt_trace` is the delivery of a thermode without its lag: a constant lag is a delay
+    and not a loss. `outcome` is that of the design; `narrowed` is set where the range of the device is too small for
+    it.
     """
 
     icon: Icon
@@ -78,12 +78,12 @@ class DeliveredDrive:
 
     @property
     def deviation(self) -> DeliveryDeviation:
-        """How far the delivery lies from the design, a constant lag left out."""
+        """How far the delivery deviates from the design, without a constant lag."""
         return delivery_deviation(self.designed_trace, self.prompt_trace or self.trace)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is to be known of the delivery: warnings, and what it asks of the driver (which a bridge replaces)."""
+        """What to know about the delivery: limits of the device, and of the driver, which a bridge replaces."""
         return self.device_warnings if self.device.driven_by == "duty" else (*self.device_warnings, *self.trace.beyond)
 
     @property
@@ -93,5 +93,5 @@ class DeliveredDrive:
 
     @property
     def file_s(self) -> float:
-        """How long in s the file plays; one of set-points has no rest before it, which the simulation begins with."""
+        """Duration in s of the file; a file of set-points omits the rest with which the simulation begins."""
         return float(self.played.time_s[-1])

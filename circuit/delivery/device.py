@@ -1,4 +1,4 @@
-"""A device: the hardware that plays a drive, as sourced numbers, read from a device file."""
+"""A device: the hardware that plays a drive, as sourced numbers from a device file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..records import Record
 from .devicefile import DeviceError, DrivenBy, read_device_table, records_of
 
 FINEST_SETPOINT_K = 0.001
-"""Step of set-points where a controller states none: a tenth of what the best display thermistors resolve."""
+"""Step of set-points where a controller states none: a tenth of the resolution of the best display thermistors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +30,11 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """What plays a drive, and how; all numbers come from `records`, each with its source.
+    """The hardware that plays a drive; all numbers come from `records`, each with its source.
 
     `driven_by` is what it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, segments
-    of temperature set-points that a thermode follows by itself, or temperatures against time, which a controller
-    around the rig's own module follows. `played`: whether thermicon ever drove one.
+    of temperature set-points that a thermode follows on its own, or temperatures against time, which a controller
+    around the rig's own module follows. `played`: whether thermicon has driven one.
 
     >>> Device.load("dac-16")
     Device('dac-16', volts, never played)
@@ -75,7 +75,7 @@ class Device:
         return next((record for record in self.records if record.quantity == quantity), None)
 
     def interval(self, quantity: str) -> tuple[float, float]:
-        """Low and high end of a quantity that the device states; an end that is not given is infinite or 0."""
+        """Low and high end of a quantity of the device; a missing low end is 0, a missing high end infinite."""
         record = self.record(quantity)
         if record is None:
             return 0.0, math.inf
@@ -95,7 +95,7 @@ class Device:
     def scale(self, peak: float) -> Scale:
         """Return its codes for a waveform whose largest command has size `peak`, in the device's unit.
 
-        Fixed levels do not hang on the waveform; others are set to its peak, rounded up to a thousandth.
+        Fixed levels do not depend on the waveform; others are set to its peak, rounded up to a thousandth.
         """
         if self.driven_by == "temperatures":
             low, high = self.interval("set-point range")

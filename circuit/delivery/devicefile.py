@@ -1,4 +1,4 @@
-"""The device file at the door: which keys there are, which records belong to which kind of device, in which units."""
+"""The schema of a device file: its keys, the records of each kind of device, and their units."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..records import Record, RecordError
 
 
 class DeviceError(InputError):
-    """A device that cannot be, or that cannot do what is asked: what, where, value, limit, unit, cure."""
+    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure."""
 
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
@@ -44,7 +44,7 @@ UNITS = {
     "ramp rate": "K/s",
     "lag": "s",
 }
-"""Quantities a device may state, each with its unit; those whose unit hangs on what drives it are below."""
+"""Quantities a device may state, each with its unit; those whose unit depends on `driven_by` are below."""
 
 UNITS_BY_DRIVE: dict[str, dict[str, str]] = {
     "output range": {"volts": "V", "amperes": "A", "duty": "A"},
@@ -86,7 +86,7 @@ LIMITS: dict[str, tuple[float, float]] = {
     "ramp rate": (1e-3, 1e5),
     "lag": (0.0, 60.0),
 }
-"""What any number of a quantity may be, in its unit: wider than hardware, so that a slip is told and no file takes all
+"""Limits of each quantity, in its unit: wider than any hardware, so that slips are found and no file exhausts the
 memory."""
 
 

@@ -8,7 +8,7 @@ from itertools import groupby, pairwise
 from thermicon.icons import Corners
 
 STILL = 1e-9
-"""A slope below this, in K/s or A/s, is none."""
+"""A slope below this, in K/s or A/s, counts as level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Event:
 
 
 def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
-    """Return the events of a cue that begins at `lead_s`: starts and ends of every stretch that rises or falls.
+    """Return the events of a cue that begins at `lead_s`: start and end of every stretch that rises or falls.
 
     A stretch that ends at the level the cue began with is a return. Times are those that the cue prescribes.
 

@@ -18,7 +18,7 @@ from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
 
 EDGE_S = 1e-6
-"""Width of the flank that stands for a jump of a held current; less where rows are closer than four of these."""
+"""Width of the flank that replaces a jump of a held current; less where rows are closer than four of these."""
 
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
@@ -27,7 +27,7 @@ LEAST_PERFUSION_W_PER_K = 1e-12
 """Perfusion below this has no resistor: it would be larger than either program reads."""
 
 WRITTEN_BY_NGSPICE = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in RECORDED))
-"""What the control section has ngspice write beside the time: current, voltage at the module, and RECORDED."""
+"""What ngspice writes besides the time: current, voltage at the module, and the RECORDED quantities."""
 
 
 def netlist(
@@ -42,14 +42,28 @@ def netlist(
 ) -> str:
     """Return a netlist of a rig and a drive that LTspice and ngspice both read.
 
-    Its run starts from the steady state of `rest_A`, the current that has been held for ever (`Design.rest_A`); the
-    drive's first current follows 1 µs later. None: from the steady state of the drive's first current. With
-    `out_file`, a control section (ngspice only) has `ngspice -b` write WRITTEN_BY_NGSPICE there,
-    one row for each time in s.
+    Parameters
+    ----------
+    rig, drive
+        A rig with a module, and the current that it plays.
+    rest_A
+        Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
+        later. None: the drive's first current.
+    out_file
+        Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
+    rows_Hz
+        Rows per second of that file.
+    title
+        First line of the netlist.
+    reltol
+        Relative tolerance of the solver.
 
+    Examples
+    --------
     >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
+
     """
     net = network_of(rig)
     names, skin = _skin(rig, net)
@@ -72,7 +86,7 @@ def netlist(
 
 
 def _quoted(name: str) -> str:
-    """The name of a file as ngspice's control language takes it; InputError for one that it cannot take."""
+    """The name of a file as ngspice's control language accepts it; InputError where it cannot."""
     if not re.fullmatch(r"[\w./\\:+ -]+", name):
         raise InputError(
             f"{name!r}: ngspice cannot write to a file of this name; use letters, digits, blanks and . / : + - _"
@@ -86,7 +100,7 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     if rig.title:
         yield from _comment(rig.title)
     nodes = {
-        "command": f"what the driver is told, in V; it gives {driver.transconductance_A_per_V!r} A for each V",
+        "command": f"command to the driver, in V; it gives {driver.transconductance_A_per_V!r} A for each V",
         "plus": "+ terminal of the module (- is ground): V(plus) is the voltage that the driver must supply. Its "
         f"compliance is {driver.voltage_limit_V!r} V; nothing here limits it",
         "ohmic": "behind the ammeter Vsense: I(Vsense) is the drive current in A, positive where it cools the skin",
@@ -140,7 +154,7 @@ def _module(rig: Rig) -> Iterator[str]:
 
 
 def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
-    """The heat sink: ideal, or a body under its own PI control, whose power at rest is what balances `start_A`."""
+    """The heat sink: ideal, or a body under its own PI control, whose power at rest balances `start_A`."""
     sink, own = rig.heat_sink, rig.heat_sink.controller
     yield from _section("heat sink")
     yield f"Rsink sink hot {sink.resistance_K_per_W!r}"
@@ -228,7 +242,7 @@ def _section(what: str) -> Iterator[str]:
 
 
 def _comment(text: str) -> list[str]:
-    """Comment lines; only ASCII, since LTspice takes other letters for those of its own code page."""
+    """Comment lines; only ASCII, since LTspice reads other letters in its own code page."""
     indent = " " * (len(text) - len(text.lstrip()))
     for sign, plain in (("°", "deg"), ("µ", "u"), ("²", "2"), ("–", "-"), ("×", "x")):
         text = text.replace(sign, plain)

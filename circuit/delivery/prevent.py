@@ -1,4 +1,4 @@
-"""What the hardware must prevent while an icon plays, as players are told it: from the gate, the strictest of a set."""
+"""What the hardware must prevent while an icon plays, for players: the strictest demands of the gate over a set."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from typing import Any
 class MustPrevent:
     """The numbers of a player: s, °C, A and K. Cut-offs are on the measured display temperature.
 
-    The defaults stand where a gate says nothing, and are assumed: a display within the shipped soft limits; a watchdog
+    The defaults are assumed where a gate states nothing: a display within the shipped soft limits; a watchdog
     and a reaction in which a display of 10 K/s moves by 5 K and 1 K; a test current that moves a plate of a few J/K by
-    some tenths of a kelvin; and a minute of rest and of pause, as thermal studies keep it.
+    some tenths of a kelvin; and a minute of rest and of pause, as is usual in thermal studies.
     """
 
     watchdog_s: float = 0.5
@@ -29,7 +29,7 @@ class MustPrevent:
 
 
 def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:
-    """Return the strictest of what verdicts state under `hardware_must_prevent`; what none states is assumed.
+    """Return the strictest of the demands that verdicts state under `hardware_must_prevent`, or the defaults.
 
     >>> low = {"hardware_must_prevent": {"watchdog_s": 0.2, "cut_off_display_C": {"low": 20.0, "high": 41.0}}}
     >>> found = must_prevent([low, {"hardware_must_prevent": {"watchdog_s": 0.3}}])
@@ -60,7 +60,7 @@ LONGEST_REST_S = 1800.0
 
 
 def _rest_s(tables: Sequence[Mapping[str, Any]], otherwise: float) -> float:
-    """The longest rest; a stated null says that the gate found none up to 10 min."""
+    """The longest rest; a stated null means that 10 min of rest do not suffice."""
     key = "rest_before_first_play_s"
     stated = [table[key] for table in tables if key in table]
     return max((LONGEST_REST_S if value is None else float(value) for value in stated), default=otherwise)

@@ -1,6 +1,6 @@
-"""What a thermode makes of a cue: set-points at its own tick, the display that follows them, and the skin under it.
+"""What a thermode delivers of a cue: set-points at its own tick, the display that follows them, and the skin under it.
 
-Of a rig only skin, contact and air take part: its module, driver and heat sink are not those of the thermode.
+Only skin, contact and air of the rig are used: its module, driver and heat sink are not those of the thermode.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from .thermode import display_of
 def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
     """Return a cue as a thermode delivers it; its clock begins with the start command.
 
-    Raises DeviceError where the cue prescribes a current, or what the thermode cannot be told.
+    Raises DeviceError where the cue prescribes a current, or set-points that the thermode cannot take.
     """
     if icon.context.control == "current":
         raise DeviceError(
@@ -40,9 +40,9 @@ def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
     setpoints = closed(device, _setpoints(icon, rig, device, base, end))
     end = max(end, float(setpoints.time_s[-1]))
     step, prompt = display_of(setpoints, device, lagged=False, end_s=end)
-    asked = prompt[: round(setpoints.cue_s / step) + 1]  # the way back behind the cue is not prescribed
+    prescribed = prompt[: round(setpoints.cue_s / step) + 1]  # without the way back after the cue
     outcome = judge_display(
-        icon, modes_of(rig), base, step, asked, device.interval("set-point range"), device.most("ramp rate")
+        icon, modes_of(rig), base, step, prescribed, device.interval("set-point range"), device.most("ramp rate")
     )
     designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end, rate_Hz)
     rate = 1.0 / setpoints.tick_s
@@ -78,7 +78,7 @@ def traces_of_setpoints(
 def display_for(icon: Icon, rig: Rig, device: Device, base_C: float, end_s: float) -> tuple[Array, Array]:
     """Return times in s and the display in °C that takes the skin along a cue, within a device's range and ramp rate.
 
-    Neither its resolution nor its lag takes part.
+    Resolution and lag are left out.
     """
     modes, step = modes_of(rig), part_of(device.most("tick"))
     times: Array = np.arange(math.ceil(end_s / step - 1e-9) + 1, dtype=np.float64) * step

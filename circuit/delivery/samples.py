@@ -1,4 +1,4 @@
-"""Samples: a designed drive as the codes of a device at its update rate, and back to the current that flows."""
+"""Samples: a designed drive as the codes of a device at its update rate, and the current that then flows."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .device import Device, Scale
 from .devicefile import DeviceError
 
 DENSEST_HZ = 10_000.0
-"""From here on a drive has a row for each change and not for each sample; the sum is the same."""
+"""From this rate on, a drive has one row per change instead of one per sample; the charge is the same."""
 
 MOST_SAMPLES = 10_000_000
 """Samples, or switching cycles of a bridge, of one drive: with their traces they fill half a gigabyte."""
@@ -45,7 +45,7 @@ class Samples:
         return self.scale.offset + self.scale.step * self.codes.astype(np.float64)
 
     def rows(self) -> npt.NDArray[np.intp]:
-        """Places of the samples that get a row in a drive: all, or at a dense rate those that change and the last."""
+        """Indices of the samples that get a row in a drive: all, or at a dense rate those that change and the last."""
         if self.rate_Hz <= DENSEST_HZ:
             return np.arange(len(self.codes))
         kept = np.append(True, np.diff(self.codes) != 0)
@@ -53,16 +53,16 @@ class Samples:
         return np.flatnonzero(kept)
 
     def until(self, end_s: float) -> Samples:
-        """The same, with the last code held until a time in s."""
+        """A copy with the last code held until a time in s."""
         more = max(0, math.ceil(end_s * self.rate_Hz - 1e-9) + 1 - len(self.codes))
         return replace(self, codes=np.append(self.codes, np.repeat(self.codes[-1], more)))
 
 
 def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
-    """Return the rate in Hz nearest to the one asked for at which a device can play a drive of a length in s.
+    """Return the rate in Hz nearest to the requested one at which a device can play a drive of a length in s.
 
-    A slower device gets every k-th update, a faster one repeats each; a bridge a whole number of its cycles. One that
-    cannot hold so many samples gets fewer. Raises DeviceError where it then falls below its slowest rate.
+    A slower device plays every k-th update, a faster one repeats each, and a bridge plays whole cycles. A device with a
+    shorter buffer plays fewer samples. Raises DeviceError where it then falls below its slowest rate.
     """
     carrier = 0.0
     if device.driven_by == "duty":
@@ -101,7 +101,7 @@ def _check_count(device: Device, what: str, count: int) -> None:
 def sample(
     device: Device, rig: Rig, designed: Drive, rate_Hz: float, plates: tuple[Array, Array, Array]
 ) -> tuple[Samples, tuple[str, ...]]:
-    """Return the codes that stand for a designed drive, and sentences on what the device cannot give.
+    """Return the codes of a designed drive, and sentences on what the device cannot deliver.
 
     Each sample is the mean of the designed current over its period, so that no charge is lost, limited by the device's
     slew rate and range, rounded to the nearest code. `plates`, for a bridge: times in s, display temperature in °C of
@@ -114,27 +114,27 @@ def sample(
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
     wanted = _command(device, rig, current, edges, plates)
-    told = []
+    warnings = []
     limit = device.most("slew rate")
     limited = _slewed(wanted, limit / rate_Hz)
     if np.abs(limited - wanted).max() > 1e-12:
-        told.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s holds the command back")
+        warnings.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s holds the command back")
     scale = device.scale(float(np.abs(limited).max()))
     codes = np.rint((limited - scale.offset) / scale.step).astype(np.int64)
     clipped = np.clip(codes, scale.lowest, scale.highest)
     beyond = int(np.argmax(np.abs(codes - clipped)))
     if abs(codes[beyond] - clipped[beyond]) > 1:
         low, high = (signed(scale.offset + scale.step * code, ".4g") for code in (scale.lowest, scale.highest))
-        told.append(
+        warnings.append(
             f"{device.name}: {signed(limited[beyond], '.4g')} {device.unit} are needed at {edges[beyond]:.2f} s, it "
             f"gives {low} … {high}; "
             f"the command is clipped"
         )
-    return Samples(rate_Hz, clipped, scale), tuple(told)
+    return Samples(rate_Hz, clipped, scale), tuple(warnings)
 
 
 def within(device: Device, rig: Rig) -> Rig:
-    """Return the rig with its driver held to the currents in A that a device can ask for; itself where it is wider."""
+    """Return the rig with its driver limited to the currents in A of a device, unless the device has more."""
     low, high = device.interval("output range")
     gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
     low, high = max(low * gain, rig.driver.current_min_A), min(high * gain, rig.driver.current_max_A)
@@ -155,7 +155,7 @@ def current_of(device: Device, rig: Rig, samples: Samples) -> Drive:
 
 
 def led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
-    """The design behind one update of rest, with the rest again from its end on."""
+    """The design preceded by one update of rest and followed by rest."""
     lead, drive = 1.0 / rate_Hz, plan.drive
     if drive.held:
         kept = drive.time_s[:-1] < end_s - 1e-9

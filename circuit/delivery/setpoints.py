@@ -1,4 +1,4 @@
-"""Set-points: the display temperature of a design as straight segments, for a device that closes its own loop."""
+"""Set-points: the display temperature of a design as straight segments, for a device with its own control loop."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from .device import Device
 from .devicefile import DeviceError
 
 MOST_SEGMENTS = 1_000_000
-"""Segments that are made before they are counted against the device's own limit."""
+"""Segments computed at most, before the device's own limit is applied."""
 
 CLOSING_K_PER_S = 1.0
-"""How fast a display goes back to its baseline behind a cue: a tenth of the limit on the rate of skin, so that it is
-never what a cue is refused for."""
+"""Rate at which a display returns to its baseline after a cue: a tenth of the limit on the rate of skin, so that a cue
+is never refused for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Setpoints:
     """Segments after a baseline: how long each lasts in ticks, and the level at its end in steps of temperature.
 
-    One meaning of time: a segment ends when its ticks are over, warming or cooling alike. The last `closing` segments
-    are no part of the cue: they lead back to the baseline.
+    A segment ends when its ticks are over, for warming and cooling alike. The last `closing` segments are not part of
+    the cue: they lead back to the baseline.
     """
 
     tick_s: float
@@ -42,7 +42,7 @@ class Setpoints:
 
     @property
     def cue_s(self) -> float:
-        """Time in s at which the cue ends and the way back to the baseline begins."""
+        """Time in s at which the cue ends and the return to the baseline begins."""
         return float(self.time_s[len(self.segments) - self.closing])
 
     @property
@@ -56,9 +56,10 @@ class Setpoints:
 
 
 def closed(device: Device, setpoints: Setpoints) -> Setpoints:
-    """Return set-points that end at their baseline: a ramp back where they end away from it, itself where not.
+    """Return set-points that end at their baseline, with a ramp back added where needed.
 
-    The next play begins at the baseline, to which the device would jump. Raises DeviceError where segments are lacking.
+    The next play begins at the baseline, to which the device would otherwise jump. Raises DeviceError where the device
+    has too few segments.
 
     >>> closed(Device.load("qst-tcs2"), Setpoints(0.01, 0.1, 320, ((200, 300),))).segments
     ((200, 300), (200, 320))
@@ -82,8 +83,8 @@ def closed(device: Device, setpoints: Setpoints) -> Setpoints:
 def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> Setpoints:
     """Return the segments by which a device follows a line through corners: times in s, levels in °C.
 
-    A `curve` (many corners, not exact) is first drawn with as few as keep within half a step of temperature, or more
-    where these are too many. Raises DeviceError where baseline, level or number of segments is beyond the device.
+    A `curve` (many corners, not exact) is first simplified to within half a step of temperature, or more coarsely
+    where that needs too many. Raises DeviceError where baseline, level or number of segments is beyond the device.
     """
     step, tick = device.most("set-point step"), device.most("tick")
     _check("baseline", float(level_C[0]), device.interval("baseline range"), device)
@@ -136,7 +137,7 @@ def _check(what: str, level: float, limits: tuple[float, float], device: Device)
 
 
 def _thinned(time_s: Array, level_C: Array, tolerance: float) -> Sequence[int]:
-    """Corners that keep a line within a tolerance in K of all: Douglas & Peucker's way, without recursion."""
+    """Corners that keep a line within a tolerance in K of all points: Ramer–Douglas–Peucker without recursion."""
     kept, open_ = {0, len(time_s) - 1}, [(0, len(time_s) - 1)]
     while open_:
         first, last = open_.pop()

@@ -1,4 +1,4 @@
-"""What an open loop leaves open: how far display and step may be from the design where the module was not measured."""
+"""The uncertainty of an open loop: how far display and step may deviate where the module was not measured."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .delivered_drive import DeliveredDrive
 from .samples import Samples
 
 ROWS_HZ = 10.0
-"""Rows a second in which extremes are looked for; the steps inside are finer."""
+"""Rows per second in which extremes are searched; the steps of the simulation are finer."""
 
 ADVICE = "where a controller measures the display, play set-points: --device closed-loop-controller --to setpoint-csv"
 
@@ -38,14 +38,14 @@ class OpenLoopSpread:
         )
 
     def to_dict(self) -> dict[str, list[float]]:
-        """As a sidecar holds it."""
+        """In the form of a sidecar."""
         return {"baseline_C": list(self.baseline_C), "step_K": list(self.step_K)}
 
 
 def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
-    """Return what the corners of the rig's uncertainty do to a drive; None where a loop follows set-points.
+    """Return the spread of a drive over the corners of the rig's uncertainty; None where a loop follows set-points.
 
-    A corner without a steady state, or one that runs away, is left to the gate.
+    A corner without a steady state, or one that diverges, is left to the gate.
 
     >>> from thermicon.circuit.delivery.device import Device
     >>> from thermicon.circuit.delivery.deliver import deliver

@@ -1,8 +1,8 @@
-"""Temperatures against time, for a controller that closes its own loop around the rig's module.
+"""Temperatures against time, for a controller with its own loop around the rig's module.
 
-The set-points are the display temperature of the design, sampled by means so that the mean course is kept, and held
-until the next. What the display then does is the rig's own module following them, at the rig's update rate and within
-its driver's limits, by the rig's own PID loop where it has one.
+The set-points are the means of the designed display temperature over each period, held until the next. The display is
+that of the rig's own module following them, at the rig's update rate and within its driver's limits, by the rig's own
+PID loop where it has one.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
 
 
 def follow_samples(rig: Rig, samples: Samples) -> Drive:
-    """Return the current by which the rig's display follows held set-points; RigError where the first has no rest.
+    """Return the current by which the rig's display follows held set-points; RigError without a steady state.
 
     It ends with the set-points, in a row of the current that holds the rest.
     """
@@ -78,7 +78,7 @@ def designed_until(drive: Drive, end_s: float) -> Drive:
 
 
 def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Samples:
-    """The display of the design by means over each period, behind one period of rest and before the rest again."""
+    """Means of the designed display over each period, preceded by one period of rest and followed by rest."""
     times, levels = _course(icon, rig, end_s)
     low, high = device.interval("set-point range")
     for level in (float(levels.min()), float(levels.max())):

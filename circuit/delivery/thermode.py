@@ -1,6 +1,6 @@
-"""What a thermode shows: its own set-points, at its own tick, within its own ramp rate, behind its own lag.
+"""The display of a thermode: its set-points at its tick, limited by its ramp rate and delayed by its lag.
 
-Nothing of a rig takes part: a thermode measures its surface and corrects itself.
+The rig is not involved: a thermode measures its own surface and corrects it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def display_of(
     """Return a step in s and the display (rows,) in °C at every step from 0 to the end of set-points, or to `end_s`.
 
     The step is the tick or a whole fraction of it, and the set-points are linear from tick to tick; the last is held.
-    The ramp rate of the device holds back what is faster. `lagged` adds its lag (first order, from rest); without it
+    The device's ramp rate limits the display. `lagged` adds its lag (first order, from rest); without it
     the display is as fast as the device can make it, which is the worse case for the skin.
 
     >>> step, display = display_of(Setpoints(0.01, 0.1, 320, ((2, 300),)), Device.load("qst-tcs2"), lagged=False)

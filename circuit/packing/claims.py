@@ -23,7 +23,7 @@ class Claims:
 
 
 def claims_of(content: bytes) -> Claims | None:
-    """Return what a file claims as a sidecar; None where it is none.
+    """Return what a file claims as a sidecar; None where it is not a sidecar.
 
     >>> claims_of(b'{"thermicon": "0.1.0", "file": "a.csv", "drive_sha256": "77"}')
     Claims(drive='a.csv', digests={'a.csv': '77'})

@@ -46,7 +46,7 @@ def pack(
 ) -> dict[str, bytes]:
     """Return file names and their bytes: a sidecar and a drive for each cue, then what belongs to the set.
 
-    `felt` and `losses` are what perception says, by the names of cues; a cue with refusals is written as forced.
+    `felt` and `losses` are the reports of perception by the names of cues; a cue with refusals is marked as forced.
     Raises FormatError where two cues would get the same name, or one is unsafe.
     """
     check_names([one.delivery.icon.name for one in ready], form)
@@ -85,7 +85,7 @@ def pack(
 
 
 def _played(one: Prepared, file: str, form: Format) -> Played:
-    """A drive with what the gate says of it, for the player of a set."""
+    """A drive with its verdict, for the player of a set."""
     known = one.verdict.to_dict()
     recovery, shortest = (
         float(value) if isinstance(value := known.get(key), (int, float)) else None

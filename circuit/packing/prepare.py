@@ -38,14 +38,14 @@ class Verdict(Protocol):
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """What is amber, a sentence each."""
+        """One sentence for each soft limit exceeded."""
 
     @property
     def scenarios(self) -> int:
-        """In how many worlds and endings the cue was judged."""
+        """Number of corners and endings in which the cue was judged."""
 
     def to_dict(self) -> dict[str, object]:
-        """What the sidecar holds."""
+        """The content for the sidecar."""
 
     @property
     def demanded(self) -> dict[str, object]:
@@ -75,13 +75,13 @@ class Prepared:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is to be known of the delivery, then what is amber; not again what it is refused for."""
+        """What to know about the delivery, then what is amber; without what it is refused for."""
         narrowed = self.delivery.narrowed
-        told = self.delivery.warnings
+        notes = self.delivery.warnings
         if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
-            told = tuple(text for text in told if text != narrowed.text)
+            notes = tuple(text for text in notes if text != narrowed.text)
         refused = [refusal.text for refusal in self.refusals]
-        return (*(text for text in told if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
+        return (*(text for text in notes if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
 
 
 def prepare(
@@ -94,19 +94,36 @@ def prepare(
     tail_s: float = 0.0,
     pause_s: float | None = None,
 ) -> Prepared:
-    """Return a cue as the device delivers it, judged by the gate, by its target and by what is lost.
+    """Deliver a cue by a device, and judge its safety, its target and its losses.
 
-    The gate is that of the worst case, with `pause_s` between plays (None: the recovery time), unless another is given.
+    Parameters
+    ----------
+    icon, rig, device
+        The cue, the rig that it is designed for, and the device that plays it.
+    form
+        The file format, which must suit the device.
+    gate
+        The function that judges the delivery; None: `worst_case`.
+    tail_s
+        Time in s that is played after the last corner.
+    pause_s
+        Pause in s between plays; None: the recovery time.
 
-    Raises PauseError for a pause that cannot be, FormatError where the format is not for this device, DeviceError
-    where the device cannot play the cue, and RigError where the baseline cannot be held.
+    Raises
+    ------
+    PauseError, FormatError, DeviceError, RigError
+        For an impossible pause, a format that does not suit the device, a cue that the device cannot play, and a
+        baseline that cannot be held.
 
+    Examples
+    --------
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["warming-step"], Rig.load("thenar")
     >>> ready = prepare(icon, rig, Device.load("dac-16"), load_format("csv"))
     >>> ready.verdict.colour, ready.refusals
     ('green', ())
+
     """
     form.check(device)
     delivery = deliver(icon, rig, device, tail_s=tail_s)
@@ -123,9 +140,9 @@ def prepare_set(
     pause_s: float | None = None,
     step: Callable[[int, int], None] | None = None,
 ) -> tuple[Prepared, ...]:
-    """Return cues that may be played again and again in any order, as the device delivers them; as `prepare` does.
+    """As `prepare`, for cues that may be played repeatedly in any order.
 
-    Each counts in the worst sequence of all of them. `step` is called after each with how many are done.
+    Each is judged within the worst sequence of all of them. `step` is called after each with how many are done.
 
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
@@ -136,13 +153,13 @@ def prepare_set(
     """
     check_pause(pause_s)
     form.check(device)
-    delivery = []
+    deliveries = []
     for done, icon in enumerate(icons, 1):
-        delivery.append(deliver(icon, rig, device, tail_s=tail_s))
+        deliveries.append(deliver(icon, rig, device, tail_s=tail_s))
         if step is not None:
             step(done, len(icons))
-    verdicts = worst_cases(delivery, pause_s) if delivery else ()
-    return tuple(_judged(one, verdict) for one, verdict in zip(delivery, verdicts, strict=True))
+    verdicts = worst_cases(deliveries, pause_s) if deliveries else ()
+    return tuple(_judged(one, verdict) for one, verdict in zip(deliveries, verdicts, strict=True))
 
 
 def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:

@@ -1,4 +1,4 @@
-"""Drive files read back: how many values a file holds, how long it lasts and how far it goes, from its bytes alone."""
+"""Drive files read back: number of values, duration and extremes, from the bytes alone."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Figures:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """What a sidecar says of the same, and the scale of codes: command = offset + step · code."""
+    """What a sidecar states about the same, and the scale of codes: command = offset + step · code."""
 
     count: int
     duration_s: float
@@ -46,7 +46,7 @@ class Told:
 
     @staticmethod
     def of(about: Mapping[str, Any]) -> Told:
-        """Read a sidecar; raises KeyError, TypeError or ValueError where it does not say enough."""
+        """Read a sidecar; raises KeyError, TypeError or ValueError where information is missing."""
         played = about["played"]
         if "segments" in played:
             ends = float(played["least_level_C"]), float(played["greatest_level_C"])
@@ -79,7 +79,7 @@ def read_back(drive: bytes, about: Mapping[str, Any]) -> Figures | None:
 
 
 def differences(found: Figures, told: Told) -> list[str]:
-    """What a drive file and its sidecar disagree about, a phrase each.
+    """One phrase for each disagreement between a drive file and its sidecar.
 
     >>> told = Told(802, 8.01, -1.0, 2.0, 0.0, 0.001, -32768, 1, "V")
     >>> differences(Figures(802, 8.01, -1.0, 2.5), told)

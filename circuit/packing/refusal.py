@@ -1,4 +1,4 @@
-"""Why a cue is not exported: each cause once, the first cause first, with its cure."""
+"""Why a cue is not exported: each cause once, the root cause first, with its cure."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from ..delivery.delivered_drive import DeliveredDrive
     from .prepare import Verdict
 
-_SAID = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
+_HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
 
 STRONGEST = 20.0
 """How many times a driver's limits are raised, at most, to find the current that a cue needs."""
 FINELY_A = 0.05
-"""The needed current is told in steps of this size, rounded up: a limit that a person would type."""
+"""The needed current is reported in steps of this size, rounded up: a limit that a person would type."""
 FREE_V = 1000.0
-"""A compliance voltage that holds nothing back, in V: only the current is asked about."""
+"""A compliance voltage that holds nothing back, in V: only the current is sought."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,18 +39,18 @@ class Refusal:
 
     @property
     def forcible(self) -> bool:
-        """Whether a person may insist."""
+        """Whether the export may be forced."""
         return self.kind != "unsafe"
 
     def __str__(self) -> str:
-        return f"{_SAID[self.kind]}: {self.text}"
+        return f"{_HEADS[self.kind]}: {self.text}"
 
 
 def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
-    """Return the causes that speak against exporting a cue, what cannot be forced first.
+    """Return the causes against exporting a cue, those that cannot be forced first.
 
-    A consequence is not listed beside its cause: what a device with too small a range misses or loses is told with the
-    range, and nothing is said of losses where the drive is not safe anyway.
+    A consequence is not listed besides its cause: what a device with too small a range misses or loses is reported with
+    the range, and losses are not reported where the drive is unsafe.
     """
     found, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
@@ -108,10 +108,8 @@ def lost_text(deviation: DeliveryDeviation) -> str:
     if not lost:
         return ""
     first, *others = sorted(lost, key=lambda one: -one.rms_K)
-    beside = "".join(f" (the {one.place} by {one.rms_K:.3f} K)" for one in others)
-    return (
-        f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{beside}, over the stated {limit:g} K"
-    )
+    also = "".join(f" (the {one.place} by {one.rms_K:.3f} K)" for one in others)
+    return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
 
 
 def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:

@@ -1,4 +1,4 @@
-"""The sidecar of an exported drive: what it is, what made it, what it will do, what is known against it, as JSON."""
+"""The sidecar of an exported drive as JSON: what it is, what produced it, its predicted effect, and warnings."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ..solver.delivery_deviation import DeliveryDeviation, loss_table
 from .digests import digest, digest_of_content, plain
 
 NO_CLEARANCE = (
-    "Limits were held against a simulation. This is not a medical or ethical clearance. Hardware that touches people "
+    "A simulation was checked against limits. This is not a medical or ethical clearance. Hardware that touches people "
     "needs a temperature cut-off of its own that works without any software."
 )
 
@@ -39,17 +39,16 @@ def sidecar(
     set_files: Mapping[str, bytes],
     spread: OpenLoopSpread | None = None,
 ) -> dict[str, Any]:
-    """Return all there is to know of one exported drive; units are in the names.
+    """Return everything known about one exported drive; units are in the names.
 
-    `safety` and `felt` are what gate and perception say, `forced` why it would have been refused: empty for a drive
-    that was not, `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes of the files that
-    belong to it, named here by their digests. `spread` is what a module that was not measured may do
-    under an open loop.
+    `safety` and `felt` are the reports of gate and perception, `forced` the reasons why the drive would have been
+    refused (empty where it was not), `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes
+    of its files, recorded by their digests. `spread` is the effect of an unmeasured module under an open loop.
     """
     icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
-    text, told = str(icon), [*rig.warnings, *delivery.warnings]
+    text, warnings = str(icon), [*rig.warnings, *delivery.warnings]
     if not delivery.device.played:
-        told.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
+        warnings.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
     return {
         "thermicon": own_version(),
         "program": this_program(),
@@ -84,7 +83,7 @@ def sidecar(
         "stated_losses": [_record(record) for record in loss_table()],
         "safety": dict(safety),
         "hardware_must_prevent": dict(demanded),
-        "warnings": told,
+        "warnings": warnings,
         "forced": bool(forced),
         "forced_over": list(forced),
         "seed": None,
@@ -92,7 +91,7 @@ def sidecar(
 
 
 def sidecar_text(content: Mapping[str, Any]) -> bytes:
-    """Return a sidecar as JSON; what does not exist is null, never NaN.
+    """Return a sidecar as JSON; missing numbers are null, never NaN.
 
     >>> sidecar_text({"a": float("nan")})
     b'{\\n  "a": null\\n}\\n'

@@ -18,7 +18,7 @@ RESTORE = "put the file back as it was exported, or export the icon again"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What is to be said of a file: `wrong` where it does not belong to the others, else `told`; with the cure."""
+    """A finding about a file: `wrong` where it does not belong to the others, otherwise `told`; with the cure."""
 
     file: str
     kind: Literal["wrong", "told"]
@@ -60,7 +60,7 @@ class Verification:
 def verify(files: Mapping[str, bytes]) -> Verification:
     """Return what does and does not belong together among the files of a folder, by their names.
 
-    A program of another version or code is told and is not wrong, since its drives stay what they are.
+    Another version or code of the program is reported but is not wrong, since its drives stay valid.
 
     >>> verify({"a.csv": b"1"}).well
     False
@@ -144,7 +144,7 @@ def _parts(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
 
 
 def _other_shipped(rig: Mapping[str, Any], known: str) -> str:
-    """A word where the shipped rig of this name has changed since."""
+    """A note where the shipped rig of this name has changed since."""
     from ..rig.rig import Rig, rig_names
 
     name = rig.get("name")
@@ -197,7 +197,7 @@ def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator
             if table_of(files[name]) is None:
                 yield Finding(name, "wrong", "cannot be read as JSON, so it is a sidecar of nothing", RESTORE)
             else:
-                yield Finding(name, "told", "is no sidecar and is not looked into")
+                yield Finding(name, "told", "is not a sidecar and is not looked into")
         elif name.lower().endswith(ends):
             yield Finding(
                 name, "wrong", "has no sidecar, so nothing says what it is", "remove it, or export its icon again"

@@ -38,13 +38,13 @@ RIPPLES_BELOW_HZ = 100.0
 """A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
 
 SETTLED_LAGS = 12.0
-"""After so many lags a display has arrived within 1e-5 of its last step."""
+"""After this many lags a display is within 1e-5 of its last step."""
 
 
 def worst_case(delivery: DeliveredDrive, pause_s: float | None = None) -> Gate:
-    """Check what a device delivers against every rule of safety, once and again and again with a pause.
+    """Check what a device delivers against every rule of safety, for one play and for repeated plays with a pause.
 
-    See `gate`. Raises PauseError for a pause that cannot be.
+    See `gate`. Raises PauseError for an impossible pause.
 
     >>> from thermicon.circuit import Device, Rig, deliver
     >>> from thermicon.icons import load_library
@@ -58,7 +58,7 @@ def worst_case(delivery: DeliveredDrive, pause_s: float | None = None) -> Gate:
 
 
 def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = None) -> tuple[Gate, ...]:
-    """Check what one device delivers of several cues on one rig, which may be played again and again in any order."""
+    """Check what one device delivers of several cues on one rig, which may be played repeatedly in any order."""
     device, rig = deliveries[0].device, deliveries[0].rig
     if device.driven_by == "set-points":
         stuck = device.interval("set-point range")
@@ -129,7 +129,7 @@ def _controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> 
 
 
 def _held(delivery: DeliveredDrive) -> Shown:
-    """A display that is exactly where the controller is told to hold it, from one update to the next."""
+    """A display that is exactly at its set-points, from one update to the next."""
     samples = samples_of(delivery)
     return Shown(HELD, 1.0 / samples.rate_Hz, samples.command)
 

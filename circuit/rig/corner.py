@@ -1,4 +1,4 @@
-"""A rig a little beside its file: one corner of what is not known exactly, not bound by what a file may say."""
+"""A rig at one corner of its uncertainty, which may exceed the limits of a rig file."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ def perturbed(
     conductance_relative: float = 0.0,
     plates_relative: float = 0.0,
 ) -> Rig:
-    """Return a rig whose true numbers are a little beside those of its file.
+    """Return a rig whose numbers deviate from those of its file.
 
-    Nobody wrote these numbers, so the bounds of a rig file do not hold for them; what is physically impossible does not
-    pass. Blood and deep tissue are solved again where the rig solves them, since the bare skin's rest stays as given.
-    The module's parameters stay those of the heat sink as given, also where they depend on its temperature.
+    The bounds of a rig file do not apply to these numbers, but what is physically impossible is refused. Blood and deep
+    tissue are solved again where the rig solves them, since the resting temperature of bare skin stays as given. The
+    module's parameters stay those at the given heat sink temperature, even where they depend on it.
 
     Shares: `contact_resistance_relative` (−0.3 is 30 % less), `seebeck_relative` and `conductance_relative` of the
     module (its thermal resistance goes the other way), `plates_relative` of both plates' heat capacities. In K:

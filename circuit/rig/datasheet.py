@@ -17,11 +17,11 @@ Method = Literal["three", "four"]
 
 @dataclass(frozen=True, slots=True)
 class Extraction:
-    """The parameters of a module as its data sheet gives them, and what they do to the printed Qmax.
+    """The parameters of a module extracted from its data sheet, and how far they miss the printed Qmax.
 
-    `seebeck_V_per_K` α, `resistance_ohm` R, `thermal_resistance_K_per_W` Θ; `mean_C` the module temperature they stand
-    for. The residual is the heat that they absorb at Imax without a difference, less the printed Qmax: in W, and
-    relative to it; None where the sheet prints no Qmax.
+    `seebeck_V_per_K` α, `resistance_ohm` R, `thermal_resistance_K_per_W` Θ; `mean_C` the module temperature for
+    which they hold. The residual is the heat absorbed at Imax and ΔT = 0 less the printed Qmax: in W, and relative to
+    Qmax; None where the sheet prints no Qmax.
     """
 
     method: Method
@@ -54,8 +54,8 @@ class Extraction:
 class Datasheet:
     """The figures a maker prints for one hot-side temperature `t_hot_C`.
 
-    `i_max_A` and `v_max_V` at the greatest difference `dt_max_K`; `q_max_W` the heat absorbed at `i_max_A` without a
-    difference, None where it is not printed.
+    `i_max_A` and `v_max_V` belong to the greatest temperature difference `dt_max_K`; `q_max_W` is the heat absorbed at
+    `i_max_A` and ΔT = 0, None where it is not printed.
 
     >>> sheet = Datasheet(6.4, 14.4, 66, 25, q_max_W=50)
     >>> sheet.three_figures()
@@ -86,14 +86,14 @@ class Datasheet:
 
     @property
     def mean_C(self) -> float:
-        """Module temperature in °C that the figures stand for: the mean of Th and Tc, with Tc halfway to Th − ΔTmax.
+        """Module temperature in °C for which the figures hold: the mean of Th and Tc, with Tc halfway to Th − ΔTmax.
 
         The figures span differences from 0 (Qmax) to ΔTmax, so the cold side is taken at Th − ΔTmax/2.
         """
         return self.t_hot_C - self.dt_max_K / 4
 
     def three_figures(self, *, zero_C_in_K: float = ZERO_C_IN_K) -> Extraction:
-        """Parameters from Imax, Vmax and ΔTmax, which they reproduce; a printed Qmax they may miss.
+        """Parameters from Imax, Vmax and ΔTmax, which they reproduce; they may miss a printed Qmax.
 
         `zero_C_in_K` is 0 °C in kelvin, for reproducing tables that round it to 273 K.
         """
@@ -104,7 +104,7 @@ class Datasheet:
     def four_figures(self, *, zero_C_in_K: float = ZERO_C_IN_K) -> Extraction:
         """Parameters from Imax, Vmax, ΔTmax and Qmax: exact in Qmax, Vmax and no heat at ΔTmax and Imax.
 
-        They pay elsewhere: cooling is greatest a little below the printed Imax (8 % below on a TEC1-12706).
+        The cost: cooling is greatest slightly below the printed Imax (8 % below for a TEC1-12706).
         `zero_C_in_K` is 0 °C in kelvin, for reproducing tables that round it to 273 K.
         """
         q, i, v, span = self.q_max_W, self.i_max_A, self.v_max_V, self.dt_max_K
@@ -130,7 +130,7 @@ class Datasheet:
 def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
     """α V/K, R Ω and Θ K/W at a mean module temperature, linear between two extractions; one is taken as it is.
 
-    Outside the two the nearer one holds: parameters that no sheet supports are not made up. Callers say so.
+    Outside the two, the nearer one is used, since no sheet supports an extrapolation; callers report it.
 
     >>> cool, warm = Datasheet(6.4, 14.4, 66, 25).three_figures(), Datasheet(6.4, 16.4, 75, 50).three_figures()
     >>> [round(value, 4) for value in at_mean_C((cool, warm), (cool.mean_C + warm.mean_C) / 2)]

@@ -1,4 +1,4 @@
-"""Shipped modules by name, and the module of a rig however the rig gives it: parameters, data sheets or a name."""
+"""Shipped modules by name, and the module of a rig, given by parameters, data sheets or a name."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ COLUMNS = (
 PARAMETERS = {"seebeck_V_per_K": "V/K", "resistance_ohm": "Ω", "thermal_resistance_K_per_W": "K/W"}
 """The three parameters of a module in a rig file, with their units."""
 MOST_RESIDUAL = 0.10
-"""Three figures that miss the printed Qmax by more than this share are told of."""
+"""Share of the printed Qmax by which three figures may miss it without a warning."""
 LEAST_APART_K = 1.0
-"""Two sheets closer than this in mean module temperature say nothing about its influence."""
+"""Two sheets closer than this in mean module temperature cannot show its influence."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModuleOrigin:
-    """Where the parameters of a rig's module come from: one sentence, and what is unusual about them."""
+    """Where the parameters of a rig's module come from, in one sentence, and warnings about them."""
 
     sentence: str
     warnings: tuple[str, ...] = ()
@@ -58,7 +58,7 @@ def module_names() -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Build:
-    """What a shipped module is like beside its parameters: face cm², plate J/K a side (None: not on record), Imax A."""
+    """A shipped module besides its parameters: face cm², J/K of each plate (None: not on record), Imax A."""
 
     face_cm2: float | None
     plate_J_per_K: float | None
@@ -83,7 +83,7 @@ def build_of(name: str) -> Build:
 def unlike_before(
     name: str, area_cm2: float, limit_A: float, plates: tuple[float, float], stated: Collection[str]
 ) -> list[str]:
-    """Return what of a rig was chosen for another module and stays, a sentence each, where its module is replaced.
+    """Return one sentence for each value of a rig that still suits the module which was replaced.
 
     `area_cm2` in contact, `limit_A` of the driver, `plates` (hot, cold) in J/K; `stated` keys were set along with it.
     """
@@ -139,7 +139,7 @@ def _sheet(record: Record) -> Datasheet:
 
 
 def module_faults(table: ModuleTable) -> str:
-    """Return what is wrong with the way a rig file gives its module, a line each; empty where nothing is."""
+    """Return the faults in how a rig file gives its module, one per line; empty where there are none."""
     given = [key for key in PARAMETERS if getattr(table, key) is not None]
     ways = [*given[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
     sheets = table.datasheet
@@ -161,7 +161,7 @@ def module_faults(table: ModuleTable) -> str:
 
 
 def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
-    """Return the module of a rig file and where it comes from; ValueError where its figures cannot be.
+    """Return the module of a rig file and its origin; ValueError where its figures are impossible.
 
     `mean_C` is the mean module temperature, where two sheets are interpolated: that of heat sink and resting skin.
     `source` is what the rig's own `[source]` says of its module.
@@ -220,7 +220,7 @@ def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extractio
 
 
 def _figures(found: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
-    """In words: which figures, at which hot sides, and how far they miss the printed Qmax."""
+    """Which figures, at which hot sides, and how far they miss the printed Qmax, in words."""
     hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
     misses = [one for one in found if one.residual_relative is not None]
     if found[0].method == "four":
@@ -228,7 +228,7 @@ def _figures(found: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
     elif misses:
         missed = "Qmax missed by " + " and ".join(_miss(one) for one in misses)
     else:
-        missed = "no Qmax to hold them against"
+        missed = "no Qmax to check them against"
     return f"{found[0].method} figures with the hot side at {hot} °C, {missed}"
 
 

@@ -1,4 +1,4 @@
-"""The parts of a rig beside module and skin: heat sink, driver, or a thermode in their place; contact, air."""
+"""The parts of a rig besides module and skin: heat sink and driver, or a thermode in their place; contact and air."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SinkController:
-    """A heat sink that is a body under its own PI control: J/K, W/K, W/(K·s), and the most it heats or cools, W."""
+    """A heat sink with a heat capacity and its own PI control: J/K, W/K, W/(K·s), and its greatest power in W."""
 
     capacity_J_per_K: float
     kp_W_per_K: float
@@ -18,9 +18,9 @@ class SinkController:
 
 @dataclass(frozen=True, slots=True)
 class HeatSink:
-    """What the hot plate sits on: temperature °C, resistance from the hot plate K/W.
+    """The heat sink under the hot plate: temperature °C, thermal resistance to the hot plate K/W.
 
-    Ideal (it never changes), unless it has a capacity and a controller of its own.
+    Ideal (of constant temperature) unless it has a heat capacity and its own controller.
     """
 
     temperature_C: float
@@ -48,9 +48,9 @@ class Driver:
 
 @dataclass(frozen=True, slots=True)
 class Thermode:
-    """A display that measures itself and follows set-points: K/s, s (first order), K, °C, °C, Hz.
+    """A display that follows set-points by its own control: slew K/s, lag s (first order), step K, range °C, rate Hz.
 
-    `resolution_K` is the step of its set-points, 0 where they are as fine as any.
+    `resolution_K` is the step of its set-points, 0 where they are continuous.
     """
 
     slew_K_per_s: float
@@ -85,10 +85,10 @@ class Ambient:
 
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
-    """How far a rig may be from its file, to either side: shares, and K of ambient and heat sink.
+    """How far a rig may deviate from its file, in either direction: shares, and K for ambient and heat sink.
 
     `conductance_relative` is that of the module's legs, `plates_relative` of both plates' heat capacities. `reason`
-    says how it is known that one is smaller than what is shipped.
+    states how it is known that an uncertainty is smaller than the shipped one.
     """
 
     contact_resistance_relative: float
@@ -102,12 +102,12 @@ class Uncertainty:
 
 
 PLACES = ("display", "interface", "skin", "insulated skin")
-"""Where a probe may sit; what each means is told in `thermicon.circuit.solver.probes`."""
+"""Where a probe may be; `thermicon.circuit.solver.probes` defines each place."""
 
 
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A thermistor or a point to look at: depth in the skin m, lag s (first order).
+    """A thermistor or a point of interest: depth in the skin m, lag s (first order).
 
     The last three are for insulated skin: distance to the skin in contact m, width of the patch m, insulation m²·K/W.
     """

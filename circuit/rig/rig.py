@@ -37,12 +37,12 @@ LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
 
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
-"""Bare skin in still air loses 40 to 120 W/m²; a rig that rests above this is told so."""
+"""Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
 
 
 @dataclass(frozen=True, slots=True)
 class HeatPump:
-    """What makes a display warm and cool where a current is given: module, where its numbers are from, sink, driver."""
+    """What warms and cools a display by a current: module, the origin of its numbers, heat sink, driver."""
 
     module: Peltier
     origin: ModuleOrigin
@@ -176,7 +176,7 @@ class Rig:
 
     @property
     def update_Hz(self) -> float:
-        """How often a second a driver changes its current, or a thermode its set-point."""
+        """Updates per second of the driver's current, or of a thermode's set-point."""
         return self.driver.update_Hz if self.thermode is None else self.thermode.update_Hz
 
     @property
@@ -186,7 +186,7 @@ class Rig:
 
     @property
     def blood_C(self) -> float:
-        """Temperature of deep tissue and blood in °C, solved from the rest unless the rig fixes it."""
+        """Temperature of deep tissue and blood in °C, solved from the resting skin unless the rig fixes it."""
         return self.deep_C
 
     @property
@@ -196,7 +196,7 @@ class Rig:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is unusual about this rig, a sentence each."""
+        """Sentences on what is unusual about this rig."""
         found = []
         flux = -self.resting_flux_W_per_m2
         if flux > HIGH_RESTING_FLUX_W_PER_M2:
@@ -232,7 +232,7 @@ class Rig:
 
     @property
     def module_source(self) -> str:
-        """Where the module's parameters come from, and how far they miss a printed Qmax; one sentence."""
+        """One sentence on where the module's parameters come from, and how far they are from the printed Qmax."""
         return self.module_origin.sentence
 
     def receptor_depths(self) -> ReceptorDepths:
@@ -244,7 +244,7 @@ class Rig:
         return self.skin.receptor_depths()
 
     def about(self) -> str:
-        """What there is to know of this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
+        """What to know about this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
 
         >>> print(Rig.load("thenar").about().splitlines()[2])
           rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
@@ -279,7 +279,7 @@ class Rig:
         return replace(_build(document, f"rig {self.name}"), changes=tuple(said.values()))
 
     def with_set(self, settings: Iterable[str]) -> Rig:
-        """Return a new rig changed by texts of the form `key=value`, as given on the command line."""
+        """Return a new rig with changes given as `key=value` texts, as on the command line."""
         changes = read_settings(settings)
         return self.with_(**changes) if changes else self
 

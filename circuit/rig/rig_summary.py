@@ -1,4 +1,4 @@
-"""A rig in plain text: what there is to know of it before trusting what it computes."""
+"""A rig in plain text: what to know about it before trusting its results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rig file at the door: which keys there are, in which units, within which limits."""
+"""The schema of a rig file: its keys, their units and their limits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .uncertainty import uncertainty_faults
 
 
 class RigError(InputError):
-    """A rig that cannot be: every finding on a line of its own, with key, value, limit, unit and cure."""
+    """An impossible rig: one line per fault, with key, value, limit, unit and cure."""
 
 
 Celsius = Annotated[float, Field(ge=-20, le=120)]
@@ -34,7 +34,7 @@ Name = Annotated[str, Field(min_length=1), AfterValidator(one_line)]
 Text = Annotated[str, AfterValidator(one_line)]
 Paragraph = Annotated[str, AfterValidator(paragraph)]
 
-# Parts of the circuit may be idealised (no resistance, no end of capacity); beyond this, sums lose all their digits.
+# Parts may be idealised (almost no resistance, almost infinite capacity); beyond this, sums lose all their digits.
 Ideal = Annotated[float, Field(ge=1e-15, le=1e15)]
 # A current source that heats or cools skin gives some amperes and volts, never thousands.
 Amperes = Annotated[float, Field(ge=1e-6, le=1000)]
@@ -55,7 +55,7 @@ Film = Annotated[float, Field(ge=1e-3, le=1e6)]
 
 Positive = Annotated[float, Field(gt=0)]
 MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
-"""Layers of a skin model have a handful, rigs a few probes; every one costs time in each step."""
+"""Skin models have a handful of layers and rigs a few probes; each costs time in every step."""
 
 
 class _Table(BaseModel):
@@ -92,7 +92,7 @@ class ModuleTable(_Table):
 
 
 class HeatSinkTable(_Table):
-    """What the hot plate sits on."""
+    """The heat sink under the hot plate."""
 
     temperature_C: Celsius
     resistance_K_per_W: Ideal
@@ -129,7 +129,7 @@ class ControllerTable(_Table):
 
 
 class ThermodeTable(_Table):
-    """A thermode in the place of module, heat sink, driver and controller: it shows the set-points it is given."""
+    """A thermode in place of module, heat sink, driver and controller, which follows set-points."""
 
     slew_K_per_s: Positive
     lag_s: Lag = 0.0
@@ -178,7 +178,7 @@ class BloodTable(_Table):
 
 
 class ProbeTable(_Table):
-    """A point whose temperature is recorded; what an insulated probe leaves out is filled from records."""
+    """A point whose temperature is recorded; missing values of an insulated probe come from records."""
 
     name: Text
     place: Literal["display", "interface", "skin", "insulated skin"]
@@ -190,7 +190,7 @@ class ProbeTable(_Table):
 
 
 class UncertaintyTable(_Table):
-    """What safety and robustness vary; what is left out is filled from records, what is smaller needs a reason."""
+    """What safety and robustness vary; missing values come from records, smaller ones need a reason."""
 
     contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
     ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
@@ -215,7 +215,7 @@ class UncertaintyTable(_Table):
 
 
 class SafetyTable(_Table):
-    """Limits in the place of the shipped ones; looser ones only with a reason."""
+    """Limits in place of the shipped ones; looser ones need a reason."""
 
     skin_lowest_C: Celsius | None = None
     skin_highest_C: Celsius | None = None
@@ -293,7 +293,7 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
 
 
 def read_table(document: Mapping[str, Any], where: str) -> RigTable:
-    """Return the checked table of a rig document, or raise RigError with all its faults at once."""
+    """Return the validated table of a rig document, or raise RigError with all its faults at once."""
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
@@ -304,7 +304,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
 
 
 def rig_keys() -> tuple[str, ...]:
-    """All dotted keys of a rig file; those of a layer carry a 0 for its place."""
+    """All dotted keys of a rig file; those of a layer have 0 as its place."""
     return tuple(_keys(RigTable, ""))
 
 
@@ -336,7 +336,7 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
 
 
 def unknown_key(key: str) -> str:
-    """Return what to say of a key that no rig has."""
+    """Return the message for an unknown key."""
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
@@ -356,7 +356,7 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
         return unknown_key(plain).replace(plain + ":", key + ":", 1)
     if kind == TEXT_FAULT:
         return f"{said}: {context['fault']}"
-    if kind == "value_error":  # said by a table itself, in whole sentences
+    if kind == "value_error":  # a sentence from a table's own validator
         return str(context["error"])
     if kind == "missing":
         return f"{key} is missing; add it{f', in {unit}' if unit else ''}"

@@ -58,7 +58,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """All rules that a run is held against, and the reason for those that are loosened.
+    """All rules that a run is checked against, and the reason for those that are loosened.
 
     >>> Limits.shipped()
     Limits(22 rules, as shipped)
@@ -90,12 +90,12 @@ class Limits:
     @property
     def changed(self) -> tuple[str, ...]:
         """A few words for each limit that is not the shipped one, in the order of the rules."""
-        return _told(rule for rule in self.rules if rule.limit != rule.shipped) + self._session(True)
+        return _in_words(rule for rule in self.rules if rule.limit != rule.shipped) + self._session(True)
 
     @property
     def loosened(self) -> tuple[str, ...]:
-        """A few words for each limit that lets more pass than the shipped one."""
-        return _told(rule for rule in self.rules if rule.loosened) + self._session(False)
+        """A few words for each limit that is looser than the shipped one."""
+        return _in_words(rule for rule in self.rules if rule.loosened) + self._session(False)
 
     def _session(self, longer: bool) -> tuple[str, ...]:
         """The session in words where it is not the shipped one; without `longer` only where it is shorter."""
@@ -148,7 +148,7 @@ def safety_keys() -> tuple[str, ...]:
 
 
 def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
-    """Return what is wrong with changes of limits, a sentence each; keys are those of [safety]."""
+    """Return one sentence for each fault in changed limits; keys are those of [safety]."""
     if not changes:
         return []
     changes = dict(changes)
@@ -181,7 +181,7 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
 
 
 def beyond(rule: Rule) -> bool:
-    """Whether a rule's limit lets more pass than its bound; where none is published, than the shipped limit."""
+    """Whether a rule's limit is looser than its bound, or than the shipped limit where no bound is published."""
     bound = rule.shipped if rule.bound is None else rule.bound
     return rule.limit > bound if rule.upper else rule.limit < bound
 
@@ -197,7 +197,7 @@ def is_reason(text: str) -> bool:
 
 
 def session_fault(minutes: float, reason: str) -> str | None:
-    """What is wrong with the length of a session in min, in a sentence; a shorter one adds up fewer plays."""
+    """The fault in the length of a session in min; None where there is none. A shorter session sums fewer plays."""
     shipped = Limits.shipped().session_s / 60.0
     if not 1.0 <= minutes <= LONGEST_SESSION_MIN:
         return f"safety.{SESSION_KEY} = {minutes:g} min: must be 1 to {LONGEST_SESSION_MIN:g} min"
@@ -210,7 +210,7 @@ def session_fault(minutes: float, reason: str) -> str | None:
 
 
 def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
-    """Sentences for changed limits between which nothing is left."""
+    """Sentences for changed limits that leave no room between them."""
     rules, found = _changed(changes, reason).rules, []
     for low in rules:
         for high in rules:
@@ -236,7 +236,7 @@ def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
     ]
 
 
-def _told(rules: Iterable[Rule]) -> tuple[str, ...]:
+def _in_words(rules: Iterable[Rule]) -> tuple[str, ...]:
     said = {}
     for rule in rules:
         unit = f" {rule.unit}" if rule.unit != "1" else ""
@@ -266,7 +266,7 @@ def _symmetric(rule: Rule) -> bool:
 
 
 def _rules(record: Record) -> list[Rule]:
-    """Both sides of a record; what has but one figure for either direction gets it twice."""
+    """Both sides of a record; a single figure for either direction is used twice."""
     extra = dict(record.extra)
     ends = [(True, record.high, "high"), (False, record.low, "low")]
     if record.unit in ("K", "K/s") and record.high is not None:

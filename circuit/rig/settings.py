@@ -1,4 +1,4 @@
-"""Changing one number of a rig: dotted keys of the rig file, and texts of the form `key=value`."""
+"""Changes to a rig: dotted keys of the rig file, and texts of the form `key=value`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .modules import PARAMETERS, build_of, module_names
 from .rigfile import RigError, parse_toml, rig_keys, unknown_key
 
 _OPTIONAL = ("controller", "uncertainty", "safety")
-"""Tables that a rig need not have; the first key that is set makes one."""
+"""Tables that a rig need not have; setting a key creates one."""
 
 
 def read_settings(settings: Iterable[str]) -> dict[str, object]:
@@ -46,9 +46,9 @@ def flattened(changes: Mapping[str, object], prefix: str = "") -> dict[str, obje
 
 
 def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
-    """Set dotted keys in the document; a module that changes drops its source and the way it was given before.
+    """Set dotted keys in the document; a changed module loses its source and the way it was given before.
 
-    A module by name brings its plates, where they are on record.
+    A module given by name sets its plates too, where they are on record.
     """
     for key, value in changes.items():
         if key in ("module.datasheet", "module.name") and value is not None:
@@ -92,7 +92,7 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
 
 
 def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
-    """Refuse a key of a module on a thermode, and one of a thermode on a module, in words."""
+    """Refuse a key of a module on a thermode rig, and a key of a thermode on a rig with a module."""
     if "thermode" in document and part in ("module", "heat_sink", "driver", "controller"):
         name = str(document.get("name", ""))
         raise RigError(

@@ -15,7 +15,7 @@ STRATUM_CORNEUM = "stratum corneum"
 
 FIRST_CELL_M = 25e-6
 CELL_GROWTH = 0.10
-"""Cell size at the surface, and its growth per unit depth: short where the onset is steep, long where nothing moves.
+"""Cell size at the surface, and its growth per unit depth: fine where the onset is steep, coarse where little changes.
 
 Chosen with `meshstudy` over two cues, six drives and four skins, not fitted to one: within 5 mK of a converged mesh at
 receptor depth on a 6 °C, 3 °C/s cue, and within 20 mK on 20 s drives that swing the display by 30 to 50 °C.
@@ -71,11 +71,11 @@ class Layer:
 
 @dataclass(frozen=True, slots=True)
 class Skin:
-    """Layers, surface first, with the depths of the receptors and what fixes the deep temperature.
+    """Layers, surface first, with the depths of the receptors and what determines the deep temperature.
 
-    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None has them solved from the rest.
-    `elements` gives a fixed number of elements a layer (T-sections) instead of the graded mesh.
-    The receptors' depths count from the surface here; `depth_from` tells how the rig file counts them.
+    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: they are solved from the rest.
+    `elements` gives a fixed number of elements per layer (T-sections) instead of the graded mesh.
+    The depths of the receptors count from the surface here; `depth_from` is how the rig file counts them.
     """
 
     site: str
@@ -141,7 +141,7 @@ class Column:
             array.setflags(write=False)
 
     def steady_drop_K(self, flux_W_per_m2: float) -> float:
-        """Face temperature above the deep (and blood) temperature in K when a flux enters the face for ever.
+        """Steady temperature of the face above the deep (and blood) temperature in K under a constant flux into it.
 
         >>> layer = Layer("dermis", 2e-3, 0.45, 1060, 3300)
         >>> column = column_of(Skin("test", 32, 1e-4, 2e-4, (layer,)), blood_capacity_J_per_m3K=4e6)
@@ -160,7 +160,7 @@ class Column:
 def column_of(
     skin: Skin, blood_capacity_J_per_m3K: float, first_cell_m: float = FIRST_CELL_M, growth: float = CELL_GROWTH
 ) -> Column:
-    """Return the lumps of a skin: T-sections where it asks for fixed elements, else the graded mesh."""
+    """Return the lumps of a skin: T-sections where it has fixed elements, otherwise the graded mesh."""
     if skin.elements is not None:
         return _sections(skin, blood_capacity_J_per_m3K)
     return _graded(skin, blood_capacity_J_per_m3K, first_cell_m, growth)

@@ -1,7 +1,7 @@
-"""How sure one is of a rig: what is assumed where a rig does not say, and what it takes to claim to be surer.
+"""The uncertainty of a rig: what is assumed where the rig file is silent, and what it takes to claim less.
 
-A smaller uncertainty makes the worst case milder, so it loosens the gate of safety as a looser limit does: it needs a
-reason in writing, which goes wherever the verdict goes.
+A smaller uncertainty makes the worst case milder and so loosens the gate of safety, as a looser limit does: it needs a
+written reason, which is reported with every verdict.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def uncertainty_table() -> Table:
 
 
 def uncertainty_of(given: Mapping[str, float], reason: str = "") -> Uncertainty:
-    """Return the uncertainty of a rig; what is not given is as shipped.
+    """Return the uncertainty of a rig, with the shipped value of what is not given.
 
     >>> uncertainty_of({"ambient_K": 5.0})
     Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, heat_sink_K=1.0,
@@ -43,7 +43,7 @@ def uncertainty_of(given: Mapping[str, float], reason: str = "") -> Uncertainty:
 
 
 def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str]:
-    """Return what is wrong with a claim to be surer than what is shipped, a sentence each.
+    """Return one sentence for each uncertainty that is smaller than the shipped one without a reason.
 
     >>> uncertainty_faults({"gain_relative": 0.02}, "gain measured against a shunt, 2026-05-12")
     []
@@ -63,7 +63,7 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
 
 
 def tightened(one: Uncertainty) -> tuple[str, ...]:
-    """A few words for each uncertainty that is smaller than the shipped one.
+    """A few words for each uncertainty that is smaller than shipped.
 
     >>> tightened(uncertainty_of({"gain_relative": 0.02}))
     ('gain ±2 % instead of ±10 %',)
@@ -76,7 +76,7 @@ def tightened(one: Uncertainty) -> tuple[str, ...]:
 
 
 def stated(one: Uncertainty) -> str:
-    """All uncertainties in words, for the head of a verdict.
+    """All uncertainties in words, for the heading of a verdict.
 
     >>> stated(uncertainty_of({}))[:60]
     'contact resistance ±30 %, ambient ±3 K, gain ±10 %, heat sin'

@@ -1,4 +1,4 @@
-"""What a rule of safety says of runs: how near they come, when, where; and what many of them come to."""
+"""Checks of runs against the rules of safety: how near they come, when and in which scenario."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from dataclasses import asdict, dataclass
 from ..inputs import signed
 
 LEVEL = 1e-6
-"""What is as near as this to the extreme, in its unit, has reached it: a level that is held has no latest row."""
+"""Within this distance, in its unit, the extreme counts as reached: a held level has no unique latest row."""
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One rule checked against runs: how near they get or how far beyond, when and where, and who set the limit.
+    """One rule checked against runs: the extreme, its time and scenario, and the source of the limit.
 
     `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
-    first passed, None where it never is. `scenario` tells in which of many runs.
+    first exceeded, None where it never is. `scenario` says in which run.
     """
 
     quantity: str
@@ -50,9 +50,9 @@ class Check:
 
 
 def findings_of(checks: Sequence[Check]) -> tuple[Check, ...]:
-    """Of the rules that are passed, one for each quantity and side, the hard ones first.
+    """Of the limits exceeded, one for each quantity and side, the hard ones first.
 
-    What passes a hard limit has passed the soft one.
+    Exceeding a hard limit implies exceeding the soft one.
     """
     worst: dict[tuple[str, bool], Check] = {}
     broken = [check for check in checks if not check.passed]
@@ -105,7 +105,7 @@ def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
 
 
 def as_dict(check: Check) -> dict[str, object]:
-    """A check as a sidecar holds it."""
+    """A check in the form of a sidecar."""
     return {**asdict(check), "passed": check.passed, "text": str(check)}
 
 
@@ -115,7 +115,7 @@ def beyond(check: Check) -> float:
 
 
 def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
-    """Of several groups of checks by the same rules, the one of each rule that goes farthest; the first of equals."""
+    """From several groups of checks of the same rules, the worst check of each rule; the first of equals."""
     return tuple(_farthest(same) for same in zip(*groups, strict=True))
 
 

@@ -1,9 +1,9 @@
-"""The corners of what is not known of a rig: worlds that it may be in, in each of which a drive must be safe.
+"""The corners of a rig's uncertainty, in each of which a drive must be safe.
 
-Contact, gain, Seebeck coefficient, thermal conductance and plates stand at either end of their uncertainty, each with
-each. Heat sink and ambient move together: every temperature rises with the heat sink's and with that of deep tissue,
-so that the extremes lie where both are warm or both are cold. The ambient moves deep tissue as the bare skin's rest is
-given: where that is solved for, a warmer room means cooler blood.
+Contact, gain, Seebeck coefficient, thermal conductance and plates are at either end of their uncertainty, in all
+combinations. Heat sink and ambient move together: every temperature rises with those of the heat sink and of deep
+tissue, so the extremes are where both are warm or both are cold. Where deep tissue is solved from the resting
+temperature of bare skin, a warmer room means cooler blood.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..rig.uncertainty import WORDS
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """A world that the rig may be in: shares and K beside the rig's file, and the rig there.
+    """One possible state of the rig: shares and K of deviation from the rig's file, and the rig there.
 
     The gain of the current source is not part of `rig`: it scales the current.
     """
@@ -47,7 +47,7 @@ class Corner:
 
 @lru_cache(maxsize=64)
 def corners_of(rig: Rig) -> tuple[Corner, ...]:
-    """Return the rig as given and then the corners of its uncertainty; fewer than 64 where an uncertainty is 0.
+    """Return the rig as given and then the corners of its uncertainty, fewer than 64 where one is 0.
 
     >>> [str(corner) for corner in corners_of(Rig.load("thenar"))][:2]  # doctest: +NORMALIZE_WHITESPACE
     ['the rig as given', 'contact −30 %, ambient +3 K, gain −10 %, heat sink −1 K, Seebeck −5 %,
@@ -75,7 +75,7 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
 
 
 def surroundings(rig: Rig) -> tuple[tuple[float, float], ...]:
-    """Ambient and heat sink in K beside the rig's, at their coldest and their warmest for the skin."""
+    """Deviations of ambient and heat sink in K, at their coldest and their warmest for the skin."""
     ambient, sink = rig.uncertainty.ambient_K, rig.uncertainty.heat_sink_K
     if not ambient and not sink:
         return ((0.0, 0.0),)

@@ -1,4 +1,4 @@
-"""What a drive cannot make safe by itself, and so demands of the hardware, in numbers."""
+"""What software cannot make safe, and the hardware must therefore prevent, in numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 class CutOff:
     """A cut-off on the measured temperature of the display: °C below and above which all power goes off.
 
-    `react_within_s`: how long that may take after the display has passed it, with the driver at its limit.
+    `react_within_s`: how long that may take after the display has crossed it, with the driver at its limit.
     """
 
     low: float
@@ -21,8 +21,8 @@ class CutOff:
 class PolarityCheck:
     """A check of the wiring before the first play: a small current for a short time must cool the display.
 
-    `needed`: with the poles swapped, the drive itself would pass a hard limit. `swapped_skin_C`: where it would take
-    the skin.
+    `needed`: with swapped poles, the drive itself would exceed a hard limit. `swapped_skin_C`: the skin temperature
+    that it would then reach.
     """
 
     needed: bool
@@ -34,7 +34,7 @@ class PolarityCheck:
 
 @dataclass(frozen=True, slots=True)
 class SingleFault:
-    """One thing that goes wrong: what, the verdict on the drive with it, and what prevents harm."""
+    """A single fault: what fails, the verdict on the drive with this fault, and what prevents harm."""
 
     fault: str
     colour: str
@@ -46,7 +46,7 @@ class SingleFault:
 class Demands:
     """What the hardware must prevent so that one drive stays safe with a single fault.
 
-    `watchdog_s`: a current that hangs must be cut after this; 60 where a minute is safe, 0 where no time is.
+    `watchdog_s`: a stuck current must be cut after this time; 60 where a minute is safe, 0 where no time is.
     `rest_before_first_play_s`: the rest must be held so long on a display that was without power; None: 10 min do not
     suffice. `zero_current_at_most_s`: after which contact must end, since the dose adds up.
     """
@@ -67,5 +67,5 @@ class Demands:
         )
 
     def to_dict(self) -> dict[str, object]:
-        """All of it, as a sidecar holds it under `hardware_must_prevent`."""
+        """All of it in the form of a sidecar's `hardware_must_prevent`."""
         return asdict(self)

@@ -1,11 +1,11 @@
 """What follows a drive: its last value held, zero current, power off; and zero current without limit of time.
 
-*Last value held*: the driver goes on with its last current, or its last duty. *Zero current*: the driver gives none and
-the heat sink works on; skin drifts to where the hot plate takes it, not to its baseline. *Power off*: no current, with
-the terminals open (the Seebeck voltage is free), and what holds the heat sink is off too. A sink with a capacity
-and a controller of its own keeps its heat, loses its power and drifts with the hot plate. An ideal sink has no capacity
-in the rig file: it is taken as heavy enough not to move within a minute, which makes power off the same as zero
-current; later it drifts towards the room, which is no hazard.
+*Last value held*: the driver keeps its last current, or its last duty. *Zero current*: the driver gives none and the
+heat sink keeps working; the skin drifts to where the hot plate takes it, not to its baseline. *Power off*: no current,
+with open terminals (no current flows), and the supply of the heat sink is off too. A sink with a capacity and its own
+controller keeps its heat, loses its power and drifts with the hot plate. An ideal sink has no capacity in the rig file:
+it is taken as heavy enough not to move within a minute, which makes power off the same as zero current; later it drifts
+towards the room, which is no hazard.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ LATER_S = 600.0
 """Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
 
 ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
-"""Times of the rows of an ending: fine after the jump of the current, coarse when all moves slowly."""
+"""Times of the rows of an ending: fine after the jump of the current, coarse later."""
 
 LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
 
@@ -36,7 +36,7 @@ LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
 def follow_endings(
     ensemble: Ensemble, state: State, last_A: float, end_s: float, tallies: dict[str, Tally], sums: bool = True
 ) -> dict[str, Array]:
-    """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) an ending.
+    """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
     `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's; `sums`
     whether doses count.
@@ -65,7 +65,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
 
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
-    """The state that zero current leads to in the end, held against the limits of temperature."""
+    """The steady state under zero current, checked against the limits of temperature."""
     tally = Tally(limits, [f"{corner}, then {IN_THE_END}" for corner in ensemble.corners], begun_C=begun_C)
     levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
     tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)

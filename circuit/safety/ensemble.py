@@ -1,6 +1,6 @@
 """A rig in all corners of its uncertainty, side by side: drives played, currents held, states carried on.
 
-A drive is played in stretches, so that neither its length nor its updates decide how much memory it takes. Rows stand
+A drive is played in stretches, so that the memory needed depends neither on its length nor on its updates. Rows are
 no farther apart than 10 ms, over which the rate of skin temperature is taken, nor than the drive's own updates.
 """
 
@@ -35,7 +35,7 @@ Stretch = tuple[Array, Array]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ensemble:
-    """Corners of a rig, ready to run; the first is the rig as given.
+    """Corners of a rig, ready to simulate; the first is the rig as given.
 
     `bridge_A`: a bridge switches between this current and none, so that constant currents are means; None: it does not.
     `averaged`: so are the currents of drives, since the bridge switches too fast for a plate to follow.
@@ -54,7 +54,7 @@ class Ensemble:
 
     @staticmethod
     def of(rig: Rig, bridge_A: float | None = None, averaged: bool = False) -> Ensemble:
-        """All corners of a rig; raises DriveError for a bridge that cannot be."""
+        """All corners of a rig; raises DriveError for an impossible bridge."""
         if bridge_A is not None and not (0 < bridge_A < np.inf):
             raise DriveError(f"a bridge of {bridge_A:g} A is not possible; its current must be above 0 A")
         return Ensemble.on(rig, corners_of(rig), bridge_A, averaged)
@@ -68,18 +68,18 @@ class Ensemble:
         return Ensemble(rig, corners, networks, Bank.of(networks), gain, bridge_A, ideal, averaged)
 
     def only(self, which: list[int]) -> Ensemble:
-        """The same with some of its corners."""
+        """A copy with some of the corners."""
         few = Ensemble.on(self.rig, tuple(self.corners[k] for k in which), self.bridge_A, self.averaged)
         few._modes.update({current: modes.only(which) for current, modes in self._modes.items()})
         return few
 
     @property
     def lanes(self) -> Index:
-        """One lane a corner."""
+        """One lane per corner."""
         return np.arange(len(self.corners), dtype=np.int64)
 
     def at_rest(self, rest_A: float) -> State:
-        """Steady states under a current; RigError where the rig as given has none. Others are then as hot as can be."""
+        """Steady states under a current, the hottest where a corner has none; RigError for the rig as given."""
         states = self.bank.states([self._steady(corner, rest_A) for corner in self.corners])
         check_sink(self.rig, states[0])
         return State.settled(states)

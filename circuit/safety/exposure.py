@@ -1,4 +1,4 @@
-"""What a temperature over time does to tissue: equivalent minutes at 43 °C, and the Henriques burn integral.
+"""Thermal exposure of tissue: equivalent minutes at 43 °C, and the Henriques burn integral.
 
 Temperature is taken as linear between rows. CEM43 is then exact. The Henriques rate over one row is expanded about its
 middle; rows that differ by more than 0.05 K are cut into pieces that do not: under 1e-8 of the integral is lost.
@@ -17,7 +17,7 @@ from ..records import load_records
 from ..rig.module import ZERO_C_IN_K
 
 LEVEL_K = 1e-5
-"""Rows closer than this are taken as level, where a difference of primitives would be rounding noise."""
+"""Rows closer than this count as level, since a difference of primitives would be rounding noise."""
 
 SMALL_K = 0.05
 """The longest piece of a ramp over which the Henriques rate is expanded about its middle."""
@@ -30,10 +30,10 @@ def _constants() -> dict[str, float]:
 
 
 def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the dose so far in equivalent minutes at 43 °C, for times (rows,) and temperatures (…, rows).
+    """Return the cumulative dose in equivalent minutes at 43 °C, for times (rows,) and temperatures (…, rows).
 
     A minute at T counts R^(43 − T), with R 0.5 from 43 °C on, 0.25 from 37 to 43 °C, and nothing below.
-    Raises ValueError where times and temperatures do not fit.
+    Raises ValueError where times and temperatures do not match.
 
     >>> cem43_min([0, 60, 120], [43, 43, 43]).tolist()
     [0.0, 1.0, 2.0]
@@ -54,10 +54,10 @@ def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
 
 
 def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the burn integral Ω so far, for times (rows,) and temperatures (…, rows).
+    """Return the cumulative burn integral Ω, for times (rows,) and temperatures (…, rows).
 
     dΩ/dt = A·exp(−Ea/(R·T)), T absolute; 0.53 is where a burn of the first degree begins.
-    Raises ValueError where times and temperatures do not fit.
+    Raises ValueError where times and temperatures do not match.
 
     >>> round(float(henriques([0, 600], [44, 44])[-1]), 3)
     0.007

@@ -1,5 +1,5 @@
-"""The gate of safety: a drive checked against every rule, in the worst case of the rig, of what follows and of how
-often it is played.
+"""The gate of safety: a drive checked against every rule, in the worst case over the rig, over what follows the drive
+and over how often it is played.
 """
 
 from __future__ import annotations
@@ -39,11 +39,10 @@ WHAT_IT_IS_NOT = (
 class Gate:
     """The verdict on one drive.
 
-    `checks` has every rule, in the scenario that goes farthest, `once` those of one play and what follows it; times
-    count from the first row of that play.
-    `after_C` is the skin of the rig as given, 60 s after the last sample, for each ending; `drift_C` where zero
-    current takes it in the end, None for a device without a current. `repeated` is the verdict on playing it again and
-    again, which `checks` include; `demands` is what the hardware must prevent.
+    `checks` has every rule in its worst scenario, `once` the same for a single play and what follows it; times count
+    from the first row of that play. `after_C` is the skin of the rig as given 60 s after the last sample, for each
+    ending; `drift_C` is its steady state under zero current, None for a device without a current. `repeated` is the
+    verdict on repeated plays, which `checks` include; `demands` is what the hardware must prevent.
     """
 
     rig_name: str
@@ -63,45 +62,45 @@ class Gate:
 
     @property
     def findings(self) -> tuple[Check, ...]:
-        """The rules that are passed, one for each quantity and side, the hard ones first."""
+        """The limits that are exceeded, one for each quantity and side, the hard ones first."""
         return findings_of(self.checks)
 
     @property
     def colour(self) -> str:
-        """Green, amber (only soft limits are passed) or red."""
+        """Green, amber (only soft limits are exceeded) or red."""
         return colour_of(self.findings)
 
     @property
     def safe(self) -> bool:
-        """Whether no hard limit is passed."""
+        """Whether no hard limit is exceeded."""
         return self.colour != "red"
 
     @property
     def reason(self) -> str | None:
-        """The first hard limit passed, in one sentence with its cure; None where there is none.
+        """The first hard limit exceeded, in one sentence with its cure; None where there is none.
 
-        One play comes first: that repetition goes farther says nothing more where one is not safe.
+        A single play comes first: where that is not safe, repetition adds no information.
         """
         once = hard_reason(findings_of(self.once))
         return once or self.repeated.reason
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit passed."""
+        """A sentence for each soft limit exceeded."""
         return soft_cautions(self.findings)
 
     @property
     def text(self) -> str:
-        """The verdict as a table to read: every rule, its worst value, the limit, when, where and by whom."""
+        """The verdict as a table: every rule with its worst value, the limit, time, scenario and source."""
         return "\n".join(_lines(self))
 
     @property
     def demanded(self) -> dict[str, object]:
-        """What the hardware must prevent, as a sidecar and the players hold it."""
+        """What the hardware must prevent, in the form of sidecars and players."""
         return self.demands.to_dict()
 
     def to_dict(self) -> dict[str, object]:
-        """All of it, as a sidecar holds it."""
+        """All of it in the form of a sidecar."""
         return {
             "colour": self.colour,
             "what_it_is_not": WHAT_IT_IS_NOT,
@@ -131,33 +130,33 @@ def gate(
 ) -> Gate:
     """Check a drive against every rule of safety, on the rig and in all corners of its uncertainty.
 
-    The drive is what the hardware gets, played open loop: one that ends in the middle of a ramp, as a design does,
-    leaves that current on, and is judged so. It is followed through its endings (60 s of its last value, zero current,
-    no power; zero current without limit of time), played again and again, and with single faults.
+    The drive is what the hardware receives, played open loop: one that ends in the middle of a ramp, as a design does,
+    leaves that current on and is judged accordingly. It is followed through its endings (60 s of its last value, zero
+    current, no power; zero current without limit of time), repeated plays and single faults.
 
     Parameters
     ----------
     drive
-        What the hardware gets.
+        The current that the hardware receives.
     rig
-        The rig as given; its uncertainty makes the corners.
+        The rig as given; its uncertainty determines the corners.
     rest_A
-        Current in A that has been held before, and is held in the pauses; None: the drive's first current.
+        Current in A held before the drive and in the pauses; None: the drive's first current.
     bridge_A
-        The current that a bridge switches, which makes `rest_A` and the last current of the drive means.
+        The current that a bridge switches; `rest_A` and the last current of the drive are then means.
     limits
-        In the place of the rig's.
+        Limits in place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the recovery time.
 
     Raises
     ------
     RigError
-        Where there is no rest to start from.
+        Where there is no steady state to start from.
     DriveError
-        For a rest that cannot be.
+        For an impossible resting current.
     PauseError
-        For a pause that cannot be.
+        For an impossible pause.
 
     Examples
     --------
@@ -188,8 +187,8 @@ def gate_set(
 ) -> tuple[Gate, ...]:
     """Check drives, each with its rest in A, that may be played again and again in any order; as `gate` does.
 
-    Each is judged by itself, and between the bounds on what any sequence of all of them can come to. Without a pause,
-    that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
+    Each is judged by itself, and between bounds on the states that any sequence of all of them can reach. Without a
+    pause, that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
     switches too fast for a plate to follow.
     """
     from threadpoolctl import threadpool_limits
@@ -221,7 +220,9 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     cycles = [mapped(Cycle(ensemble, single.drive, single.rest_A, pause), single.start) for single in singles]
     repeating = Repeating(ensemble, cycles, [single.start for single in singles], limits)
     tallies = repeating.tallies(pause)
-    shortest = shortest_pause_s(repeating) if singles[0].safe else None  # no pause mends a play that is red by itself
+    shortest = (
+        shortest_pause_s(repeating) if singles[0].safe else None
+    )  # no pause makes a play safe that is red by itself
     repeats = []
     for single, own, cycle in zip(singles, tallies, cycles, strict=True):
         checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, limits.session_s)

@@ -1,4 +1,4 @@
-"""Limits of safety: simulated temperatures held against sourced limits, from the skin and not from the command.
+"""Limits of safety: simulated temperatures, not commanded ones, checked against sourced limits.
 
 This is not a medical or ethical clearance, and a hardware cut-off is required.
 """
@@ -19,7 +19,7 @@ from .tally import WATCHED, Tally
 
 @dataclass(frozen=True, slots=True)
 class SafetyVerdict:
-    """All limits that a trace passes; `colour` is green, amber (soft limits only) or red."""
+    """All limits that a trace exceeds; `colour` is green, amber (soft limits only) or red."""
 
     findings: tuple[Check, ...]
 
@@ -34,31 +34,43 @@ class SafetyVerdict:
 
     @property
     def safe(self) -> bool:
-        """Whether no hard limit is passed."""
+        """Whether no hard limit is exceeded."""
         return self.colour != "red"
 
     @property
     def reason(self) -> str | None:
-        """The first hard limit passed, in one sentence; None where there is none."""
+        """The first hard limit exceeded, in one sentence; None where there is none."""
         return hard_reason(self.findings)
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit passed."""
+        """A sentence for each soft limit exceeded."""
         return soft_cautions(self.findings)
 
     def to_dict(self) -> dict[str, object]:
-        """Colour and findings, as a sidecar holds them."""
+        """Colour and findings in the form of a sidecar."""
         return {"colour": self.colour, "findings": [as_dict(each) for each in self.findings]}
 
 
 def judge_safety(trace: Trace) -> SafetyVerdict:
-    """Hold a trace against the limits of its rig, the shipped ones where it has none of its own.
+    """Check a trace against the limits of its rig.
 
+    Parameters
+    ----------
+    trace
+        One run; without limits of its own it is checked against the shipped ones.
+
+    Notes
+    -----
+    One run of the rig as given. `gate` also covers uncertainty, endings, repetition and single faults.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library
     >>> judge_safety(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))).colour
     'green'
+
     """
     columns = {name: getattr(trace, name)[np.newaxis] for name in WATCHED}
     if not trace.has_current:  # a thermode has no hot plate; its display stands in, so that no rule is lost
@@ -69,7 +81,7 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
 def checks_of(
     limits: Limits, time_s: Array, columns: Mapping[str, Array], scenarios: Sequence[str] = ("",)
 ) -> tuple[Check, ...]:
-    """Check runs (lanes, rows) of the WATCHED columns against every rule: for each, the lane that goes farthest."""
+    """Check runs (lanes, rows) of the WATCHED columns against every rule: for each, the worst lane."""
     tally = Tally(limits, scenarios)
     tally.add(time_s, np.stack([columns[name] for name in WATCHED]))
     return tally.checks()

@@ -1,9 +1,9 @@
-"""A play as a linear map: with a given current the circuit is linear, so a few runs tell what any start leads to.
+"""A play as a linear map: with a given current the circuit is linear, so a few runs determine the result of any start.
 
-One lane a node starts 1 K warmer there, and one starts as it is: the differences at the end are the columns of Φ in
-x → Φ·x + g, with Φ ≥ 0. Then repetition costs products of small matrices instead of runs. The steady cycle is a linear
-solve. The least u with u = max(start, Φ₁·u + g₁, Φ₂·u + g₂ …), node by node, comes from Howard's iteration: which of
-them is the largest in each node, solve with those, again until none changes.
+One lane per node starts 1 K warmer there, and one starts unchanged: the differences at the end are the columns of Φ in
+x → Φ·x + g, with Φ ≥ 0. Repetition then costs products of small matrices instead of simulations. The steady cycle is a
+linear solve. The least u with u = max(start, Φ₁·u + g₁, Φ₂·u + g₂ …), node by node, comes from Howard's iteration:
+which of them is the largest in each node, solve with those, again until none changes.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
     from .ensemble import Ensemble
 
 MOST_STEPS = 20_000
-"""A drive of more steps is run again and again instead: a map takes some 50 runs, a search for a cycle about ten."""
+"""A drive of more steps is simulated repeatedly instead: a map takes some 50 runs, a search for a cycle about ten."""
 
 MOST_CHOICES = 60
-"""Choices of the largest after which none is expected; a handful is usual."""
+"""Most iterations of Howard's method; a handful is usual."""
 
 POWERS = 40
-"""Products that tell an eigenvalue below 1 from one above; where they do not, all are computed."""
+"""Products that distinguish an eigenvalue below 1 from one above; where they fail, all are computed."""
 
 NEAR_K = 1e-6
-"""What one more play may still add to a bound: rounding."""
+"""Tolerance for the growth of a bound in one more play: rounding."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,7 +98,7 @@ def _settles(matrix: Array) -> bool:
 def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float) -> Array:
     """Nodes (rigs, m) that starts and plays never exceed, by `side` 1 above or −1 below; NaN where there are none.
 
-    What is returned is checked: every start lies inside, and no play leads out.
+    The result is checked: every start lies inside, and no play leads out.
     """
     most = np.max([side * start for start in starts_C], axis=0)
     matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])

@@ -1,4 +1,4 @@
-"""What a drive comes to when it is played again and again: verdict, recovery, and the shortest pause that is safe."""
+"""Repeated plays of a drive: verdict, recovery time, and the shortest pause that is safe."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ LONGEST_PAUSE_S = 600.0
 """Display and skin have recovered within 0.1 K of rest; a pause longer than 10 min is another session."""
 
 ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
-"""Where recovery is looked for, up to the longest pause."""
+"""Times at which recovery is checked, up to the longest pause."""
 
 PAUSE_STEP_S = 0.1
 
 
 class PauseError(InputError):
-    """A pause between plays that cannot be."""
+    """An impossible pause between plays."""
 
 
 @dataclass(frozen=True, slots=True)
 class Repeated:
-    """The verdict on a drive that is played again and again, with a pause in which its rest is held.
+    """The verdict on a drive that is played repeatedly, with its resting current held in the pauses.
 
     `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
-    10 min. `shortest_pause_s` is the shortest that is safe, None where none is. `plays` go into a session of
-    `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between the bounds on what any
-    number of plays, in a set in any order, can come to.
+    10 min. `shortest_pause_s` is the shortest that is safe, None where none is. `plays` fit into a session of
+    `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between bounds on the states
+    that any number of plays, in any order of a set, can reach.
     """
 
     pause_s: float
@@ -95,14 +95,14 @@ class Repeated:
 
 
 def check_pause(pause_s: float | None) -> None:
-    """Raise PauseError for a pause that is no time between 0 and 10 min."""
+    """Raise PauseError for a pause that is not between 0 and 10 min."""
     if pause_s is not None and not 0.0 <= pause_s <= LONGEST_PAUSE_S:
         raise PauseError(f"a pause of {pause_s:g} s between plays is not possible; give 0 to {LONGEST_PAUSE_S:g} s")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Repeating:
-    """Drives on one rig that may follow each other in any order, each in all corners and from a rest of its own."""
+    """Drives on one rig that may follow each other in any order, each in all corners and from its own resting state."""
 
     ensemble: Ensemble
     drives: Sequence[Cycle]
@@ -155,7 +155,7 @@ class Repeating:
 
 
 def plays_in(cycle: Cycle, session_s: float) -> int:
-    """How many plays of a drive fit into a session; at least one."""
+    """Number of plays of a drive that fit into a session; at least one."""
     length = float(cycle.drive.time_s[-1])
     return max(1, math.floor((session_s + cycle.pause_s) / (length + cycle.pause_s) + 1e-9))
 
@@ -195,8 +195,8 @@ def skin_C(ensemble: Ensemble, state: State) -> Array:
 def shortest_pause_s(repeating: Repeating) -> float | None:
     """The shortest pause in s, in steps of 0.1 s, with which no hard limit is passed; None up to 10 min.
 
-    The corners that go farthest without a pause decide; the result is checked in all corners, and those that then go
-    beyond join in.
+    Searched in the corners that are worst without a pause; the result is checked in all corners, and any that exceed a
+    limit are added to the search.
     """
     tallies = [tally for own in repeating.tallies(0.0) for tally in own]
     if all(tally.passes() for tally in tallies):
@@ -218,7 +218,7 @@ def shortest_pause_s(repeating: Repeating) -> float | None:
 
 
 def _later(repeating: Repeating, pause_s: float) -> float | None:
-    """A pause after this one that is safe in all corners and with all endings; steps grow from 2 %."""
+    """A longer pause that is safe in all corners and with all endings; steps grow from 2 %."""
     added = max(PAUSE_STEP_S, 0.02 * pause_s)
     while pause_s < LONGEST_PAUSE_S:
         pause_s = min(math.ceil((pause_s + added) / PAUSE_STEP_S) * PAUSE_STEP_S, LONGEST_PAUSE_S)

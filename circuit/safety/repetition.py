@@ -1,9 +1,9 @@
-"""Played again and again: the steady cycle of a drive, and bounds that hold for any number of plays in any order.
+"""Repeated plays: the steady cycle of a drive, and bounds that hold for any number of plays in any order.
 
 With a given current the circuit is linear in its temperatures, and a node never gets colder because another is warmer:
-a play with its pause is a map x → Φ·x + g with Φ ≥ 0. So the state before a play tends to a fixed point, the *steady
-cycle*, which Anderson's acceleration finds in a few plays; and a state u that is warmer than rest, and that no drive of
-a set makes warmer still (F(u) ≤ u for each), is warmer than whatever comes before any play, in any order: the *warm
+a play with its pause is a map x → Φ·x + g with Φ ≥ 0. The state before a play therefore tends to a fixed point, the
+*steady cycle*, which Anderson's acceleration finds in a few plays. A state u that is warmer than rest, and that no
+drive of a set makes warmer (F(u) ≤ u for each), is warmer than the state before any play in any order: the *warm
 bound*. The *cold bound* is its mirror image.
 """
 
@@ -23,18 +23,18 @@ from .playmap import MOST_STEPS, NEAR_K, PlayMap, least_bound
 from .tally import COLDEST_C, HOTTEST_C
 
 CLOSE_K = 2e-5
-"""A cycle is steady when it comes back to where it began within this."""
+"""A cycle is steady when it returns to its start within this."""
 MOST_PLAYS, REMEMBERED = 40, 6
-"""Plays after which no steady cycle is expected any more, and how many of them the acceleration looks back."""
+"""Most plays in the search for a steady cycle, and the number of past plays that the acceleration uses."""
 BOUND_K = 1e-3
-"""What is added at once to a bound that grows by less in one more play, so that it grows no more."""
+"""Added to a bound that grows by less than this in one more play, so that it grows no further."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cycle:
     """A drive on an ensemble with the current that is held in the pause after it, for `pause_s`.
 
-    `played` is its play as a map; None where it is run instead: a long drive, or a heat sink with a controller.
+    `played` is its play as a map; None where it is simulated instead: a long drive, or a heat sink with a controller.
     """
 
     ensemble: Ensemble
@@ -71,8 +71,8 @@ def mapped(cycle: Cycle, start: State) -> Cycle:
 def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool_]]:
     """Return the states before each play of a cycle that repeats itself, and whether each lane has one (lanes,).
 
-    Anderson's acceleration of x ← F(x), a lane at a time: the next guess is the mean of the last plays' results whose
-    changes cancel best. A lane without a steady cycle heats from play to play without end. Where the play is a map,
+    Anderson's acceleration of x ← F(x), one lane at a time: the next guess is the mean of the last plays' results whose
+    changes cancel best. A lane without a steady cycle heats from play to play without limit. Where the play is a map,
     its fixed point is solved for.
     """
     if cycle.played is not None:

@@ -1,6 +1,6 @@
-"""Every scenario of a drive row by row: its corners and endings, for who wants to look at them.
+"""Every scenario of a drive row by row: its corners and endings, for inspection.
 
-The gate itself looks at the same runs in stretches, and at more: repetition, and the end without limit of time.
+The gate itself checks the same runs in stretches, and also repetition and the steady state after the drive.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .tally import WATCHED
 class Futures:
     """One drive in all scenarios: `time_s` (rows,), `values` (WATCHED, endings, corners, rows) in °C; ends at `end_s`.
 
-    The first corner is the rig as given. What runs away is not finite.
+    The first corner is the rig as given. A run that diverges is not finite.
     """
 
     end_s: float
@@ -52,9 +52,10 @@ def play_out(
 ) -> Futures:
     """Play a drive in every corner and follow it through every ending.
 
-    `rest_A` has been held for ever before; None: the drive's first current. `bridge_A` says that the current comes from
+    `rest_A` holds the steady state before; None: the drive's first current. `bridge_A` says that the current comes from
     a bridge that switches between this current and none: `rest_A` and the drive's last current are then means.
-    Raises RigError where the rig as given has no steady state to start from, DriveError for a rest that cannot be.
+    Raises RigError where the rig as given has no steady state to start from, DriveError for an impossible resting
+    current.
     """
     rest = rest_of(drive, rest_A, bridge_A)
     ensemble = Ensemble.of(rig, bridge_A)
@@ -76,7 +77,7 @@ def play_out(
 
 
 def rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
-    """The current of rest of a drive, by itself its first; raises DriveError for one that cannot be."""
+    """The resting current of a drive, by default its first; raises DriveError for an impossible one."""
     if rest_A is None:
         if bridge_A is not None:
             raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")

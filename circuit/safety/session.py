@@ -1,4 +1,4 @@
-"""A session: a sequence of icons as one run, with one verdict in the worst case and one per play on the rig given."""
+"""A session: a sequence of icons as one run, with a worst-case verdict and one per play on the rig as given."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Play:
     """One icon in a session, on the rig as given: from its start until the next one starts, or the session ends.
 
     `drift_K` is the skin just before it minus the skin before the first play. `verdict` is green, amber or red, and
-    `reason` the first limit passed, in one sentence; a limit in K counts from where the play began. Times count from
+    `reason` the first limit exceeded, in one sentence; a limit in K counts from the start of the play. Times count from
     the session's start; dose and energy are those of this play and its gap.
     """
 
@@ -42,7 +42,7 @@ class Play:
 
 @dataclass(frozen=True, slots=True)
 class TimeBeyond:
-    """Seconds in all that a temperature is above (`upper`) or below a limit in °C, on the rig as given."""
+    """Total time in s that a temperature is above (`upper`) or below a limit in °C, on the rig as given."""
 
     quantity: str
     severity: str
@@ -55,8 +55,8 @@ class TimeBeyond:
 class Session:
     """A session on a rig.
 
-    `trace` is the rig as given, from the first icon's start to the last one's end. `checks` has every rule once, in the
-    scenario of the worst case that goes farthest. The dose (min CEM43), `henriques`, `energy_J` (into the module) and
+    `trace` is the rig as given, from the first icon's start to the last one's end. `checks` has every rule once, in its
+    worst scenario. The dose (min CEM43), `henriques`, `energy_J` (into the module) and
     `heat_to_sink_W` (least, most; None where the sink has a capacity of its own) are those of the rig as given.
     `recovery_s` is how long after the end display and skin are within 0.1 K of where they began, in every corner of the
     uncertainty; None where 10 min are too short.
@@ -96,7 +96,7 @@ class Session:
 
     @property
     def findings(self) -> tuple[Check, ...]:
-        """The rules that the session passes in the worst case, the hard ones first."""
+        """The limits that the session exceeds in the worst case, the hard ones first."""
         return findings_of(self.checks)
 
     @property
@@ -106,12 +106,12 @@ class Session:
 
     @property
     def reason(self) -> str | None:
-        """The first hard limit passed, in one sentence; None where there is none."""
+        """The first hard limit exceeded, in one sentence; None where there is none."""
         return hard_reason(self.findings)
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit passed."""
+        """A sentence for each soft limit exceeded."""
         return soft_cautions(self.findings)
 
     @property
@@ -120,7 +120,7 @@ class Session:
         return max((play.drift_K for play in self.plays), key=abs)
 
     def worst(self, quantity: str) -> Check | None:
-        """The hard rule on a quantity where it goes farthest in the worst case; None where no rule is about it."""
+        """The worst hard check of a quantity in the worst case; None where no rule limits it."""
         hard = [check for check in self.checks if check.quantity == quantity and check.severity == "hard"]
         return max(hard, key=beyond, default=None)
 

@@ -1,4 +1,4 @@
-"""A session as one drive: the currents of its icons one after the other, with the holding current in the gaps."""
+"""A session as one drive: the currents of its icons in sequence, with the holding current in the gaps."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TRACKINGS = ("replay", "display")
 """The current of each icon open loop, as exported drives are played; or its display temperature, as a thermode does."""
 
 SLOWEST_HZ = 100.0
-"""Fewest rows a second: a rate over a longer time than 10 ms hides how steep the skin's temperature was."""
+"""Fewest rows per second: over more than 10 ms, a mean rate would hide how steep the skin's temperature was."""
 
 MOST_ROWS = 1_500_000
 """Rows of a session, which take about 0.5 GB while they are computed."""

@@ -17,13 +17,13 @@ MOST_PLAYS = 5_000
 """More plays than fit into the longest session with icons of 2 s."""
 
 LONGEST_S, LONGEST_GAP_S = 10_800.0, 3_600.0
-"""A session of up to 3 h is simulated in the memory of a laptop; longer ones are split, as people need a break."""
+"""A session of up to 3 h fits into the memory of a laptop; longer ones are split, as people need a break."""
 
 ORDER_MB = 1.0
 
 
 class SessionError(InputError):
-    """A session that cannot be planned or played; the text says why and what to change."""
+    """A session that cannot be planned or played; the text gives the reason and what to change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,13 +97,13 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
                 raise SessionError(f"{where}:{line}: {problem}") from None
         found.append(name)
     if not found:
-        raise SessionError(f"{where}: there is no icon in this order, only comments; write one name a line")
+        raise SessionError(f"{where}: there is no icon in this order, only comments; write one name per line")
     _check_count(len(found), str(where))
     return tuple(found)
 
 
 def order_text(plan: SessionPlan) -> str:
-    """Return the order as an order file holds it."""
+    """Return the order as the text of an order file."""
     seed = "" if plan.seed is None else f", shuffled with seed {plan.seed}"
     return "\n".join([f"# {len(plan.order)} plays, {plan.gap_s:g} s apart{seed}", *plan.order, ""])
 

@@ -1,4 +1,4 @@
-"""Playing a session: one run of the whole drive, cut into plays where they start."""
+"""Simulation of a session: one run of the whole drive, divided into plays where they start."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def play_session(
     limits: Limits | None = None,
     progress: Progress | None = None,
 ) -> Session:
-    """Play the icons of a plan one after the other on a rig, as one run without a rest in between.
+    """Simulate the icons of a plan in sequence on a rig, as one continuous run.
 
     With tracking `replay` the current of each icon, designed from rest, is played open loop, as exported drives are,
     and its holding current in the gaps; with `display` the driver follows each icon's display temperature, as a
-    thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` takes the
-    place of the rig's; `progress` is called with the seconds of the worst case that are done, and in all.
+    thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` replaces
+    those of the rig; `progress` is called with the seconds of the worst case that are done, and their total.
     Raises SessionError where the plan names an icon that is not given, is too long, or cannot be tracked, and RigError
     where the rig cannot hold a baseline.
 
@@ -110,7 +110,7 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
 
 
 def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
-    """Seconds beyond every limit of a temperature in °C; a row counts until the next."""
+    """Time in s beyond every limit of a temperature in °C; a row counts until the next."""
     steps, found = np.diff(trace.time_s), []
     for rule in limits.rules:
         if rule.unit != "°C" or rule.relative:

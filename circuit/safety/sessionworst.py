@@ -1,8 +1,8 @@
 """A session in the worst case: the whole drive in every corner of the rig's uncertainty, and what follows it.
 
 As one play at the gate: rows no farther apart than 10 ms or the driver's updates, so that no rate is averaged away, in
-stretches, so that memory does not grow with the session. A session is the sequence that is played, so it is not
-judged as something that is played again and again; single faults of the hardware are the business of an export.
+stretches, so that memory does not grow with the session. A session is a given sequence, so it is not judged
+for repetition; an export covers single faults of the hardware.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """Every rule in the scenario that goes farthest, of so many; and how long display and skin take to recover.
+    """Every rule in its worst scenario, the number of scenarios, and the recovery time of display and skin.
 
     `recovery_s` counts from the end of the session until both are within 0.1 K of where they began in every corner,
     with the resting current held; None where that takes longer than 10 min.
@@ -36,9 +36,9 @@ class WorstCase:
 
 
 def worst_case_of(played: SessionDrive, rig: Rig, limits: Limits, progress: Progress | None = None) -> WorstCase:
-    """Check a session against every rule in all corners; `progress` is called with seconds played and in all.
+    """Check a session against every rule in all corners; `progress` is called with the seconds played and the total.
 
-    Raises RigError where the rig as given has no rest to start from.
+    Raises RigError where the rig as given has no steady state to start from.
     """
     from threadpoolctl import threadpool_limits
 

@@ -19,7 +19,7 @@ from .single_faults import Faulty
 from .tally import WATCHED, Tally
 
 MOST_CORNERS = 6
-"""Corners in which single faults are looked at: the rig as given, and those that go farthest."""
+"""Corners in which single faults are simulated: the rig as given, and the worst ones."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +41,7 @@ class Single:
 
     @staticmethod
     def of(ensemble: Ensemble, drive: Drive, rest_A: float, limits: Limits) -> Single:
-        """Play a drive; raises RigError where the rig as given has no rest to start from."""
+        """Play a drive; raises RigError where the rig as given has no steady state to start from."""
         start = ensemble.at_rest(rest_A)
         played, state = Tally(limits, [str(corner) for corner in ensemble.corners]), start
         for (rows, values), then in ensemble.play(drive, start):
@@ -57,16 +57,16 @@ class Single:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Every rule in the scenario that goes farthest."""
+        """Every rule in its worst scenario."""
         return worst_of(tally.checks() for tally in self.tallies)
 
     @property
     def safe(self) -> bool:
-        """Whether one play passes no hard limit."""
+        """Whether one play exceeds no hard limit."""
         return all(tally.passes() for tally in self.tallies)
 
     def demands(self, repeated: Repeated, played: list[Tally], reach_C: tuple[float, float]) -> Demands:
-        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` where displays get."""
+        """What the hardware must prevent; `played` are the tallies of repetition, `reach_C` extremes of displays."""
         corners = self._farthest([*self.tallies, *played])
         few = self.ensemble.only(corners)
         faulty = Faulty(few, self.drive, self.rest_A, self.start.take(np.array(corners)), self.limits)
@@ -93,5 +93,5 @@ class Single:
 
     @property
     def drift_C(self) -> float:
-        """Skin in °C to which zero current leads on the rig as given."""
+        """Steady skin temperature in °C under zero current on the rig as given."""
         return float(zero_current_C(self.ensemble)[WATCHED.index("skin_C"), 0])

@@ -1,7 +1,7 @@
-"""Single faults of a drive that is played open loop: a host that hangs, a start without rest, swapped poles.
+"""Single faults of a drive played open loop: a host that stops, a start without rest, swapped poles.
 
-They do not make a drive unsafe by themselves: hardware prevents them. What it must do follows from simulating them in
-the corners that go farthest.
+They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
+what the hardware must do.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from .ensemble import Ensemble, between, held_currents
 from .tally import WATCHED, Tally
 
 HANG_S, INSTANTS = 60.0, 16
-"""How long a current that hangs is followed, and at how many instants of a drive it may hang."""
+"""How long a stuck current is followed, and at how many instants of a drive it may get stuck."""
 SAME_S = 1e-9
 """Instants closer than this differ by rounding only."""
 HANG_ROWS_S = np.concatenate([np.arange(500) * 0.01, 5.0 + np.arange(551) * 0.1])
 AFTER_ROWS_S = np.concatenate([np.arange(100) * 0.01, 1.0 + np.arange(291) * 0.1])
-"""A watchdog may act this share of the time early in which a limit would be passed."""
+"""A watchdog acts earlier than the time to a limit by this share."""
 MARGIN = 0.8
 LONGEST_REST_S = 600.0
 REACTIONS_S = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
@@ -35,12 +35,12 @@ LIMITS_TRIED = 6
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""
 BEYOND_K = 1.0
-"""Cut-offs lie this far beyond what the display reaches in any corner, so that they do not act without a fault."""
+"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faulty:
-    """A drive in the corners that go farthest, ready for its single faults; `start` is the state of rest there."""
+    """A drive in its worst corners, ready for its single faults; `start` is the state of rest there."""
 
     ensemble: Ensemble
     drive: Drive
@@ -49,7 +49,7 @@ class Faulty:
     limits: Limits
 
     def watchdog_s(self) -> tuple[float, SingleFault]:
-        """How long a current that hangs may stay before it is cut, and what it would do in a minute."""
+        """How long a stuck current may last before it is cut, and its effect within a minute."""
         state, amps, rigs = self._hanging()
         values, _ = _constant(self.ensemble, amps, state, HANG_ROWS_S, rigs)
         worst, beyond = _passed(self.limits, values)
@@ -65,7 +65,7 @@ class Faulty:
         return after, SingleFault("host hangs in mid-play", _colour(beyond), text, prevented)
 
     def _hanging(self) -> tuple[State, Array, Index]:
-        """States, currents with their gain, and corners, each (lanes,), at instants at which the current may hang."""
+        """States, currents with their gain, and corners, each (lanes,), for instants at which it may get stuck."""
         end, corners = float(self.drive.time_s[-1]), len(self.ensemble.corners)
         extremes = [float(self.drive.time_s[k]) for k in (self.drive.current_A.argmin(), self.drive.current_A.argmax())]
         even = [
@@ -120,7 +120,7 @@ class Faulty:
         return rest, SingleFault("first play on a display that was without power", colour, text, prevented)
 
     def polarity(self) -> tuple[PolarityCheck, SingleFault]:
-        """What swapped poles would do, and the check of the wiring that finds them."""
+        """The effect of swapped poles, and the wiring check that detects them."""
         swapped = Drive(self.drive.time_s, -self.drive.current_A, self.drive.held)
         tally = Tally(self.limits, [f"{corner}, poles swapped" for corner in self.ensemble.corners])
         low, high = np.inf, -np.inf
@@ -142,8 +142,8 @@ class Faulty:
         return check, SingleFault("poles swapped", colour_of(findings_of(tally.checks())), text, prevented)
 
     def cut_off(self, display_C: tuple[float, float]) -> tuple[CutOff, SingleFault]:
-        """The cut-off around what the display reaches without a fault, and how quick it must be with the driver at its
-        limit.
+        """The cut-off around the display temperatures reached without a fault, and its reaction time with the driver
+        at its limit.
         """
         limit = {rule.upper: rule.limit for rule in self.limits.rules if _is_hard_display(rule)}
         low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
@@ -184,7 +184,7 @@ class Faulty:
         return self._reaction_s(amps, values[WATCHED.index("display_C")], low, high) > 0
 
     def _reaction_s(self, amps: Array, display: Array, low: float, high: float) -> float:
-        """The longest reaction to a cut-off that is safe under currents that take the display (lanes, rows) so."""
+        """The longest reaction time of a cut-off that is safe for given courses of the display (lanes, rows)."""
         out = ~((display > low) & (display < high))
         trips = [float(HANG_ROWS_S[int(row.argmax())]) if row.any() else HANG_S for row in out]
         for reaction in REACTIONS_S:
@@ -208,7 +208,7 @@ def _constant(ensemble: Ensemble, amps: Array, state: State, times_s: Array, rig
 
 
 def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
-    """How far hard limits of temperature are passed, in words, and whether each lane passes any at each row."""
+    """By how much hard temperature limits are exceeded, in words, and whether each lane exceeds any at each row."""
     beyond = np.zeros(values.shape[1:], dtype=bool)
     worst, text = -np.inf, "no limit is passed"
     columns = {"skin surface": "skin_C", "display": "display_C", "cold-receptor depth": "cold_receptor_C"}

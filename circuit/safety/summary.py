@@ -1,4 +1,4 @@
-"""A trace in a few numbers: whether it was reached, extremes, electrical energy, safety."""
+"""A trace in a few numbers: whether the target was reached, extremes, electrical energy, safety."""
 
 from __future__ import annotations
 
@@ -55,12 +55,12 @@ class Summary:
     reason: str | None
 
     def __repr__(self) -> str:
-        said = {None: "", True: "reached, ", False: "NOT reached, "}[self.reached]
+        target = {None: "", True: "reached, ", False: "NOT reached, "}[self.reached]
         drive = "a thermode"
         if self.energy_J is not None:
             drive = f"{self.current_min_A:.2f} … {self.current_max_A:.2f} A, {self.energy_J:.1f} J"
         return (
-            f"Summary({said}{self.duration_s:g} s, skin {self.skin_min_C:.2f} … {self.skin_max_C:.2f} °C, {drive}, "
+            f"Summary({target}{self.duration_s:g} s, skin {self.skin_min_C:.2f} … {self.skin_max_C:.2f} °C, {drive}, "
             f"safety {self.safety})"
         )
 
@@ -70,7 +70,7 @@ class Summary:
 
 
 def summarise(trace: Trace) -> Summary:
-    """Return the numbers of a trace that people compare rigs and icons by.
+    """Return the numbers of a trace by which rigs and icons are compared.
 
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library

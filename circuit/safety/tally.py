@@ -1,4 +1,4 @@
-"""A tally of runs against every rule of safety, which may come in stretches of time."""
+"""A running check of simulations against every rule of safety, which may arrive in stretches of time."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""
 
 COLDEST_C, HOTTEST_C = -273.0, 1000.0
-"""What runs away counts as this hot, so that it fails every limit and is not lost as NaN."""
+"""A run that diverges counts as this hot, so that it fails every limit instead of being lost as NaN."""
 
 _COLUMN_OF = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
-"""Where a temperature limit is not about the skin surface."""
+"""Places of temperature limits other than the skin surface."""
 
 RATE = "rate of skin temperature"
 SUMMED = ("thermal dose", "Henriques integral")
@@ -29,7 +29,7 @@ SUMMED = ("thermal dose", "Henriques integral")
 
 @dataclass(slots=True)
 class _Extreme:
-    """How far a rule's quantity has gone in each lane: the value, when it got there, and since when it is beyond."""
+    """Extreme of a rule's quantity in each lane: the value, its time, and since when the limit is exceeded."""
 
     value: Array
     at_s: Array
@@ -46,7 +46,7 @@ class Tally:
     scenarios
         A few words for each lane.
     plays
-        What adds up over time counts this many times: a session plays the same again and again.
+        Number of plays in a session, by which sums over time are multiplied.
     begun_C
         Skin temperature (lanes,) from which changes count; None: that of the first row.
 
@@ -61,10 +61,10 @@ class Tally:
         self._extremes: dict[int, _Extreme] = {}
 
     def add(self, time_s: Array, watched: Array, *, rates: bool = True, sums: bool = True, drift: bool = False) -> None:
-        """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which go on from those before.
+        """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which continue those before.
 
-        Without `rates` no rate is taken of these rows, and without `sums` nothing adds up over them, since they are
-        states far apart. A `drift` is no stimulus: only hard limits count, and changes do not.
+        Without `rates` no rate is taken over these rows, and without `sums` nothing is summed over them, since they are
+        states far apart. A `drift` is not a stimulus: only hard limits apply, and changes do not count.
         """
         columns = dict(zip(WATCHED, _finite(watched), strict=True))
         if self._begun is None:
@@ -79,7 +79,7 @@ class Tally:
                 self._count(place, rule, time_s, values)
 
     def fork(self, what: str) -> Tally:
-        """The same so far, to be added to under other names: those of its scenarios with `what` behind them."""
+        """A copy of the state so far under other names: those of the scenarios followed by `what`."""
         other = deepcopy(self)
         other.scenarios = tuple(f"{scenario}, {what}" for scenario in self.scenarios)
         return other
@@ -90,20 +90,20 @@ class Tally:
         return self._begun + rule.limit if rule.relative else np.full(len(self._begun), rule.limit)
 
     def checks(self) -> tuple[Check, ...]:
-        """Every rule once, in the lane that goes farthest."""
+        """Every rule once, in its worst lane."""
         return tuple(self._check(place, rule) for place, rule in enumerate(self.limits.rules))
 
     def summed(self, quantity: str) -> Array:
-        """What has added up of a quantity in each lane (lanes,)."""
+        """Sum of a quantity over time in each lane (lanes,)."""
         return self._sums.get(quantity, np.zeros(len(self.scenarios)))
 
     def worst_lanes(self, severity: str = "hard") -> tuple[int, ...]:
-        """Lanes that go farthest by some rule of a severity, each once."""
+        """Lanes that are worst by some rule of a severity, each once."""
         rules = [(place, rule) for place, rule in enumerate(self.limits.rules) if rule.severity == severity]
         return tuple(dict.fromkeys(self._worst(place, rule) for place, rule in rules if place in self._extremes))
 
     def passes(self, severity: str = "hard") -> bool:
-        """Whether no lane is beyond a limit of a severity."""
+        """Whether no lane exceeds a limit of a severity."""
         return all(
             np.isnan(self._extremes[place].since_s).all()
             for place, rule in enumerate(self.limits.rules)

@@ -1,8 +1,8 @@
-"""The gate for a device that closes its own loop: skin under the display temperatures that it shows.
+"""The gate for a device with its own control loop: skin under the display temperatures that it produces.
 
-Neither module, driver nor heat sink of the rig take part. What is not known is the contact, the room (and with it deep
-tissue), and how closely the device follows: at once, which is the worst for the rate, or with its lag. It ends with its
-last set-point held, or with its control lost: no heat passes the display then.
+Module, driver and heat sink of the rig are not involved. Uncertain are the contact, the room (and with it deep tissue)
+and how closely the device follows: at once, which is the worst case for the rate, or with its lag. A play ends with the
+last set-point held or with control lost, when the display conducts no heat.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shown:
-    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows in some `way` of following.
+    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows if it follows in a certain `way`.
 
-    The last `settling_s` of it are after the end of the drive, until the display has arrived: part of the pause.
+    The last `settling_s` come after the end of the drive, until the display has arrived, and are part of the pause.
     """
 
     way: str
@@ -56,17 +56,17 @@ class Shown:
         return self.step_s * (len(self.display_C) - 1)
 
     def left_s(self, pause_s: float) -> float:
-        """What is left in s of a pause after the last row."""
+        """Remaining time in s of a pause after the last row."""
         return max(0.0, pause_s - self.settling_s)
 
 
 def limits_without_module(limits: Limits) -> Limits:
-    """The rules for a device that has no hot plate of the rig's."""
+    """The rules for a device that does not use the rig's hot plate."""
     return replace(limits, rules=tuple(rule for rule in limits.rules if rule.quantity != "hot plate"))
 
 
 def contact_corners(rig: Rig) -> tuple[Corner, ...]:
-    """The rig as given, then contact and ambient at either end of their uncertainty, each with each."""
+    """The rig as given, then all combinations of contact and ambient at either end of their uncertainty."""
     contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
     spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
     found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
@@ -111,7 +111,7 @@ class Under:
         return watched([modes.relax(times_s, display_C, state) for modes, state in pairs])
 
     def let_go(self, states: Sequence[Array], times_s: Array) -> Array:
-        """WATCHED (4, corners, times) under a display that lets no heat through, and is as warm as the skin below."""
+        """WATCHED (4, corners, times) under a display that conducts no heat and is as warm as the skin below."""
         found = []
         for modes, free, state in zip(self.modes, self.insulated, states, strict=True):
             felt = free.relax(times_s, free.deep_C, free.unlumps @ (modes.lumps @ state))
@@ -127,7 +127,7 @@ class Under:
         return [modes.after(left, last, end) for modes, end in zip(self.modes, ended, strict=True)]
 
     def cycle(self, shown: Shown, pause_s: float) -> list[Array]:
-        """States before each play of a steady cycle: each mode forgets the same share in every cycle."""
+        """States before each play of a steady cycle: each mode decays by the same share in every cycle."""
         none = [np.zeros_like(modes.rate_per_s) for modes in self.modes]
         forced = self.after(shown, pause_s, none)
         length = shown.end_s + shown.left_s(pause_s)
@@ -145,7 +145,7 @@ class Under:
         return np.array([modes.lumps @ state for modes, state in zip(self.modes, states, strict=True)])
 
     def _map(self, shown: Shown, pause_s: float) -> PlayMap:
-        """A play and its pause as a map of lumps, whose entries are not negative as those of modes may be."""
+        """A play and its pause as a map of lumps, whose entries, unlike those of modes, are never negative."""
         length = shown.end_s + shown.left_s(pause_s)
         forced = self.after(shown, pause_s, [np.zeros_like(modes.rate_per_s) for modes in self.modes])
         kept = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
@@ -162,7 +162,7 @@ class Under:
 
 
 def watched(felt: Sequence[Array]) -> Array:
-    """WATCHED (4, corners, rows) of FELT; the hot plate, which there is none of, stands as warm as the display."""
+    """WATCHED (4, corners, rows) of FELT; the missing hot plate is as warm as the display."""
     return np.stack([[each[_PLACE.get(name, _PLACE["display_C"])] for each in felt] for name in WATCHED])
 
 
@@ -187,7 +187,7 @@ def add_endings(
 
 
 def time_to_limit_s(under: Under, limits: Limits, level_C: float, start: Sequence[Array]) -> tuple[float, Tally]:
-    """How long in s a display may be held at a level before a hard limit of temperature is passed, 60 at most."""
+    """Time in s for which a display may be held at a level before a hard temperature limit is exceeded, 60 at most."""
     tally = Tally(limits, [str(corner) for corner in under.corners])
     tally.add(ENDING_ROWS_S, under.hold(level_C, start, ENDING_ROWS_S), rates=False, sums=False)
     broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]

@@ -1,4 +1,4 @@
-"""The gate for drives of temperatures: what a device shows, judged once, again and again, and with single faults."""
+"""The gate for drives of temperatures: what a device shows, judged for one play, repeated plays and single faults."""
 
 from __future__ import annotations
 
@@ -48,29 +48,29 @@ def gate_shown(
     rates: bool = True,
     module: bool = False,
 ) -> tuple[Gate, ...]:
-    """Check what a device shows, which may be played again and again in any order, against every rule of safety.
+    """Check what a device shows, in repeated plays in any order, against every rule of safety.
 
     Parameters
     ----------
     drives
         For each drive, its display in each way in which the device may follow.
     rig
-        Skin, contact and air, and their uncertainty; nothing else of it takes part.
+        The rig, of which skin, contact and air with their uncertainty are used.
     stuck_C
-        Ends in °C of the device's range, where a single fault may leave it.
+        Ends in °C of the device's range, at which a single fault may leave it.
     limits
-        In the place of the rig's.
+        Limits in place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the longest recovery time.
     rates
-        Whether the rate of skin is judged: not where a display jumps here that does not in truth.
+        Whether the rate of skin is judged; not where a jump of the display is an idealisation.
     module
-        Keep the rules of a hot plate, which then stands as warm as the display: to be joined with others.
+        Keep the rules of a hot plate, taken as warm as the display, so that checks can be joined with others.
 
     Raises
     ------
     PauseError
-        For a pause that cannot be.
+        For an impossible pause.
 
     """
     check_pause(pause_s)
@@ -186,7 +186,7 @@ def _demands(
     stuck_C: tuple[float, float],
     checks: Sequence[Check],
 ) -> Demands:
-    """What the device itself must prevent: a set-point that hangs, and a loop that runs to the end of its range."""
+    """What the device itself must prevent: a stuck set-point, and a loop that runs to the end of its range."""
     start = under.steady(float(ways[0].display_C[0]))
     levels = [float(level) for shown in ways for level in (shown.display_C.min(), shown.display_C.max())]
     hangs = [(level, *time_to_limit_s(under, limits, level, start)) for level in (min(levels), max(levels))]

@@ -1,4 +1,4 @@
-"""Many cues on many rigs in one go: what each virtual person's skin goes through."""
+"""Many cues on many rigs at once: the skin of each virtual person."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .simulate import rows_until, simulate
 from .steady import state_under_current, steady_state
 
 TRACKINGS = ("replay", "display", "ideal")
-"""What each rig is played: the nominal current open loop, the nominal display trajectory, or its own solution."""
+"""What each rig plays: the nominal current open loop, the nominal display trajectory, or its own solution."""
 
 USUAL = ("skin_C", "cold_receptor_C", "warm_receptor_C")
 
@@ -54,7 +54,7 @@ class Batch:
 
 
 def usual_tracking(icon: Icon) -> str:
-    """Tracking that suits what a cue prescribes: `display` for display control, else `replay`."""
+    """Default tracking of a cue: `display` for display control, otherwise `replay`."""
     return "display" if icon.context.control == "display" else "replay"
 
 
@@ -68,12 +68,12 @@ def simulate_many(
     tracking: str | None = None,
     probes: Sequence[str] = USUAL,
 ) -> Batch:
-    """Play every cue on every rig until `end_s`; the result does not depend on the number of cores.
+    """Simulate every cue on every rig until `end_s`; the result does not depend on the number of cores.
 
-    `tracking` is one of TRACKINGS, or None for what suits each cue: `replay` plays the current designed on `nominal`
-    open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits, `ideal`
-    solves anew for each rig. Rigs with a PID loop run it; a thermode shows the same display to everybody.
-    Raises RigError when a rig cannot hold a baseline.
+    `tracking` is one of TRACKINGS, or None for the default of each cue: `replay` plays the current designed on
+    `nominal` open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits,
+    `ideal` solves anew for each rig. Rigs with a PID loop run it; a thermode shows the same display to everybody.
+    Raises RigError where a rig cannot hold a baseline.
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -120,7 +120,7 @@ def simulate_stream(
     probes: Sequence[str] = USUAL,
     at_once: int = 256,
 ) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
-    """Play any number of cues on one rig, `at_once` of them in memory: yields (cues, their batch) in their order.
+    """Simulate any number of cues on one rig, `at_once` of them in memory; yields (cues, their batch) in order.
 
     >>> from thermicon.icons import load_library
     >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
@@ -139,7 +139,7 @@ def simulate_stream(
 
 @dataclass(frozen=True, slots=True)
 class _Stage:
-    """Where a batch is played: the rigs, the rig that cues are designed for, and what is written."""
+    """The setting of a batch: the rigs, the rig that cues are designed for, and what is recorded."""
 
     rigs: tuple[Rig, ...]
     nominal: Rig
@@ -201,7 +201,7 @@ class _Stage:
     def _loop(
         self, control: str, targets: Array, bases: Sequence[float], bias_A: Array, states: Sequence[Array]
     ) -> Array:
-        """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point of its own."""
+        """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point."""
         if control == "skin":
             raise RigError(
                 "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
@@ -214,7 +214,7 @@ class _Stage:
         return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, bank.states(states))[0]
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
-        """Run held currents, a row a cue or a row a lane, on every rig and cue from given states."""
+        """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
         times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
         held = np.concatenate([currents, currents[:, -1:]], axis=1)
         bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))

@@ -1,4 +1,4 @@
-"""Rigs stacked for the kernel, and the kernel run over many lanes (a lane is one cue on one rig) on all cores."""
+"""Rigs stacked for the kernels, which run many lanes (one cue on one rig each) on all cores."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Bank:
         )
 
     def states(self, states: Sequence[Array]) -> Array:
-        """Stack starting states, one a lane, padded to (lanes, n + 3)."""
+        """Stack starting states, one per lane, padded to (lanes, n + 3)."""
         rows = np.zeros((len(states), self.capacity.shape[1] + 3))
         for row, state in zip(rows, states, strict=True):
             row[: len(state)] = state
@@ -82,12 +82,12 @@ class Intervals:
 
 def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Intervals:
     """Cut time for currents (cues, k) given at times (k,), held or linear between, ending at the last row."""
-    beside = np.searchsorted(rows_s, times_s)
-    after, before = np.minimum(beside, len(rows_s) - 1), np.maximum(beside - 1, 0)
+    insert_at = np.searchsorted(rows_s, times_s)
+    after, before = np.minimum(insert_at, len(rows_s) - 1), np.maximum(insert_at - 1, 0)
     near = np.minimum(np.abs(rows_s[after] - times_s), np.abs(times_s - rows_s[before]))
-    own = (near > 1e-9) & (times_s < rows_s[-1])  # a row and a change a rounding error apart are one
-    edges = np.insert(rows_s, beside[own], times_s[own])
-    row_of = np.insert(np.arange(len(rows_s)), beside[own], -1)
+    new = (near > 1e-9) & (times_s < rows_s[-1])  # a row and a change a rounding error apart are one
+    edges = np.insert(rows_s, insert_at[new], times_s[new])
+    row_of = np.insert(np.arange(len(rows_s)), insert_at[new], -1)
     if held:
         now = np.clip(np.searchsorted(times_s, edges[:-1] + 1e-9, side="right") - 1, 0, len(times_s) - 1)
         start = end_ = currents_A[:, now]
@@ -110,7 +110,7 @@ def run_forward(
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Where lanes stand: `nodes_C` (lanes, n + 3) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
+    """The state of lanes: `nodes_C` (lanes, n + 3) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
 
     A sink is its temperature in °C, the integral of its loop in K·s, and its power now and at rest in W; NaN where it
     has not begun.
@@ -133,7 +133,7 @@ def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from states that may be in the middle of something; returns also the states at the end."""
+    """`run_forward` from any states; also returns the states at the end."""
     from . import kernel, kernel_batch
 
     which = [RECORDED.index(probe) for probe in probes]
@@ -209,11 +209,11 @@ FEWEST = 4
 
 
 SHORT = 100_000
-"""Lanes times intervals below which a thread takes longer to start than the work takes."""
+"""Lanes times intervals below which starting a thread takes longer than the work."""
 
 
 def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SHORT) -> None:
-    """Share lanes out: a few one by one, many in blocks that do not depend on the number of cores."""
+    """Run lanes: a few one by one, many in blocks that do not depend on the number of cores."""
     if lanes < FEWEST:
         work(np.arange(lanes, dtype=np.int64))
         return

@@ -1,4 +1,4 @@
-"""How many cores a piece of work may use; what it computes does not depend on it."""
+"""How many cores a computation may use; results do not depend on it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _allowed: ContextVar[int | None] = ContextVar("cores", default=None)
 
 
 def cores() -> int:
-    """Cores that this piece of work may use: those of the machine unless `at_most` says fewer."""
+    """Number of cores that this computation may use: all of this process unless `at_most` sets fewer."""
     return _allowed.get() or available()
 
 
@@ -24,7 +24,7 @@ def available() -> int:
 
 @contextmanager
 def at_most(count: int) -> Iterator[None]:
-    """Let the work inside use this many cores; a thread that it starts does not know of it.
+    """Limit the work inside to this many cores; threads that it starts are not limited.
 
     >>> with at_most(1):
     ...     cores()

@@ -1,4 +1,4 @@
-"""Designed against delivered: how far two traces of one cue lie apart, and from where on that is a loss."""
+"""Designed and delivered: how far two traces of one cue differ, and from which deviation on that is a loss."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class DeliveryDeviation:
-    """How far a delivered trace lies from the designed one, at the skin and at both receptors."""
+    """How far a delivered trace deviates from the designed one, at the skin and at both receptors."""
 
     places: tuple[Deviation, ...]
 
     def __repr__(self) -> str:
-        told = ", ".join(
+        places = ", ".join(
             f"{one.place} {one.largest_K * 1e3:+.3g} mK (rms {one.rms_K * 1e3:.3g})" for one in self.places
         )
-        return f"DeliveryDeviation({told})"
+        return f"DeliveryDeviation({places})"
 
     def losses(self) -> tuple[str, ...]:
-        """A sentence for each receptor whose rms difference is over the stated loss."""
+        """A sentence for each receptor whose rms deviation is over the stated loss."""
         limit = loss_limit("receptor difference")
         return tuple(
             f"the {one.place} differs by {one.rms_K:.3f} K (rms) from the design, over the stated {limit:g} K"
@@ -47,7 +47,7 @@ class DeliveryDeviation:
 
 
 def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
-    """Return how far the delivered trace lies from the designed one; both have the same rows.
+    """Return how far the delivered trace deviates from the designed one; both have the same rows.
 
     >>> from thermicon.circuit import Drive, Rig, simulate_current
     >>> low, high = (simulate_current(Drive([0, 1], [a, a]), Rig.load("thenar")) for a in (0.08, 0.081))
@@ -56,13 +56,13 @@ def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     """
     if len(designed.time_s) != len(delivered.time_s):
         raise ValueError(f"traces of {len(designed.time_s)} and {len(delivered.time_s)} rows cannot be compared")
-    found = []
+    deviations = []
     for place, column in PLACES.items():
-        apart = getattr(delivered, column) - getattr(designed, column)
-        most = int(np.argmax(np.abs(apart)))
-        rms = float(np.sqrt(np.mean(apart**2)))
-        found.append(Deviation(place, float(apart[most]), float(designed.time_s[most]), rms))
-    return DeliveryDeviation(tuple(found))
+        deviation_K = getattr(delivered, column) - getattr(designed, column)
+        most = int(np.argmax(np.abs(deviation_K)))
+        rms = float(np.sqrt(np.mean(deviation_K**2)))
+        deviations.append(Deviation(place, float(deviation_K[most]), float(designed.time_s[most]), rms))
+    return DeliveryDeviation(tuple(deviations))
 
 
 @cache

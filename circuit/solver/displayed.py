@@ -1,7 +1,7 @@
 """Runs of a thermode: the set-points that a cue becomes, the display that follows them, and the skin under it.
 
-There is no current to find: the display is what it is told, within its range, ramp rate and lag. A constant lag is a
-delay and not a miss, so the outcome is that of the display without it; the trace has it.
+There is no current to find: the display follows its set-points within its range, ramp rate and lag. A constant lag is a
+delay and not a miss, so the outcome is judged without it; the trace includes it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def part_of(update_s: float, finest_s: float = FINEST_S) -> float:
 
 @dataclass(frozen=True, slots=True)
 class DisplayDesign:
-    """What a thermode is told and shows for a cue, at steps (rows,) of `step_s` from 0 on, in °C.
+    """Set-points of a thermode for a cue and the display that follows, at steps (rows,) of `step_s` from 0 on, in °C.
 
     `prompt_C` is the display without its lag, by which the outcome is judged; `display_C` has the lag.
     """
@@ -62,7 +62,9 @@ def refuse_current(icon: Icon, who: str) -> None:
 
 
 def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_S) -> DisplayDesign:
-    """Return what a thermode makes of a cue until `end_s`; raises RigError for current, or a baseline out of range.
+    """Return the set-points and display of a thermode for a cue until `end_s`.
+
+    Raises RigError for a cue that prescribes current, and for a baseline out of range.
 
     Corners of a prescribed display are rounded to the resolution; the display for a prescribed skin is not, as a
     thermode draws it in segments that stay within half a step.

@@ -21,7 +21,7 @@ def displays_on(
     """Return probes (probes, rigs, icons, rows) of cues on thermode rigs.
 
     The display is the one designed on the nominal rig, since a thermode shows the same to everybody; under `ideal`
-    tracking a skin-controlled cue gets one for each rig. What a thermode has not (`hot_plate_C`) is NaN.
+    tracking a skin-controlled cue gets one for each rig. What a thermode does not have (`hot_plate_C`) is NaN.
     """
     if nominal.thermode is None or any(rig.thermode != nominal.thermode for rig in rigs):
         raise RigError("rigs of one batch must have the same thermode, or none")

@@ -1,4 +1,4 @@
-"""Pictures of a trace: temperatures, heat flow, current. Cool is blue, warm is orange; they differ in grey too."""
+"""Pictures of a trace: temperatures, heat flow, current. Cool is blue, warm is orange; they also differ in grey."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 COOL, WARM, DISPLAY, SKIN, TARGET, LIMIT = "#2166ac", "#e08214", "#6b6b6b", "#111111", "#9a9a9a", "#b2182b"
 PROBE = "#5e3c99"
 PROBE_DASHES = ((0, (1, 1)), (0, (4, 1, 1, 1)), (0, (3, 2)), (0, (6, 1, 1, 1, 1, 1)))
-"""Probes are told apart by their dashes, not by colour."""
+"""Probes are distinguished by their dashes, not by colour."""
 
 
 def new_axes(ax: Axes | None, size: tuple[float, float] = (7.0, 3.6)) -> Axes:
@@ -70,7 +70,7 @@ def plot_current(trace: Trace, ax: Axes | None = None) -> Axes:
 
 
 def tidy(ax: Axes, time_s: Array, label: str) -> Axes:
-    """Label an axis of time in s, and put the legend beside it; returns the Axes."""
+    """Label an axis of time in s, and place the legend beside the axes; returns the Axes."""
     ax.set_xlim(float(time_s[0]), float(time_s[-1]))
     ax.set_xlabel("time (s)")
     ax.set_ylabel(label)

@@ -1,4 +1,4 @@
-"""A drive: the current that a rig is played, held or linear between its rows, and its CSV file."""
+"""A drive: the current through a rig's module, held or linear between its rows, and its CSV file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ COLUMNS = ("time_s", "current_A")
 MOST_MB, LONGEST_CELL = 200, 60
 
 SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
-"""Closest rows in s, far below what any driver switches and far above where numbers end; longest drive in s,
+"""Closest rows in s, far below the switching time of any driver and far above rounding; longest drive in s,
 four months; largest current in A, far above what any module takes."""
 
 
@@ -82,7 +82,7 @@ class Drive:
     def of_command(
         time_s: Sequence[float] | Array, command_V: Sequence[float] | Array, gain_A_per_V: float, held: bool = False
     ) -> Drive:
-        """Return the drive that a command voltage makes through a driver's transconductance.
+        """Return the drive that a command voltage produces through a driver's transconductance.
 
         >>> Drive.of_command([0, 1], [1.0, 5.0], 0.1).current_A
         array([0.1, 0.5])
@@ -90,7 +90,7 @@ class Drive:
         return Drive(time_s, np.asarray(command_V, dtype=np.float64) * gain_A_per_V, held)
 
     def at(self, time_s: Array) -> Array:
-        """Current in A at times in s, the one that begins there where it jumps."""
+        """Current in A at times in s; at a jump, the current after it."""
         if self.held:
             place = np.searchsorted(self.time_s, time_s + 1e-9, side="right") - 1
             return self.current_A[np.clip(place, 0, len(self.current_A) - 1)]
@@ -101,7 +101,7 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
     """Return the drive of a CSV file with columns `time_s,current_A`; raises DriveError naming the line at fault."""
     where = Path(path)
     text = read_text(where, "drive file", MOST_MB, DriveError)
-    # Lines may end as on Windows or on an old Macintosh; a reader made for one of them stumbles over the others.
+    # Line ends may be those of Windows or of an old Macintosh; the csv reader accepts one kind only.
     rows = csv.reader(io.StringIO(text.replace("\r\n", "\n").replace("\r", "\n")))
     try:
         header = [name.strip() for name in next(rows, [])]

@@ -1,8 +1,8 @@
-"""Skin that a pad keeps off the display: a second column beside the first, as a thermistor under aerogel sees it.
+"""Skin that a pad insulates from the display: a second column beside the first, as under a thermistor below aerogel.
 
-A 1-D stand-in for what is a 3-D field. The second column has the same layers; the display reaches its face through the
+A 1-D substitute for a 3-D field. The second column has the same layers; the display reaches its face through the
 pad, and at every depth it is joined to the first column by a conductance k·dz / (L·w) per unit area, where L is the
-distance to skin in contact and w the width of the patch. Nothing flows back: the patch is taken as small.
+distance to skin in contact and w the width of the patch. No heat flows back: the patch is assumed small.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class LateralColumn:
     deep_C: float
 
     def steady_C(self, display_C: float, lumps_C: Array) -> Array:
-        """Temperatures (n + 2,) in °C of display, lumps and deep node when display and first column never change."""
+        """Temperatures (n + 2,) in °C of display, lumps and deep node in steady state."""
         g, across, perfused = self.conductance_W_per_m2K, self.across_W_per_m2K, self.perfusion_W_per_m2K
         matrix = np.diag(g[:-1] + g[1:] + across + perfused) - np.diag(g[1:-1], 1) - np.diag(g[1:-1], -1)
         source = across * lumps_C + perfused * self.deep_C
@@ -57,7 +57,7 @@ def lateral_column(rig: Rig, probe: Probe) -> LateralColumn:
 
 
 def _conductance_along(rig: Rig) -> Array:
-    """Conductivity times height, k·dz in W/K, of what each lump stands for."""
+    """Conductivity times height, k·dz in W/K, of the tissue of each lump."""
     depth, layers = rig.column.depth_m, rig.skin.layers
     if rig.skin.elements is None:
         edges = np.concatenate([[0.0], (depth[:-1] + depth[1:]) / 2, [(depth[-1] + rig.skin.thickness_m) / 2]])
@@ -72,7 +72,7 @@ def _conductance_along(rig: Rig) -> Array:
 def insulated_C(rig: Rig, probe: Probe, time_s: Array, display_C: Array, lumps_C: Array) -> Array:
     """Temperature (rows,) in °C in insulated skin, from the display's (rows,) and the first column's lumps' (n, rows).
 
-    Steps from row to row by the trapezoidal rule, and starts steady.
+    Steps from row to row by the trapezoidal rule, from a steady state.
     """
     from . import kernel_probes
 

@@ -1,4 +1,4 @@
-"""From the temperature a cue asks for to the current that makes it, held over each driver period."""
+"""From the temperature that a cue prescribes to the current that produces it, held over each driver period."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from .steady import steady_state
 from .trace import Outcome, judge
 
 LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
-"""What held a current back, by the code that the kernel writes."""
+"""What limited a current, by the code of the kernel."""
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """The current designed for a cue on a rig; before it, `rest_A` has held the state `start_C` (°C) for ever."""
+    """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C)."""
 
     drive: Drive
     rest_A: float
@@ -47,15 +47,15 @@ def baseline_C(icon: Icon, rig: Rig) -> float:
 
 
 def target_at(icon: Icon, start: float, times_s: Array) -> Array:
-    """What the cue asks for at times in s: °C, or A under current control; the last level is kept."""
+    """What the cue prescribes at times in s: °C, or A under current control; the last level is kept."""
     corners = icon.corners(start)
     return np.asarray(np.interp(times_s, corners.time_s, corners.value), dtype=np.float64)
 
 
 def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
-    """Times in s at which a cue makes a step, and until when it must have arrived.
+    """Times in s at which a cue steps, and by which the rig must have arrived.
 
-    That is the end of the hold behind it, or, where a ramp follows at once, the next step: the rig may catch up.
+    That is the end of the hold after the step, or the next step where a ramp follows at once: the rig may catch up.
     """
     corners, found = icon.corners(start), []
     times, levels = corners.time_s, corners.value
@@ -67,9 +67,25 @@ def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
 
 
 def design(icon: Icon, rig: Rig, end_s: float) -> Design:
-    """Return the current that plays a cue on a rig until `end_s`; raises RigError for a baseline that cannot be held.
+    """Return the current that plays a cue on a rig.
 
     Skin and display control give currents held over each driver period; current control gives the cue's own corners.
+
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        A rig with a module.
+    end_s
+        Time in s until which the current is designed; the last level is held.
+
+    Raises
+    ------
+    RigError
+        For a baseline that the rig cannot hold.
+
+
     """
     plan = design_ideal(icon, rig, end_s)
     if rig.controller is None or icon.context.control == "current":
@@ -78,7 +94,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 
 
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
-    """As `design`, by the inverse of the module alone: a loop of the rig's own takes no part."""
+    """As `design`, by the inverse of the module alone, without the rig's own control loop."""
     control = icon.context.control
     current, state = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     if control == "current":
@@ -100,9 +116,10 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
-    """Return the designs of many cues on one rig, each with its verdict, found side by side on all cores.
+    """Return the designs of many cues on one rig, each with its outcome, computed in parallel on all cores.
 
-    As `design`, but cues share `end_s`. Cues that prescribe current, and rigs with a loop of their own, go one by one.
+    As `design`, but all cues share `end_s`. Cues that prescribe current, and rigs with a control loop, are designed one
+    by one.
 
     >>> from thermicon.icons import load_library
     >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
@@ -136,7 +153,7 @@ def gains_of(rig: Rig) -> tuple[float, float, float, float]:
 
 
 def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
-    """Return what the rig's own PID loop makes of a cue; the plan is the ideal inverse of the same cue.
+    """Return the currents of the rig's own PID loop for a cue; `plan` is the ideal inverse of the same cue.
 
     The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.

@@ -1,4 +1,4 @@
-"""Compiled stepping of what only listens: a thermistor's lag, and skin beside the skin in contact."""
+"""Compiled stepping of passive probes: a thermistor's lag, and insulated skin beside the skin in contact."""
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.

@@ -70,7 +70,7 @@ class Network:
         return float(weight[COLD - start]) if start <= COLD else 0.0
 
     def read(self, state_C: Array, probe: str) -> float:
-        """Value of one of RECORDED at a state (n + 3,) in °C."""
+        """Value of one of the RECORDED quantities at a state (n + 3,) in °C."""
         row = RECORDED.index(probe)
         start = int(self.probe_start[row])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
@@ -84,7 +84,7 @@ def network_of(rig: Rig) -> Network:
 
 @lru_cache(maxsize=512)
 def skin_network_of(rig: Rig) -> Network:
-    """Return the lumps of a rig's skin under its display; what its plates are is not known (NaN)."""
+    """Return the lumps of a rig's skin under its display; the numbers of its plates are NaN."""
     plates = np.full(PLATE_NUMBERS, np.nan)
     plates[DEEP_C] = rig.deep_C
     return _network(rig, rig.column, plates)
@@ -134,7 +134,7 @@ def _network(rig: Rig, column: Column, plates: Array) -> Network:
 
 
 def _probes(rig: Rig, resistance: Array) -> tuple[npt.NDArray[np.int64], Array]:
-    """Weights of each probe on three neighbouring states; resistances from the cold plate down, m²·K/W."""
+    """Weights of each recorded quantity on three neighbouring states; resistances from the cold plate down, m²·K/W."""
     place = np.concatenate([[0.0], np.cumsum(resistance)])  # of cold plate, lumps, deep node
     contact = rig.contact.resistance_m2K_per_W
     rows = [(HOT, (1.0, 0.0, 0.0)), (COLD, (1.0, 0.0, 0.0)), temperature_weights(contact, place)]
@@ -156,7 +156,7 @@ def places_of(rig: Rig) -> Array:
 
 
 def stacked(rows: Sequence[Weights]) -> tuple[npt.NDArray[np.int64], Array]:
-    """Starts (k,) and weights (k, 3) of several readings, as the kernel takes them."""
+    """Starts (k,) and weights (k, 3) of several readings, in the form that the kernel expects."""
     return np.array([row[0] for row in rows], dtype=np.int64), np.array([row[1] for row in rows]).reshape(-1, 3)
 
 

@@ -1,6 +1,6 @@
-"""Skin under a display whose temperature is prescribed, as a thermode that closes its own loop prescribes it.
+"""Skin under a display whose temperature is prescribed, as by a thermode with its own control loop.
 
-Without a module the circuit is linear and never changes: C·dx/dt = −G·x + g₀·u·e₀, with temperatures above the deep
+Without a module the circuit is linear and time-invariant: C·dx/dt = −G·x + g₀·u·e₀, with temperatures above the deep
 node's and u that of the display. Its modes are solved exactly for a display that is linear between instants.
 """
 
@@ -18,7 +18,7 @@ from ..rig.rig import Rig
 from .network import COLD, HOT, RECORDED, SKIN, Network, skin_network_of
 
 FELT = RECORDED[RECORDED.index("display_C") :]
-"""What a run under a prescribed display records: RECORDED without the hot plate, which no thermode shows."""
+"""What a run under a prescribed display records: RECORDED without the hot plate, which a thermode does not have."""
 
 Index = npt.NDArray[np.int64]
 
@@ -31,7 +31,7 @@ class SkinModes:
     """A skin column as n modes: `rate_per_s` (n,), `drive_per_s` (n,) of a display of 1 K, readings of FELT.
 
     A reading is `reading @ z + direct · u + offset_C`, with modes z and display u in K above the deep node. `lumps`
-    (n, n) makes temperatures of lumps, in K above the deep node, of modes, and `unlumps` modes of those.
+    (n, n) turns modes into temperatures of lumps, in K above the deep node, and `unlumps` does the reverse.
     """
 
     deep_C: float
@@ -140,7 +140,7 @@ class SkinModes:
 
 @lru_cache(maxsize=256)
 def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
-    """Return the modes of a rig's skin in contact; `insulated`: under a display that lets no heat through.
+    """Return the modes of a rig's skin in contact; `insulated`: under a display that conducts no heat.
 
     >>> round(modes_of(Rig.load("thenar")).display_holding_skin_C(32.0), 2)
     31.96

@@ -1,7 +1,7 @@
-"""Probes: what a thermistor at a place reads while a cue plays. A probe is recorded beside the trace's own columns.
+"""Probes: what a thermistor reads while a cue plays. A probe is recorded in addition to the trace's own columns.
 
 `display`: the cold plate, under an insulating layer. `interface`: halfway through the contact resistance. `skin`: the
-tissue at a depth, linear in thermal resistance between lumps. `insulated skin`: see `insulated` beside this.
+tissue at a depth, linear in thermal resistance between lumps. `insulated skin`: see `insulated`.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from .insulated import insulated_C
 from .network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
 
 SLOWEST_ROWS_S = 0.01
-"""What has a memory of its own, a lag or a second column, is stepped at least this finely, whatever the rows."""
+"""A probe with memory (a lag or a second column) is stepped at least this finely, whatever the rows."""
 
 MOST_VALUES = 200_000_000
 
 
 def between(rows_s: Array, rig: Rig) -> int:
-    """Into how many parts the rows of a run are divided, so that no probe with a memory steps over 10 ms.
+    """Number of parts into which the rows of a run are divided, so that no probe with memory steps over 10 ms.
 
     >>> between(np.array([0.0, 0.025]), Rig.load("thenar").with_(probe=[{"name": "a", "place": "skin", "lag_s": 1.0}]))
     3
@@ -68,7 +68,7 @@ def lump_rows(rig: Rig) -> list[Weights]:
 
 
 def readings_of(rig: Rig) -> tuple[Index, Array] | None:
-    """Return what a run has to record for a rig's probes: one reading each, then all lumps where they are needed."""
+    """Return the readings that a run must record for a rig's probes: one each, then all lumps where needed."""
     if not rig.probes:
         return None
     place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
@@ -91,7 +91,7 @@ def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None
 
 
 def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[str, Array], ...]:
-    """Return (name, °C) of every probe at every `parts`-th time, from what `readings_of` asked (k, times)."""
+    """Return (name, °C) of every probe at every `parts`-th time, from the readings (k, times) of `readings_of`."""
     lumps = recorded[len(rig.probes) :]
     found = []
     for probe, read in zip(rig.probes, recorded, strict=False):

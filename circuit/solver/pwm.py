@@ -26,7 +26,7 @@ bridge ripples less, so that nothing is understated."""
 def duty_of(
     rule: str, current_A: Array, peak_A: float, module: Peltier, cold_C: Array, hotter_K: Array | float = 0.0
 ) -> Array:
-    """Return signed duties (n,) that stand for currents (n,) in A, with the cold plate at temperatures (n,) in °C.
+    """Return signed duties (n,) that replace currents (n,) in A, with the cold plate at temperatures (n,) in °C.
 
     `mean current` keeps the mean, I/Ip. `equal heat` takes as much heat from the cold plate as the steady current does;
     where the bridge's own current is past the greatest cooling, there is no such duty, and the mean is kept.
@@ -65,7 +65,7 @@ def switched(duty: Array, rate_Hz: float, carrier_Hz: float, peak_A: float) -> D
 
 
 def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
-    """Return the state in °C to which a duty held for ever leads, but for the ripple.
+    """Return the steady state in °C of a constant duty, without the ripple.
 
     The mean current is D·Ip and the mean of its square 1/D times the square of that, as if the resistance were R/D.
     """

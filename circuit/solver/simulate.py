@@ -1,4 +1,4 @@
-"""The circuit run: a cue or a drive on a rig gives a Trace."""
+"""Simulation of the circuit: a cue or a drive on a rig gives a Trace."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
 HOTTEST_C = 1000.0
-"""Above this a run is not of skin and solder any more, but of a wrong number."""
+"""Above this, solder melts and a number must be wrong."""
 
 
 def rows_until(end_s: float, rate_Hz: float) -> Array:
-    """Times in s of the rows of a run: a whole number of them a second, and the end.
+    """Times in s of the rows of a run: multiples of 1/rate, and the end.
 
     >>> rows_until(0.25, 10)
     array([0.  , 0.1 , 0.2 , 0.25])
@@ -43,23 +43,44 @@ def rows_until(end_s: float, rate_Hz: float) -> Array:
 
 
 def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
-    """Play a cue on a rig: find the current that makes it, then run the circuit with that current.
+    """Simulate a cue on a rig: find the current that produces it, then run the circuit with that current.
 
     A thermode needs no current: its display follows the cue within its own limits, and the skin follows the display.
 
-    The trace has `rate_Hz` rows a second and ends `tail_s` seconds after the cue's last corner. Its `outcome` says
-    whether the target was reached. Raises RigError when no current holds the baseline.
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig.
+    rate_Hz
+        Rows of the trace per second.
+    tail_s
+        Time in s that the trace continues after the cue's last corner.
 
+    Returns
+    -------
+    Trace
+        Its `outcome` reports whether the rig reached the target.
+
+    Raises
+    ------
+    RigError
+        Where no current holds the baseline, or a run is not physical or too long.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> step = load_library("six-icons")["cooling-step"]
     >>> simulate(step, Rig.load("thenar"))
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
+
     """
     return _play(icon, rig, rate_Hz, tail_s, None)[0]
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:
-    """Time in s from a cue's start to its last corner; under current control it hangs on the rig's holding current."""
+    """Time in s from a cue's start to its last corner; under current control, it depends on the holding current."""
     if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
@@ -68,7 +89,7 @@ def duration_s(icon: Icon, rig: Rig) -> float:
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
-    """Play every cue of a set on one rig until `end_s`: what `simulate` gives, side by side where that is quicker.
+    """Simulate every cue of a set on one rig until `end_s`; as `simulate`, in parallel where that is quicker.
 
     >>> from thermicon.icons import load_library
     >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
@@ -98,10 +119,24 @@ def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
 
 
 def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C: Array | None = None) -> Trace:
-    """Run the circuit with a given drive, from the steady state of its first current to its last row.
+    """Simulate a given drive on a rig, from the steady state of its first current to its last row.
 
-    `start_C` begins with another state, °C. The driver's limits only warn. Raises RigError when the first current has
-    no steady state.
+    Parameters
+    ----------
+    drive
+        The current; beyond the driver's limits it is still played, and the trace reports it.
+    rig
+        A rig with a module.
+    rate_Hz
+        Rows of the trace per second.
+    start_C
+        Another state (n + 3,) in °C to start from.
+
+    Raises
+    ------
+    RigError
+        Where the first current has no steady state, or the run is not physical.
+
     """
     return _replay(drive, rig, rate_Hz, None, start_C)[0]
 
@@ -109,7 +144,7 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
 def watch(
     cue: Icon | Drive, rig: Rig, readings: tuple[Index, Array], *, rate_Hz: float = 100.0, tail_s: float = 0.0
 ) -> tuple[Trace, Array]:
-    """Play a cue or a drive, and return its trace with further readings (k, rows) of the state: starts and weights."""
+    """Simulate a cue or a drive; returns its trace and further `readings` (starts, weights) of the state (k, rows)."""
     if isinstance(cue, Icon):
         return _play(cue, rig, rate_Hz, tail_s, readings)
     return _replay(cue, rig, rate_Hz, readings)
@@ -164,7 +199,7 @@ def _trace(
     rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
     probes: Array, own: tuple[tuple[str, Array], ...],
 ) -> Trace:  # fmt: skip
-    """The trace of recorded RECORDED (probes, rows); RigError where they are not physical."""
+    """The trace of RECORDED quantities (probes, rows); RigError where they are not physical."""
     temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
     possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
     if not possible.all():
@@ -203,7 +238,7 @@ def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
 
 
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
-    """Sentences for a drive that asks more of the driver than it has."""
+    """Sentences for a drive that exceeds the driver."""
     driver, found = rig.driver, []
     asked = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
     if asked.max() > 1e-9:

@@ -1,4 +1,4 @@
-"""What can be told of a cue on a rig without simulating it, by closed form: levels, rates, a baseline that holds."""
+"""Closed-form checks of a cue on a rig, without simulation: levels, rates, and whether the baseline can be held."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from .steady import holding_current_A, state_under_current, steady_state
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
-    """Return what makes a cue impossible on a rig, a sentence each; empty where nothing does.
+    """Return one sentence for each reason why a cue is impossible on a rig; empty where there is none.
 
-    Checked are the baseline, the lowest and highest level (each must be one that the rig can hold for ever) and, under
-    display control, each ramp against the steepest that the driver can begin from rest at the ramp's first level.
-    Whether a cue is reached in time is for `simulate` to say.
+    Checks the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and, under
+    display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
+    `simulate` reports whether the rig reaches the target in time.
 
     >>> from thermicon.icons import load_library
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
@@ -60,7 +60,7 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
 
 
 def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
-    """As `check_static`: its range and its ramp rate; a skin level is judged by the display that holds it for ever."""
+    """As `check_static`, for the range and ramp rate of a thermode; skin levels by the display that holds them."""
     control, modes, base = icon.context.control, modes_of(rig), baseline_C(icon, rig)
     try:
         refuse_current(icon, f"rig {rig.name}")
@@ -125,7 +125,7 @@ def _exists(rig: Rig, current: float) -> bool:
 
 
 def _within(current: float, allowed: Callable[[float], bool]) -> float:
-    """The current nearest to the one given, towards 0, that is allowed."""
+    """The allowed current nearest to the given one, towards 0."""
     if allowed(current):
         return current
     good, bad = 0.0, current

@@ -1,4 +1,4 @@
-"""Steady states: the state under a current that never changes, and the current that holds a baseline."""
+"""Steady states: the state under a constant current, and the current that holds a baseline."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ def _column(network: Network) -> tuple[Array, Array]:
 
 
 def state_under_current(network: Network, current_A: float) -> Array:
-    """Return the state (n + 3,) in °C that a current held for ever leads to.
+    """Return the steady state (n + 3,) in °C under a constant current.
 
-    Raises ArithmeticError when there is none (the module would heat without end).
+    Raises ArithmeticError where there is none (the module would heat without limit).
     """
     alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
@@ -53,7 +53,7 @@ def state_under_current(network: Network, current_A: float) -> Array:
     per_cold = leak / (out + leak - alpha * current_A)
     diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e[0])
     if out + leak - alpha * current_A <= 0 or diagonal <= 0:
-        raise ArithmeticError(f"{current_A:g} A held for ever has no steady state on this rig: it heats without end")
+        raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
     cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
     return _fill(network, cold, zero + per_cold * cold, z, e)
 
@@ -67,9 +67,9 @@ def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Arra
 
 
 def holding_current_A(network: Network, control: str, level_C: float) -> float:
-    """Return the current in A that holds `skin` or `display` at a level in °C for ever.
+    """Return the current in A that holds `skin` or `display` at a level in °C in steady state.
 
-    Where the module cannot cool that far, the result is the current of greatest cooling; its steady state tells.
+    Where the module cannot cool that far, the result is the current of greatest cooling; check its steady state.
     """
     alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     z, e = _column(network)
@@ -85,24 +85,41 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
 
 
 def check_sink(rig: Rig, state_C: Array) -> None:
-    """Raise RigError where a hot plate under its own control has not the power to rest at a state (n + 3,) in °C."""
-    sink, own = rig.heat_sink, rig.heat_sink.controller
-    if own is None:
+    """Raise RigError where a heat sink with its own controller lacks the power to hold a state (n + 3,) in °C."""
+    sink, controller = rig.heat_sink, rig.heat_sink.controller
+    if controller is None:
         return
     power = (float(state_C[HOT]) - sink.temperature_C) / sink.resistance_K_per_W
-    if abs(power) > own.power_limit_W:
+    if abs(power) > controller.power_limit_W:
         raise RigError(
             f"rig {rig.name}: at rest the hot plate has {abs(power):.2f} W to {'remove' if power > 0 else 'add'}, its "
-            f"controller gives {own.power_limit_W:g} W; raise heat_sink.power_limit_W, or begin nearer to rest"
+            f"controller gives {controller.power_limit_W:g} W; raise heat_sink.power_limit_W, or begin nearer to rest"
         )
 
 
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
-    """Return (current A, state °C) that hold `skin` or `display` at a baseline; raises RigError when none can.
+    """Return the current in A and the state in °C (n + 3,) that hold a baseline in steady state.
 
+    Parameters
+    ----------
+    rig
+        A rig with a module.
+    control
+        What is held: `skin` or `display`.
+    level_C
+        The baseline in °C.
+
+    Raises
+    ------
+    RigError
+        Where the module, the driver or the heat sink cannot hold the baseline, with the limit and a cure.
+
+    Examples
+    --------
     >>> current, state = steady_state(Rig.load("thenar"), "skin", 32.0)
     >>> round(current, 2)
     0.08
+
     """
     network = network_of(rig)
     probe = "skin_C" if control == "skin" else "display_C"

@@ -1,4 +1,4 @@
-"""A trace: what one run did, row by row, and whether it reached its target."""
+"""A trace: the result of one run, row by row, and whether it reached its target."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ LAST_S = 2.0
 class Outcome:
     """Whether the controlled temperature reached its target, judged at the end of every driver period.
 
-    Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits met with
-    the times in s at which each was first met. A step is as fast as the driver can make it: from its beginning until
-    it arrives nothing is missed. `slowest_step_s` is the longest that one took; None where the cue has no step.
-    `late_s` are the times of steps that had not arrived when the level moved on, or at the end.
+    Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits that
+    were met with the times in s at which each was first met. A step is as fast as the driver can make it: no miss is
+    counted from its beginning until it arrives. `slowest_step_s` is the longest time that a step took; None where the
+    cue has no step. `late_s` are the times of steps that had not arrived when the level moved on, or at the end.
     """
 
     reached: bool
@@ -74,8 +74,8 @@ class Trace:
 
     `current_A` is the current held from that row on; it, `voltage_V` and `hot_plate_C` are NaN on a thermode, which has
     none. `target_C` is NaN where the run had no target temperature.
-    `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` is about the rig,
-    `beyond` about what the drive asks of the driver that it cannot give. `limits` are the rig's limits of safety.
+    `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` are about the rig,
+    `beyond` about a drive that exceeds the driver. `limits` are the rig's limits of safety.
     """
 
     icon: str | None
@@ -124,7 +124,7 @@ class Trace:
 
     @property
     def has_current(self) -> bool:
-        """Whether a current made it; False on a thermode, whose current, voltage and hot plate are NaN."""
+        """Whether a current produced it; False on a thermode, whose current, voltage and hot plate are NaN."""
         return not bool(np.isnan(self.current_A).all())
 
     @property
@@ -160,7 +160,7 @@ class Trace:
         self.to_frame().to_csv(path, index=False, float_format=CSV_FORMAT)
 
     def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
-        """Draw target, display, skin and receptor temperatures against time, and probes if asked; returns the Axes."""
+        """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes."""
         from .draw import plot_temperatures
 
         return plot_temperatures(self, ax, probes)
@@ -202,8 +202,8 @@ def judge(
 ) -> Outcome:
     """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period.
 
-    `steps_s` are the times at which steps begin, and until when each must have arrived. One with less than 2 s left, at
-    the end of the run, is not held against the rig.
+    `steps_s` are the times at which steps begin, and until when each must have arrived. A step with less than 2 s left
+    at the end of the run does not count as late.
     """
     miss = reached_C - target_C
     close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)

@@ -1,1 +1,1 @@
-"""thermicon.circuit.studies: the source paper and the mesh, looked into."""
+"""thermicon.circuit.studies: studies of the source paper, the mesh and what a rig can reach."""

@@ -21,7 +21,7 @@ from ..solver.trace import Trace
 
 @dataclass(frozen=True, slots=True)
 class Depths:
-    """A run seen at k depths: `depth_m` (k,), temperature °C and heat flow W/m² into the skin (k, rows), its trace."""
+    """A run at k depths: `depth_m` (k,), temperature °C and heat flow W/m² into the skin (k, rows), its trace."""
 
     depth_m: Array
     temperature_C: Array
@@ -42,7 +42,7 @@ class Depths:
 def probe_depths(
     cue: Icon | Drive, rig: Rig, depths_m: Sequence[float] | Array, *, rate_Hz: float = 100.0, tail_s: float = 0.0
 ) -> Depths:
-    """Play a cue or a drive on a rig and look at depths in m, counted from the surface; lumps are `rig.column.depth_m`.
+    """Simulate a cue or a drive on a rig and record depths in m from the surface; lumps are at `rig.column.depth_m`.
 
     Temperature is linear in thermal resistance between lumps. Heat flow at a lump is the mean of its two faces, between
     lumps the face's, at the surface the contact's. Raises RigError for a depth outside the skin.
@@ -88,9 +88,9 @@ def resembles(
 ) -> Likeness:
     """Return the depth in the skin under the display whose course a probe on insulated skin resembles most.
 
-    Compared are changes from the first row, since where a trace starts says nothing of depth: least rms over the rows,
-    over all depths. `probe` is a name, or None for the first on insulated skin. A lag of the probe is part of what it
-    reads. The second column is a 1-D stand-in, so the answer is one as well. Raises RigError without such a probe.
+    Changes from the first row are compared, since the start of a trace does not depend on depth: least rms over the
+    rows, over all depths. `probe` is a name, or None for the first on insulated skin. A lag of the probe is part of its
+    reading. The second column is a 1-D substitute, and so is the result. Raises RigError without such a probe.
 
     >>> from thermicon.icons import load_library
     >>> rig = Rig.load("thenar").with_(probe=[{"name": "pad", "place": "insulated skin"}])

@@ -1,7 +1,7 @@
-"""How much a mesh of the skin matters: graded meshes and fixed elements held against a mesh-converged solution.
+"""How much a mesh of the skin matters: graded meshes and fixed elements compared with a mesh-converged solution.
 
-Two comparisons are fair, and both are offered: every mesh played the same `current` (what a rig really shares), and
-every mesh led along the same controlled `temperature` with its own current (what a cue prescribes).
+Two comparisons are fair, and both are available: every mesh with the same `current` (as on one rig), and every mesh
+along the same controlled `temperature` with its own current (as a cue prescribes).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ DEPTHS = ("cold_receptor_C", "warm_receptor_C")
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A way to cut skin into lumps: graded (cell at the surface m, growth per unit depth), or elements a layer."""
+    """A division of skin into lumps: graded (cell at the surface m, growth per unit depth), or elements per layer."""
 
     name: str
     first_cell_m: float = FIRST_CELL_M
@@ -163,11 +163,11 @@ def mesh_study(
     rate_Hz: float = 1000.0,
     tail_s: float = 0.0,
 ) -> MeshStudy:
-    """Play a cue or a drive on a rig cut into several meshes and on a converged one.
+    """Simulate a cue or a drive on several meshes of a rig's skin and on a converged one.
 
     With `way="current"` all get the current designed on the rig as it is; with `"temperature"` each follows the cue
-    with its own. Time steps are the rows, the same for all, and 1 ms by default, so that they do not matter. Raises
-    RigError for a way that does not exist, or a drive whose temperature nobody prescribed.
+    with its own. Time steps are the rows, the same for all, and 1 ms by default, so that they do not affect the result.
+    Raises RigError for a way that does not exist, or a drive without a prescribed temperature.
 
     >>> from thermicon.icons import load_library
     >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
@@ -221,7 +221,7 @@ def _network(rig: Rig, mesh: Mesh) -> Network:
 
 @dataclass(frozen=True, slots=True)
 class _Currents:
-    """The current that all meshes are played; before it, `rest_A` was held for ever."""
+    """The current that all meshes are played; before it, `rest_A` holds the steady state."""
 
     drive: Drive
     rest_A: float

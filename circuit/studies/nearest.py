@@ -23,7 +23,7 @@ STEPS = 14
 class Nearest:
     """A reachable cue: the cue with its ramps `slower` times as slow, or its changes `smaller` times as large.
 
-    One of the two is 1; of both ways the one with the smaller ratio was taken.
+    One of the two is 1; of the two ways, the one with the smaller ratio is chosen.
     """
 
     icon: Icon
@@ -42,10 +42,10 @@ class Nearest:
 
 
 def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
-    """Return the nearest cue that the rig reaches; None where the cue is reached itself, or where no such cue exists.
+    """Return the nearest cue that the rig reaches; None where the cue itself is reached, or no such cue exists.
 
-    Looked for by bisection, to about 1 %, along two ways: slower ramps between the same levels, and smaller changes
-    in the same time. A cue that prescribes current is not changed.
+    Searched by bisection, to about 1 %, in two ways: slower ramps between the same levels, and smaller changes in the
+    same time. A cue that prescribes current is not changed.
 
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
@@ -111,7 +111,7 @@ def _reached(icon: Icon, rig: Rig) -> bool:
 
 
 def _least(works: Callable[[float], bool], most: float) -> float | None:
-    """Least factor above 1 that works, with three digits; None where not even the most does."""
+    """Least factor above 1 that works, with three digits; None where even `most` does not work."""
     if not works(most):
         return None
     low, high = 0.0, math.log(most)

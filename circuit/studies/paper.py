@@ -1,4 +1,4 @@
-"""The source paper's results beside ours: Shani & Lineykin 2021, Figs. 3 to 6 and what its discussion says.
+"""The source paper's results compared with ours: Shani & Lineykin 2021, Figs. 3 to 6 and statements of its discussion.
 
 Every function plays the paper's cooling step (6 °C at 3 °C/s, 4 s held, back) on a rig, `emulator_rig()` unless another
 is given, and returns data with a `plot`. The paper's own curves are not reproduced: they are not available in numbers.
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
 
 TAIL_S = 4.0
 EMULATOR_A, EMULATOR_V = 2.5, 20.0
-"""Limits that hold back nothing of the paper's cue: its first instants ask for 2.4 A and 15.9 V."""
+"""Limits that do not affect the paper's cue: its first instants need 2.4 A and 15.9 V."""
 THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
 
 
 @cache
 def printed() -> Table:
-    """Numbers that the paper's text gives, each with its place."""
+    """Numbers from the paper's text, each with its place."""
     return load_records(resources.files("thermicon.circuit") / "data" / "source-paper.toml")
 
 
@@ -161,8 +161,8 @@ def _change(values: Array) -> float:
 def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, control: str = "skin") -> Thermistors:
     """Put the paper's three thermistors on a rig and play the cue (Figs. 5 and 6).
 
-    `lateral_m` is both the distance of the insulated patch to skin in contact and its width; None takes the assumed
-    ones. The paper gives neither, nor the thermistors' lag: here they have none.
+    `lateral_m` is both the distance of the insulated patch to skin in contact and its width; None uses the assumed
+    values. The paper gives neither, nor the thermistors' lag: here they have none.
     """
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
     if lateral_m is not None:
@@ -175,7 +175,7 @@ def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, contr
 
 @dataclass(frozen=True, slots=True)
 class DermisChange:
-    """Largest change in K and fastest fall in K/s at depths in m, and where they are what the paper's text says."""
+    """Largest change in K and fastest fall in K/s at depths in m, and where they equal those in the paper's text."""
 
     rig_name: str
     depth_m: Array
@@ -205,7 +205,7 @@ class DermisChange:
         )
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw change and fastest fall against depth, with what the paper says of both; returns the Axes."""
+        """Draw change and fastest fall against depth, with the paper's statements on both; returns the Axes."""
         from .studydraw import plot_dermis
 
         return plot_dermis(self, ax)

@@ -1,4 +1,4 @@
-"""Where our runs and the source paper differ, and why, in sentences whose numbers are computed when asked."""
+"""Where our runs and the source paper differ, and why, in sentences whose numbers are computed on request."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 
 @dataclass(frozen=True, slots=True)
 class PaperDifference:
-    """One point of comparison: whether we agree, what the paper says, what we find, and why."""
+    """One point of comparison: whether we agree, the paper's statement, our result, and the reason."""
 
     topic: str
     agrees: bool
@@ -44,7 +44,7 @@ class PaperDifference:
 
 
 def paper_differences() -> tuple[PaperDifference, ...]:
-    """Play the paper's cue on its own rig (limits lifted) and on `thenar`, and say point by point where we differ.
+    """Simulate the paper's cue on its own rig (limits lifted) and on `thenar`, and report where we differ.
 
     >>> for point in paper_differences():
     ...     print(point.topic, "-", "agrees" if point.agrees else "differs")
@@ -156,7 +156,7 @@ def _insulated(rig: Rig) -> PaperDifference:
         f"{assumed.likeness.depth_m * 1e3:.2f} mm (residual {assumed.likeness.residual_K:.2f} K); to swing "
         f"{other:.1f} K it must lie {near.lateral_m * 1e3:.1f} mm from skin in contact, and is then most like "
         f"{near.likeness.depth_m * 1e3:.2f} mm (residual {near.likeness.residual_K:.2f} K).",
-        "The paper gives no distance, and the answer hangs on it. Ours is a 1-D stand-in, with one path a depth.",
+        "The paper gives no distance, and the answer depends on it. Ours is a 1-D stand-in, with one path per depth.",
     )
 
 
@@ -196,6 +196,6 @@ def _depth(palm: Rig) -> PaperDifference:
         "0.15 and 0.30 mm, counted from the surface, in an epidermis of 0.081 mm.",
         f"on the rig thenar {surface[0]:.1f} and {surface[1]:.1f} K there, but {below[0]:.1f} and {below[1]:.1f} K "
         f"when depth is counted from the base of its {corneum * 1e3:g} mm stratum corneum.",
-        "On the palm 0.15 mm is still in the stratum corneum, where no receptor can be; which count sources mean is "
+        "On the palm 0.15 mm is still inside the stratum corneum, without receptors; which count the sources mean is "
         "not stated.",
     )

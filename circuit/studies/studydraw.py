@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .paper import DermisChange, MissByLimit, Thermistors
 
 MARKS = ("", "s", "o", "^", "D", "v", "x", "P")
-"""Meshes carry marks, so that they can be told apart in grey; the first, the one judged, is the thick plain line."""
+"""Meshes carry marks, so that they are distinguishable in grey; the first, the one judged, is the thick plain line."""
 
 COLOURS = ("#111111", "#2166ac", "#7fb0d9", "#e08214", "#b35806", "#8c8c8c", "#5e3c99", "#c994c7")
 

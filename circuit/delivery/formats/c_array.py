@@ -1,4 +1,4 @@
-"""C array: codes in the flash of a microcontroller, as a header file, beside a player that is the same for all."""
+"""C array: codes in the flash of a microcontroller, as a header file, with one player for all."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def period_ns(rate_Hz: float) -> int:
 
 
 def in_comment(text: str) -> str:
-    r"""Return a text that stands in a C comment and cannot end it, nor begin a line, an escape or a trigraph.
+    r"""Return a text that is safe in a C comment: it cannot end it, nor begin a line, an escape or a trigraph.
 
     >>> in_comment("d */ #error"), in_comment("a\\b??/c")
     ('d *_ #error', 'a_b__/c')

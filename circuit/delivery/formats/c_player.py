@@ -56,7 +56,7 @@ def command_for(delivery: DeliveredDrive, current_A: float) -> float:
 
 
 def c_float(value: float) -> str:
-    """A number as a C float.
+    """A number as a C float literal.
 
     >>> c_float(0.1), c_float(60)
     ('0.1f', '60.0f')

@@ -1,4 +1,4 @@
-"""CSV: a row for each update, with the current that flows; `thermicon simulate --current FILE --hold` replays it."""
+"""CSV: one row per update, with the current that flows; `thermicon simulate --current FILE --hold` replays it."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ FORMAT = Format(
     suffix=".csv",
     takes=PLAYS_SAMPLES,
     device="dac-16",
-    source="thermicon's own columns, told in the sidecar",
+    source="thermicon's own columns, described in the sidecar",
     how="put out each row's command at its time and hold it until the next",
     write=write,
     columns=columns,

@@ -1,4 +1,4 @@
-"""What every format of a drive file says of itself, and what its writer gets."""
+"""The description of a drive file format, and the input of its writer."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One drive of an export, with the names of its file and of its sidecar, and what the gate says of repetition.
+    """One drive of an export, with the names of its file and of its sidecar, and the verdict on repetition.
 
     `recovery_s` and `shortest_pause_s` in s are None where the gate found none.
     """
@@ -65,11 +65,11 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """One kind of file: what it is called, which devices take it, where its layout is told, and how to write it.
+    """One kind of file: what it is called, which devices take it, where its layout is documented, and how to write it.
 
-    `device` is taken where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
-    hangs on the device; `how` tells a person how to play it. `write` gives the bytes of one drive, `columns` what is in
-    them, `facts` what else the sidecar says of the file. `player` gives the files of the whole set, named in
+    `device` is used where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
+    depends on the device; `how` explains how to play it. `write` gives the bytes of one drive, `columns` what is in
+    them, `facts` further facts for the sidecar. `player` gives the files of the whole set, named in
     `set_files`, from all its drives and what the hardware must prevent.
     """
 
@@ -97,7 +97,7 @@ class Format:
         return check_name(self.stem(delivery.icon.name) + suffix)
 
     def check(self, device: Device) -> None:
-        """Raise FormatError where a device plays something else than this format holds."""
+        """Raise FormatError where a device does not play what this format holds."""
         if device.driven_by not in self.takes:
             raise FormatError(
                 f"{self.name} is for devices driven by {' or '.join(self.takes)}; {device.name} is driven by "
@@ -106,7 +106,7 @@ class Format:
 
 
 def check_name(name: str) -> str:
-    """Return a file's name that every disk takes; FormatError for one that is too long or belongs to Windows.
+    """Return a file name that every file system accepts; FormatError for one too long or reserved by Windows.
 
     >>> check_name("cooling-step.csv")
     'cooling-step.csv'

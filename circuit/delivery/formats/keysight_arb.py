@@ -1,4 +1,4 @@
-"""Keysight .arb: a header in plain text, then one code a line; ±32767 are the two levels."""
+"""Keysight .arb: a header in plain text, then one code per line; ±32767 are the two levels."""
 
 from __future__ import annotations
 

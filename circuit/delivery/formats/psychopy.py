@@ -1,4 +1,4 @@
-"""PsychoPy: a conditions file with a row for each icon, the drives beside it, and a player that watches over them."""
+"""PsychoPy: a conditions file with one row per icon, the drives, and a player that supervises them."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .setpoint_csv import has_voltage, volts_of
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 FROZEN_S = 5.0
-"""A reading that has not moved for so long is frozen. A thermode's, in steps of 0.1 K, may rest for longer."""
+"""A reading that has not changed for this long counts as frozen; a thermode's, in steps of 0.1 K, may rest longer."""
 
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")
-"""First columns of the conditions file: names without blanks, as PsychoPy needs them."""
+"""First columns of the conditions file: names without spaces, as PsychoPy needs them."""
 
 JUDGED = ("safety", "recovery_s", "shortest_pause_s")
-"""Last columns of the conditions file: what the gate says of each icon."""
+"""Last columns of the conditions file: the verdict of the gate on each icon."""
 
 MARKED = ("ramp start", "target reached", "return start", "baseline reached")
 """Events that may happen more than once. The first has a column without a number, as in `ramp_start_s`, the second one

@@ -1,4 +1,4 @@
-"""Set-point CSV: a row for each update with the temperature that a controller is to hold the display at."""
+"""Set-point CSV: one row per update with the temperature at which a controller holds the display."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
 
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
-    """Time, set-point, the voltage that stands for it where the device states a gain, event."""
+    """Time, set-point, its voltage where the device states a gain, event."""
     voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
     return (
         Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next"),
@@ -59,7 +59,7 @@ FORMAT = Format(
     suffix=".csv",
     takes=PLAYS_TEMPERATURES,
     device="closed-loop-controller",
-    source="thermicon's own columns, told in the sidecar",
+    source="thermicon's own columns, described in the sidecar",
     how="give the controller each row's display_C at its time; it holds the display there until the next row",
     write=write,
     columns=columns,

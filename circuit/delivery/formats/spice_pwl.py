@@ -16,7 +16,7 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 def write(delivery: DeliveredDrive) -> bytes:
     """Return a line for each corner of the command; rows that change nothing are left out.
 
-    A source keeps its last value for ever, so the last line is the rest, 1 µs behind the end.
+    A source keeps its last value indefinitely, so the last line is the rest, 1 µs after the end.
     """
     gain = delivery.rig.driver.transconductance_A_per_V if delivery.device.driven_by == "volts" else 1.0
     drive = delivery.delivered

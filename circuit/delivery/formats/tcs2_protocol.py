@@ -67,7 +67,7 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 
 def write(delivery: DeliveredDrive) -> bytes:
-    """Return the protocol; raises FormatError for a cue that is no ramp, plateau and return of the display."""
+    """Return the protocol; raises FormatError for a cue that is not a ramp, plateau and return of the display."""
     icon = delivery.icon
     if icon.context.control != "display":
         raise FormatError(

@@ -12,11 +12,11 @@ ABOVE_K = 1.0
 
 
 TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
-"""What the commands count in: segments last ticks of 10 ms, levels are tenths of a degree, each in three digits."""
+"""Units of the commands: segments last ticks of 10 ms, levels are tenths of a degree, each in three digits."""
 
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
-    """The commands, one a line."""
+    """The commands, one per line."""
     return (
         Column("N", "0.1 °C", "baseline"),
         Column("Om", "0.1 °C", "greatest temperature that the C command may ask for"),
@@ -43,7 +43,7 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 
 def _check(setpoints: Setpoints, device: str) -> None:
-    """Raise FormatError where the commands would say something else than the set-points."""
+    """Raise FormatError where the commands would differ from the set-points."""
     if abs(setpoints.tick_s - TICK_S) > 1e-9 or abs(setpoints.step_K - STEP_K) > 1e-9:
         raise FormatError(
             f"tcs2-serial counts ticks of {TICK_S * 1e3:g} ms and steps of {STEP_K:g} K; {device} has "

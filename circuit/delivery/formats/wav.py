@@ -1,7 +1,7 @@
 """WAV: 16-bit PCM at a rate that sound interfaces play, for outputs that are DC-coupled; others lose every held level.
 
-A drive has far fewer updates than a sound has frames: each is repeated a whole number of times, which is what holding
-it means. Nothing is resampled.
+A drive has far fewer updates than a sound has frames: each is repeated a whole number of times, which holds it. Nothing
+is resampled.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ MOST_FRAMES = 200_000_000
 """Frames of one file: 400 MB, where the format's own 32 bits end at 4.3 GB."""
 
 FRAME_RATES_HZ = (48_000, 44_100, 96_000, 88_200, 192_000, 176_400, 32_000, 24_000, 22_050, 16_000, 11_025, 8_000)
-"""Frames a second that sound interfaces play, the likeliest first."""
+"""Frames per second that sound interfaces play, the most common first."""
 
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
@@ -30,9 +30,9 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 
 def frames(delivery: DeliveredDrive) -> tuple[int, int]:
-    """Return frames a second and how many of them each update gets; FormatError where no rate is a multiple.
+    """Return frames per second and frames per update; FormatError where no rate is a multiple.
 
-    A rate within what the device states is taken before others.
+    A rate within the range of the device is preferred.
     """
     rate = samples_of(delivery).rate_Hz
     low, high = delivery.device.interval("update rate")
@@ -48,7 +48,7 @@ def frames(delivery: DeliveredDrive) -> tuple[int, int]:
 
 
 def facts(delivery: DeliveredDrive) -> dict[str, object]:
-    """What the sidecar says of the file."""
+    """Facts about the file for the sidecar."""
     frame_rate, each = frames(delivery)
     return {"frames_per_second": frame_rate, "frames_per_update": each}
 

@@ -60,7 +60,7 @@ def test_without_qmax_three_figures_and_on_demand_too() -> None:
     three = Datasheet(**TEC).three_figures().peltier(2.6, 2.6)
     silent = THENAR.with_(**{"module.datasheet": [_without("q_max_W")]})
     assert silent.module == three
-    assert silent.module_source.endswith("three figures with the hot side at 25 °C, no Qmax to hold them against.")
+    assert silent.module_source.endswith("three figures with the hot side at 25 °C, no Qmax to check them against.")
     assert silent.warnings == ()
     told = THENAR.with_(**{"module.datasheet": [TEC], "module.extraction": "three"})
     assert told.module == three

@@ -76,7 +76,7 @@ def test_a_run_that_is_not_physical_is_refused() -> None:
 
 
 def test_a_first_current_without_a_steady_state_is_refused() -> None:
-    with pytest.raises(RigError, match=r"-5 A held for ever has no steady state on this rig.*begin the drive with"):
+    with pytest.raises(RigError, match=r"-5 A has no steady state on this rig.*begin the drive with"):
         simulate_current(Drive([0, 1], [-5, 0]), Rig.load("thenar"))
 
 
