@@ -61,9 +61,10 @@ class _Assembler:
         self.icons: dict[int, Icon | Family | None] = {}
         self.playing: list[int] = []
         self.corners = self.members = self.effort = 0
+        self.unread = False
 
     def run(self, tree: Any, syntax: tuple[Finding, ...], more: int) -> Analysis:
-        parts = tree.children
+        parts, self.unread = tree.children, bool(syntax)
         kinds = [getattr(part, "data", "broken") for part in parts]
         self.version(parts, kinds)
         self.set_block(parts, kinds)
@@ -272,6 +273,9 @@ class _Assembler:
             return Family(name, parameters, template, draft.slots, self.context(), draft.metadata)
         except MemberErrors as error:
             self.add(self.member_problem(error.failed, members, template), draft)
+        except ValueError:
+            if not self.unread:  # what could not be read may be what is missing here
+                raise
         return None
 
     def member_problem(self, failed: FailedMember, members: int, template: Body) -> Problem:
