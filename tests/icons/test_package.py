@@ -11,8 +11,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import thermicon.icons
-from thermicon.icons import Context, Hold, Icon, load_library, plot_icon
-from thermicon.icons.pictures.draw import COOL, STAY, WARM
+from thermicon.icons import Context, Icon, load_library
+from thermicon.icons.model.statements import Hold
+from thermicon.icons.pictures.draw import COOL, STAY, WARM, plot_icon
 
 MODULES = [
     "thermicon.icons",

@@ -7,23 +7,10 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from thermicon.icons import (
-    Context,
-    CueErrors,
-    Family,
-    Hold,
-    Icon,
-    IconSet,
-    Metadata,
-    Parameter,
-    Slot,
-    back,
-    cool,
-    parse,
-    pulse,
-    repeat,
-    step,
-)
+from thermicon.icons import Context, CueErrors, Family, Icon, IconSet, Metadata, back, cool, parse, pulse, repeat, step
+from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.slots import Slot
+from thermicon.icons.model.statements import Hold
 
 TEXT = """cue 1
 set lot { baseline 32 °C }

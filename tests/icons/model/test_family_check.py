@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thermicon.icons import CueErrors, Family, Wave, parse
+from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
+from thermicon.icons.model.shapes import Wave
 
 # Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
 VALUES = {

@@ -8,27 +8,9 @@ from dataclasses import FrozenInstanceError, fields
 
 import pytest
 
-from thermicon.icons import (
-    Context,
-    CueErrors,
-    Current,
-    Hold,
-    Icon,
-    IconSet,
-    Metadata,
-    Play,
-    Pulse,
-    Ramp,
-    Repeat,
-    Rest,
-    Return,
-    Step,
-    Total,
-    Wave,
-    load_library,
-    parse,
-)
-from thermicon.icons.model.statements import Broken
+from thermicon.icons import Context, CueErrors, Icon, IconSet, Metadata, load_library, parse
+from thermicon.icons.model.shapes import Pulse, Step, Wave
+from thermicon.icons.model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
 
 HOLD = (Hold(1),)
 WAIT = Icon("wait", (Rest(1),))

@@ -8,7 +8,6 @@ import pytest
 from thermicon.icons import (
     Context,
     Icon,
-    Statement,
     back,
     cool,
     current,
@@ -27,6 +26,7 @@ from thermicon.icons import (
     triangle,
     warm,
 )
+from thermicon.icons.model.statements import Statement
 
 
 def read(line: str, settings: str = "") -> Statement:

@@ -9,10 +9,11 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from thermicon.icons import Context, Hold, Icon, IconSet, Metadata, library, load_library, parse, plot_icon
+from thermicon.icons import Context, Icon, IconSet, Metadata, library, load_library, parse
 from thermicon.icons.model.corners import Corners
+from thermicon.icons.model.statements import Hold
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
-from thermicon.icons.pictures.draw import plot_icons
+from thermicon.icons.pictures.draw import plot_icon, plot_icons
 from thermicon.icons.pictures.picture import picture, thumbnail
 
 SIX = load_library("six-icons")
