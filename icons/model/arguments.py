@@ -1,4 +1,4 @@
-"""Arguments of the builders: proven where they are given, and told by the names that the caller knows."""
+"""Arguments of the builders: checked where they are given, with errors in the caller's own names."""
 
 from collections.abc import Mapping
 from numbers import Real
@@ -51,5 +51,5 @@ def amperes(call: str, value: float | None) -> float | None:
     """Return the argument ``by_A`` as a float, None as it is; ValueError for 0 and beyond ±20 A."""
     found = number(call, "by_A", value, "current")
     if found == 0:
-        raise ValueError(f"{call}(by_A={value!r}): a change of nothing is no change")
+        raise ValueError(f"{call}(by_A={value!r}): a change must not be zero")
     return found

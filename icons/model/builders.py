@@ -268,9 +268,9 @@ def _wave(
 
 
 def _statements(parts: Sequence[object]) -> tuple[Statement, ...]:
-    """Return parts that are all statements; ValueError names the first that is none."""
+    """Return parts that are all statements; ValueError names the first that is not."""
     for part in parts:
         if not isinstance(part, Statement) or isinstance(part, Total):
-            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is no statement"
+            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is not a statement"
             raise ValueError(f"repeat(): {what}")
     return tuple(part for part in parts if isinstance(part, Statement))

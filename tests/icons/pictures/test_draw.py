@@ -243,7 +243,7 @@ def test_dollars_in_titles_are_no_formula() -> None:
 def test_what_cannot_share_axes_is_refused() -> None:
     with pytest.raises(ValueError, match="there are no icons to draw"):
         plot_icons([])
-    with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on axes of their own"):
+    with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on separate axes"):
         plot_icons([CURRENT["drive"], SIX["cooling-step"]])
     mixed = plot_icons([Icon("a", (Hold(1),), Context("skin")), Icon("b", (Hold(1),), Context("display"))])
     assert mixed.get_ylabel() == "temperature (°C)"
