@@ -83,8 +83,8 @@ def page() -> str:
     lines = [
         "# Errors",
         "",
-        "Everything that can be wrong with a cue file has a code. All errors of a file are reported",
-        "together, each with its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
+        "Everything that can be wrong with a cue file has a code. All errors of a file are reported together, each",
+        "with its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
         "",
         "Made by `python tests/icons/files/test_catalogue.py` from `icons/data/mistakes.toml`; every example is run.",
     ]
