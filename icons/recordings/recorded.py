@@ -57,7 +57,7 @@ def from_csv(
         what = f"the recording begins at {first:g} °C, baseline_C is {baseline_C:g} °C"
         help = f"an icon begins at baseline, here within {tolerance_K:g} K; leave baseline_C out, or cut the file"
         raise whole_file("E016", f"{read.file}:{read.first_row}", what, help)
-    from .simplify import fit_corners
+    from .polyline import fit_corners
 
     try:
         corners = fit_corners(read.time_s, read.level_C, tolerance_K, baseline_C)
