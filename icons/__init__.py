@@ -3,26 +3,19 @@
 The names below stand in the order of the flow; nothing heavier than the standard library is imported before it is used.
 """
 
-from .model.check import ASSUMED_BASELINE_C
-from .model.corners import Corners
-from .pictures.draw import plot_icon
-from .model.errors import CueError, CueErrors
+from .model.errors import CueErrors
 from .model.context import Context, Metadata
-from .model.parameter import Parameter
 from .model.icon import Icon
 from .model.family import Family
-from .model.slots import Slot
-from .model.iconset import IconSet, Members
+from .model.iconset import IconSet
 from .files.shipped import library_names, load_library, read_cue
-from .files.gallery import Library, library
+from .files.gallery import library
 from .language.parse import parse
 from .language.layout import format_text
 from .files.exchange import from_json, to_json
 from .files.hjif import to_hjif
 from .recordings.recorded import from_csv
 from .papers.cite import bibtex, methods
-from .model.statements import Ramp, Current, Hold, Play, Repeat, Rest, Return, Statement, Total
-from .model.shapes import Pulse, Step, Wave
 from .model.builders import back, cool, current, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
 from .model.builders import total, triangle, warm
 
@@ -33,7 +26,6 @@ __all__ = [
     "library_names",
     "load_library",
     "library",
-    "Library",
     "format_text",
     "from_json",
     "to_json",
@@ -41,28 +33,12 @@ __all__ = [
     "from_csv",
     "methods",
     "bibtex",
-    "CueError",
     "CueErrors",
     "IconSet",
-    "Members",
     "Icon",
     "Family",
-    "Parameter",
-    "Slot",
     "Context",
     "Metadata",
-    "Statement",
-    "Ramp",
-    "Current",
-    "Hold",
-    "Rest",
-    "Return",
-    "Step",
-    "Pulse",
-    "Wave",
-    "Repeat",
-    "Play",
-    "Total",
     "cool",
     "warm",
     "ramp",
@@ -79,7 +55,4 @@ __all__ = [
     "repeat",
     "play",
     "total",
-    "ASSUMED_BASELINE_C",
-    "Corners",
-    "plot_icon",
 ]

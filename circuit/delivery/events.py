@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
-from thermicon.icons import Corners
+from thermicon.icons.model.corners import Corners
 
 STILL = 1e-9
 """A slope below this, in K/s or A/s, counts as level."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 from collections.abc import Callable
 
-from thermicon.icons import Corners, Icon
+from thermicon.icons import Icon
+from thermicon.icons.model.corners import Corners
 
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Thermode

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from thermicon.icons import Icon, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
-from thermicon.icons.model.statements import Broken
+from thermicon.icons import Icon
+from thermicon.icons.model.shapes import Pulse, Step, Wave
+from thermicon.icons.model.statements import Broken, Play, Ramp, Repeat, Return, Statement, Total
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError

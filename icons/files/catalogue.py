@@ -1,4 +1,4 @@
-"""The catalogue of errors: for every code what it means, a file that makes it with what is said, and one put right."""
+"""The catalogue of errors: what every code means, a file that causes it with the message, and a corrected file."""
 
 import tomllib
 from dataclasses import dataclass
@@ -83,8 +83,8 @@ def page() -> str:
     lines = [
         "# Errors",
         "",
-        "Everything that can be wrong with a cue file has a code. All errors of a file are told in one go, each with",
-        "its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
+        "Everything that can be wrong with a cue file has a code. All errors of a file are reported together, each",
+        "with its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
         "",
         "Made by `python tests/icons/files/test_catalogue.py` from `icons/data/mistakes.toml`; every example is run.",
     ]

@@ -64,7 +64,7 @@ def _text(text: str) -> str:
 
 def _tag(text: str) -> str:
     if "," in text or text != text.strip():
-        raise _told("E117", "a tag has no comma, and no blanks around it")
+        raise _told("E117", "a tag must not contain a comma or begin or end with a space")
     return _text(text)
 
 
@@ -76,7 +76,7 @@ def _unit(text: str) -> str:
 
 def _no_null(value: object) -> object:
     if value is None:
-        raise PydanticCustomError("null", "null says nothing")
+        raise PydanticCustomError("null", "null is not a value here")
     return value
 
 
@@ -142,7 +142,7 @@ class Table(BaseModel):
 
 
 class Use(Table):
-    """Stands for a number: a parameter of the family, whose values carry a unit of their own."""
+    """Stands for a number: a parameter of the family, whose values carry their own unit."""
 
     parameter: Name
 

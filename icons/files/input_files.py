@@ -26,7 +26,7 @@ class TooLarge(Exception):
 def read_limited(path: Path, most_bytes: int) -> bytes:
     """Return what is in a regular file of at most ``most_bytes``.
 
-    Devices and pipes are refused before they are opened, since they may have no end or wait for ever; of a file that
+    Devices and pipes are refused before they are opened, since they may have no end or never answer; of a file that
     grows while it is read, no more than the limit is read. Raises NotRegular, TooLarge, and OSError or ValueError (a
     zero byte in the path) as the system does.
 

@@ -69,7 +69,7 @@ def finding(error: ErrorDetails, document: Any, places: Places) -> Finding:
     elif kind == "missing":
         what, help, path = f'"{path[-1]}" is missing', f'add "{path[-1]}"{unit}', path[:-1]
     elif kind == "null":
-        what, help = "null says nothing", "leave the key out"
+        what, help = "null is not a value here", "leave the key out"
     elif kind == "one_of":
         what, help = context["words"], f"exactly one is given of: {', '.join(context['names'])}"
     elif kind in ("union_tag_not_found", "union_tag_invalid") and isinstance(value, dict):
@@ -139,7 +139,7 @@ def _statement(value: dict[str, Any]) -> tuple[str, str]:
         return '"do" is missing', f"it says what the statement is: {words}"
     word = value["do"]
     close = nearest(word, list(_STATEMENTS)) if isinstance(word, str) else None
-    return f"{shown(word)} is no statement", f"{f'did you mean {close}? ' if close else ''}statements are: {words}"
+    return f"{shown(word)} is not a statement", f"{f'did you mean {close}? ' if close else ''}statements are: {words}"
 
 
 def _choice(path: Path, value: object, expected: str) -> tuple[str, str, str]:
@@ -148,7 +148,7 @@ def _choice(path: Path, value: object, expected: str) -> tuple[str, str, str]:
         return "E010", f"this is version 1 of the format, not {shown(value)}", 'write: "version": 1'
     close = nearest(value, options) if isinstance(value, str) else None
     help = f"did you mean {close}? " if close else ""
-    return "E012", f"{shown(value)} is not among what may stand here", f"{help}one of: {', '.join(options)}"
+    return "E012", f"{shown(value)} is not allowed here", f"{help}one of: {', '.join(options)}"
 
 
 def _plain(text: str) -> str:

@@ -60,7 +60,7 @@ class Reader:
         for place, icon in enumerate(self.table.icons):
             if icon.name in self.index:
                 what = f"{path_text(('icons', self.index[icon.name]))} is called {icon.name} already"
-                self.add("E211", ("icons", place, "name"), what, "each icon has a name of its own")
+                self.add("E211", ("icons", place, "name"), what, "each icon needs a different name")
             self.index.setdefault(icon.name, place)
         made = [self.made(place) for place in range(len(self.table.icons))]
         entries = tuple(icon for icon in made if icon is not None)
@@ -74,7 +74,7 @@ class Reader:
             return None
 
     def made(self, place: int) -> Icon | Family | None:
-        """Return the icon or family at a place in the list; None, and findings, when it cannot be."""
+        """Return the icon or family at a place in the list; None, with findings, when it is not valid."""
         if place not in self.done:
             self.playing.append(place)
             before = len(self.findings)
@@ -143,7 +143,7 @@ class Reader:
                 self.add("E226", (*path, "means"), f'"{hole}" is not a parameter', _names(scope))
 
     def body(self, tables: Sequence[Any], path: Path, inside: tuple[int, ...], scope: _Scope) -> tuple[Statement, ...]:
-        """Return statements in order, without those that cannot be."""
+        """Return statements in order, without invalid ones."""
         if len(inside) > DEEPEST:
             self.add("E115", path, f"repeats are nested more than {DEEPEST} deep", "write the innermost out")
             return ()
@@ -151,7 +151,7 @@ class Reader:
         return tuple(part for part in made if part is not None)
 
     def statement(self, table: Any, path: Path, inside: tuple[int, ...], scope: _Scope) -> Statement | None:
-        """Return the statement of a table; None, and findings, when it cannot be."""
+        """Return the statement of a table; None, with findings, when it is not valid."""
         at = self.source.place(self.places.of(path)[0])
         if isinstance(table, model.PlayTable):
             icon = self.played(table.icon, (*path, "icon"))
@@ -211,7 +211,7 @@ class Reader:
             if isinstance(table, model.WaveTable) and value <= 0:
                 return "E202", f"{value:g} A: an amplitude is positive", 'write "start": "down" to begin downwards'
             if value == 0:
-                return "E202", "a change of nothing is no change", ""
+                return "E202", "a change must not be zero", ""
         return None
 
     def use(self, name: str, path: Path, kind: Kind, scope: _Scope, wave: bool) -> float | None:
@@ -231,7 +231,7 @@ class Reader:
             if wave and min(own.si(0, kind), *own.listed) < 0:
                 found = "E202", "an amplitude is positive"
             elif own.place("0") is not None:
-                found = "E202", "a change of nothing is no change"
+                found = "E202", "a change must not be zero"
         if found is not None:
             self.add(found[0], path, f"{name}: {found[1]}", f"{KIND_WORDS[kind]} stands here")
             return None
@@ -249,7 +249,12 @@ class Reader:
         index = self.index[known]
         if index in self.playing:
             circle = [self.table.icons[n].name for n in self.playing[self.playing.index(index) :]] + [known]
-            self.add("E232", path, f"this goes round in a circle: {' plays '.join(circle)}", "leave one of them out")
+            self.add(
+                "E232",
+                path,
+                f"these icons play each other in a circle: {' plays '.join(circle)}",
+                "leave one of them out",
+            )
             return None
         if len(self.playing) > DEEPEST:
             self.add("E115", path, f"icons play one another more than {DEEPEST} deep", "write the innermost out")
@@ -258,7 +263,9 @@ class Reader:
         if isinstance(found, Family):
             member = found.find(name)
             if member is None:
-                self.add("E230", path, f'"{name[:60]}" is no member of the family {known}', f"such as {found[0].name}")
+                self.add(
+                    "E230", path, f'"{name[:60]}" is not a member of the family {known}', f"such as {found[0].name}"
+                )
             return member
         return found
 

@@ -57,7 +57,7 @@ def read_json(source: Source) -> tuple[Any, Places]:
         raise _fault(source, error.pos, *_in_words(error, source.text)) from None
     except ValueError:  # NaN and its kin, or a number of thousands of digits
         start, end = next(place for token, *place in _tokens(source.text) if _NO_NUMBER.fullmatch(token))
-        what = "this is no number in JSON" if end - start < 10 else "a number has a few digits, not thousands"
+        what = "this is not a number in JSON" if end - start < 10 else "a number has a few digits, not thousands"
         finding = Finding("E011", start, end, what, "numbers are written as 6, 0.5 or 1e-3")
         raise CueErrors((source.error(finding),)) from None
     places = find_places(source.text)
@@ -143,7 +143,7 @@ def _fault(source: Source, offset: int, what: str, help: str) -> CueErrors:
 
 
 def _too_deep(source: Source) -> CueErrors:
-    return whole_file("E115", source.file, "objects and lists are nested too deeply", "a cue set needs no such depth")
+    return whole_file("E115", source.file, "objects and lists are nested too deeply", "a cue set needs fewer levels")
 
 
 def _in_words(error: json.JSONDecodeError, text: str) -> tuple[str, str]:
@@ -161,9 +161,9 @@ def _in_words(error: json.JSONDecodeError, text: str) -> tuple[str, str]:
             'a key in double quotation marks is needed here, such as "by_K"',
             "behind the last value of an object stands no comma, and JSON has no comments",
         ),
-        "Illegal trailing comma before end of object": ("no comma stands behind the last value", "take it away"),
-        "Illegal trailing comma before end of array": ("no comma stands behind the last value", "take it away"),
-        "Extra data": ("the text goes on behind its end", "a file is one object: { ... }"),
-        "Invalid control character at": ("a text holds a control character", "take it away, or write it as \\u0007"),
+        "Illegal trailing comma before end of object": ("no comma stands behind the last value", "remove it"),
+        "Illegal trailing comma before end of array": ("no comma stands behind the last value", "remove it"),
+        "Extra data": ("there is text after the end of the file's object", "a file is one object: { ... }"),
+        "Invalid control character at": ("a text holds a control character", "remove it, or write it as \\u0007"),
     }
     return said.get(error.msg, (error.msg[:1].lower() + error.msg[1:], "JSON is described at json.org"))

@@ -61,9 +61,10 @@ class _Assembler:
         self.icons: dict[int, Icon | Family | None] = {}
         self.playing: list[int] = []
         self.corners = self.members = self.effort = 0
+        self.unread = False
 
     def run(self, tree: Any, syntax: tuple[Finding, ...], more: int) -> Analysis:
-        parts = tree.children
+        parts, self.unread = tree.children, bool(syntax)
         kinds = [getattr(part, "data", "broken") for part in parts]
         self.version(parts, kinds)
         self.set_block(parts, kinds)
@@ -104,7 +105,7 @@ class _Assembler:
             first = span(parts[0])[0] if parts else 0
             line = self.source.starts[self.source.place(first)[0] - 1]
             end = line + len(self.source.lines[self.source.place(first)[0] - 1])
-            what = "the language's version is not said before this"
+            what = "the version of the language is missing before this"
             self.builder.add("E009", (first, end), what, help, Edit(0, 0, "cue 1\n"))
 
     def set_block(self, parts: list[Any], kinds: list[str]) -> None:
@@ -164,7 +165,7 @@ class _Assembler:
             own = self.icons.get(self.index.get(head, -1)) if mark else None
             if isinstance(own, Family) and draft.name in own:
                 what = f"a member of family {head} has this name"
-                self.builder.add("E211", draft.place, what, "each icon has a name of its own")
+                self.builder.add("E211", draft.place, what, "each icon needs a different name")
             elif mark and draft.over is not None:
                 what = f'"{draft.name}" is a name for a member of a family'
                 self.builder.add(
@@ -174,7 +175,9 @@ class _Assembler:
                 line, _ = self.source.place(first[draft.name][0])
                 free = next(name for n in range(2, 10**6) if (name := f"{draft.name}-{n}") not in first)
                 what = f"line {line} has an icon of this name already"
-                self.builder.add("E211", draft.place, what, "each icon has a name of its own", Edit(*draft.place, free))
+                self.builder.add(
+                    "E211", draft.place, what, "each icon needs a different name", Edit(*draft.place, free)
+                )
             first.setdefault(draft.name, draft.place)
 
     def made(self, place: int) -> Icon | Family | None:
@@ -187,7 +190,7 @@ class _Assembler:
         return self.icons[place]
 
     def resolve(self, name: str, place: Place) -> Icon | None:
-        """Return the icon that a ``play`` names; None, and a finding, when it cannot be played."""
+        """Return the icon that a ``play`` names; None, with a finding, when it cannot be played."""
         family, _, values = name.partition("_")
         known = name if name in self.index else family if values and family in self.index else None
         if known is None:
@@ -206,7 +209,7 @@ class _Assembler:
                 else []
             )
             if round_trip:
-                what = f"this goes round in a circle: {' plays '.join(round_trip)}"
+                what = f"these icons play each other in a circle: {' plays '.join(round_trip)}"
                 self.builder.add("E232", place, what, "an icon cannot play itself, nor one that plays it")
             else:
                 what = f"icons play one another more than {DEEPEST} deep"
@@ -246,7 +249,7 @@ class _Assembler:
         return Icon(cast(str, draft.name), cast(Body, draft.body), self.context(), draft.metadata)
 
     def family(self, draft: IconDraft, before: int) -> Family | None:
-        """Return the family of a draft, every member checked; None, and findings, when one of them cannot be."""
+        """Return the family of a draft, every member checked; None, with findings, when one of them is not valid."""
         over = draft.over
         if over is None or over.unread or len(self.builder.findings) > before or self.unsound(draft):
             return None
@@ -272,6 +275,9 @@ class _Assembler:
             return Family(name, parameters, template, draft.slots, self.context(), draft.metadata)
         except MemberErrors as error:
             self.add(self.member_problem(error.failed, members, template), draft)
+        except ValueError:
+            if not (self.unread or self.builder.findings):  # otherwise the reason has been reported already
+                raise
         return None
 
     def member_problem(self, failed: FailedMember, members: int, template: Body) -> Problem:
@@ -312,11 +318,11 @@ class _Assembler:
         for slot in draft.slots:
             if slot.field == "rate_per_s" and slot.kind == wrong:
                 place = self.builder.places[id(statement_at(cast(tuple[Statement, ...], draft.body), slot.path))]
-                what = f"{slot.parameter} is no rate in {right}; this set controls the {self.control}"
+                what = f"{slot.parameter} is not a rate in {right}; this set controls the {self.control}"
                 self.builder.add("E210", place["pace"], what, f"give {slot.parameter} the unit {right}")
 
     def add(self, problem: Problem, draft: IconDraft) -> None:
-        # A statement of an icon that is played is told where that icon stands.
+        # A statement of an icon that is played is reported where that icon stands.
         places = self.builder.places.get(id(problem.statement)) if problem.statement else {"name": draft.place}
         if places is None:
             return

@@ -39,7 +39,7 @@ _USES: dict[str, tuple[Kind, ...]] = {
     "every_use": ("time",),
     "count_use": ("count",),
 }
-# Which rate a ramp takes; that of a return is told by what the set controls.
+# Which rate a ramp takes; that of a return depends on what the set controls.
 _RATES: dict[str, tuple[Kind, ...]] = {"change": ("rate",), "shift": ("rate",), "drive": ("current_rate",)}
 # Which rule gives which value of a statement; what a parameter may stand for is among them.
 _VALUES = {
@@ -168,7 +168,7 @@ class _Scope:
         if start not in (None, up, down):
             token = next(child for child in tree.children if getattr(child, "type", "") == "START")
             other = {"warm": "up", "cool": "down", "up": "warm", "down": "cool"}[str(token)]
-            what = f'"{token}" is no way to start a wave in {"A" if by_A is not None else "°C"}'
+            what = f'"{token}" is not a way to start a wave in {"A" if by_A is not None else "°C"}'
             self.builder.add("E210", span(token), what, f'"{up}" or "{down}"', Edit(*span(token), other))
             return None
         at = self.builder.at(span(tree))
@@ -176,7 +176,7 @@ class _Scope:
         return Wave(shape, by_K, by_A, values["period"], values["time"], cast(Start | None, start), "CUT" in words, at)
 
     def value(self, part: Any, tree: Any, path: Path, words: dict[str, str]) -> tuple[str, float]:
-        """Return which value of a statement a part of it is, and the value; NaN, and a finding, when it cannot be."""
+        """Return which value of a statement a part is, and the value; NaN, with a finding, when it is not valid."""
         rule = rule_of(part)
         if rule not in _USES:
             return _VALUES[rule], self.builder.quantity(part, wave=rule_of(tree) == "wave")
@@ -207,7 +207,7 @@ class _Scope:
         if kind == "current" and rule_of(part) == "by_use" and not found:
             negative = min(own.si(0, kind), own.si(len(own) - 1, kind), *own.listed) < 0 and rule_of(tree) == "wave"
             if negative or own.place("0") is not None:
-                found = "E202", "an amplitude is positive" if negative else "a change of nothing is no change"
+                found = "E202", "an amplitude is positive" if negative else "a change must not be zero"
         if found:
             what, help = f"{own.name}: {found[1]}", f"its values: {str(own)[:80]}"
             if found[0] == "E104":
@@ -260,11 +260,11 @@ class _Scope:
         return Repeat(count, body, self.builder.at(span(tree)))
 
     def finish(self, over: Over, keys: list[Any], metadata: Metadata) -> None:
-        """Tell which parameters are never used, and which names in the intent are none."""
+        """Report parameters that are never used, and names in the intent that are not parameters."""
         for name, place in over.places.items():
             if name in over.named and name not in self.used and not self.broken:
                 what = f"{name} is never used, so that members would be equal"
-                self.builder.add("E227", place, what, "use it in the body, or take it away")
+                self.builder.add("E227", place, what, "use it in the body, or remove it")
         for hole in HOLE.findall(metadata.means or ""):
             if hole not in over.named and not over.unread:
                 token = next(tree.children[1] for tree in keys if str(tree.children[0]) == "means")

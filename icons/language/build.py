@@ -1,4 +1,4 @@
-"""From tokens to values: numbers into SI, texts unescaped, and every one that cannot be, told at its place."""
+"""From tokens to values: numbers into SI, texts unescaped, with an error at the place of each that is not valid."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -59,7 +59,7 @@ class Builder:
             return float("nan")
         found = fault(value, kind)
         if not found and rule == "current_change" and value == 0:
-            found = "E202", "a change of nothing is no change"
+            found = "E202", "a change must not be zero"
         if found:
             positive = str(number).lstrip("-−")
             signed = ("absolute", "change", "current")
@@ -90,7 +90,7 @@ class Builder:
         return Metadata(**values, tags=tags)
 
     def text(self, token: Any) -> str | None:
-        """Return a quoted text without quotes and escapes; None, and a finding, when it cannot be."""
+        """Return a quoted text without quotes and escapes; None, with a finding, when it is not valid."""
         start = span(token)[0]
         out: list[str] = []
         inner = str(token)[1:-1]
@@ -110,7 +110,7 @@ class Builder:
         text = "".join(out)
         wrong = text_fault(text) if text.strip() else None
         if wrong:
-            self.add("E105", span(token), wrong, "take it away")
+            self.add("E105", span(token), wrong, "remove it")
             return None
         return text
 

@@ -32,7 +32,7 @@ def not_yet(case: Case) -> Finding | None:
         help = NOT_YET[case.first]
         return at(bad, "E120", f'"{case.first}" is designed, but this version does not have it', help)
     if bad.text == "baseline" and case.where in ("icon", "repeat") and case.before is not None:
-        what = "baseline is no target in this version"
+        what = "baseline is not a target in this version"
         if case.first == "step":
             return at(bad, "E120", what, "write the level itself, such as: step to 32 °C")
         return at(bad, "E120", what, "write: return at 3 °C/s", Edit(case.pieces[0].start, bad.end, "return"))
@@ -93,7 +93,7 @@ def character(case: Case) -> Finding | None:
         return found
     code = f"U+{ord(bad.text):04X}"
     shown = f'"{bad.text}" ({code})' if bad.text.isprintable() else code
-    return at(bad, "E105", f"the character {shown} has no meaning here", "take it away", swap(bad, ""))
+    return at(bad, "E105", f"the character {shown} has no meaning here", "remove it", swap(bad, ""))
 
 
 def opening(case: Case) -> Finding | None:
@@ -130,7 +130,7 @@ def block(case: Case) -> Finding | None:
     texted = any(piece.kind == "text" for piece in case.rest[:1])
     if bad.kind == "word" and case.index == 2 and case.first == "icon" and not texted:
         joined = Edit(case.pieces[1].end, bad.end, "-" + bad.text)
-        return at(bad, "E113", "a name has no blanks in it", "join its parts with hyphens", joined)
+        return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
     if bad.kind == "word" and "KEY" in case.accepts and (close := nearest(bad.text, VOCABULARY["header"])):
         return at(bad, "E101", f'"{bad.text}" is not a key', _keys(), swap(bad, close))
     return at(bad, "E101", f'"{short(bad.text)}" does not fit here', _keys())

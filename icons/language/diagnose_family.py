@@ -63,7 +63,7 @@ def _in(case: Case) -> Finding:
     if bad.kind == "word" and before is not None:
         if case.next() == "in":
             joined = Edit(before.end, bad.end, "-" + bad.text)
-            return at(bad, "E113", "a name has no blanks in it", "join its parts with hyphens", joined)
+            return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
         return at(bad, "E118", f'"in" is needed, not "{short(bad.text)}"', _HELP, swap(bad, "in"))
     if bad.text in ("=", ":", "∈"):
         touching = before is not None and before.end == bad.start
@@ -85,7 +85,9 @@ def _values(case: Case) -> Finding:
         if cures and close < len(case.pieces) and case.pieces[close].text in (")", *_CLOSERS):
             cures = [Edit(bad.start, case.pieces[close].end, f"[{_listed(numbers)}]")]
         return at(bad, "E118", f'a list of values stands in "[ ... ]", not in "{bad.text}"', _HELP, *cures)
-    what = "the values are missing" if bad.text in (")", ",", "") else f'"{short(bad.text)}" is no list and no range'
+    what = (
+        "the values are missing" if bad.text in (")", ",", "") else f'"{short(bad.text)}" is neither a list nor a range'
+    )
     return at(bad, "E118", what, _HELP)
 
 

@@ -88,9 +88,9 @@ def unit(case: Case) -> Finding | None:
         kind = "rate"
     touching = bad.start == number.end
     if re.fullmatch(r"[0-9]{3}", bad.text) and re.fullmatch(r"[+\-−]?[0-9]{1,3}", number.text):
-        what = f'a blank stands within the number "{number.text} {bad.text}"'
+        what = f'there is a space within the number "{number.text} {bad.text}"'
         cure = Edit(number.end, bad.start, "")
-        return Finding("E106", number.start, bad.end, what, "digits stand without blanks between", (cure,))
+        return Finding("E106", number.start, bad.end, what, "write digits without spaces between them", (cure,))
     if bad.kind not in ("word", "other") or bad.text in _CONNECTIVES:
         cure = Edit(number.end, number.end, " " + next(iter(UNITS[kind])))
         shared = bad.kind == "number" and case.next() in UNITS[kind]  # two numbers, one unit: which was meant?
@@ -101,7 +101,7 @@ def unit(case: Case) -> Finding | None:
             bad, "E103", f'"{short(bad.text)}" is a parameter, not a unit', help, Edit(number.start, bad.start, "")
         )
     if bad.text in ("%", "%/s"):
-        return at(bad, "E103", f'"{bad.text}" is no unit of this language', EXAMPLES[kind])
+        return at(bad, "E103", f'"{bad.text}" is not a unit of this language', EXAMPLES[kind])
     others = [other for other in unit_kinds(bad.text) if other not in kinds]
     if case.first == "to" and kind == "current" and "absolute" in others:
         word = case.pieces[0]
@@ -111,7 +111,9 @@ def unit(case: Case) -> Finding | None:
     if bad.text in _DEGREES and re.fullmatch(r"[Cc](/.*)?", case.next()):
         cure = Edit(bad.start, case.rest[0].end, "°C" + case.next()[1:])
         whole = Piece("word", f"{bad.text} {case.next()}", bad.start, case.rest[0].end)
-        return at(whole, "E103", f'"{whole.text}" is not a unit', 'a unit has no blanks: "°C" or "degC"', cure)
+        return at(
+            whole, "E103", f'"{whole.text}" is not a unit', 'a unit must not contain spaces: "°C" or "degC"', cure
+        )
     if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()):
         return at(bad, "E103", "degrees Fahrenheit are no unit of this language", EXAMPLES[kind])
     if others:

@@ -83,7 +83,7 @@ def extra(case: Case) -> Finding | None:
         return None
     if case.first in ("site", "control"):
         what = f'"{short(bad.text)}" is too much: {case.first} takes one name'
-        help = "a name has no blanks; join its parts with hyphens"
+        help = "a name must not contain spaces; join its parts with hyphens"
         return at(bad, "E108", what, help, Edit(before.end, bad.start, "-"))
     own = {"play": _behind_play, "step": _behind_step, **dict.fromkeys(WAVES, _behind_wave)}.get(case.first)
     if own is not None and (found := own(case)):
@@ -110,7 +110,7 @@ def _behind_play(case: Case) -> Finding | None:
         return None
     if bad.kind == "word":
         joined = Edit(name.end, bad.end, "-" + bad.text)
-        return at(bad, "E113", "a name has no blanks in it", "join its parts with hyphens", joined)
+        return at(bad, "E113", "a name must not contain spaces", "join its parts with hyphens", joined)
     count = Edit(case.pieces[0].start, case.pieces[-1].end, f"repeat {bad.text} {{ play {name.text} }}")
     cures = (count,) if bad.kind == "number" else ()
     help = f"to play it several times: repeat 3 {{ play {short(name.text)} }}"
@@ -125,7 +125,7 @@ def _behind_step(case: Case) -> Finding | None:
     headed = second.text in ("warm", "cool")
     change = Edit(first.start, second.start, "") if headed else swap(first, "change")
     what = f'a step is as fast as the driver can: it takes no "{case.bad.text}"'
-    help = 'with a rate or a time of its own it is a "change", with a step back behind it a "pulse"'
+    help = 'with a rate or a time, write "change"; with a step back after it, write "pulse"'
     return at(case.bad, "E108", what, help, change if pace else swap(first, "pulse"))
 
 
@@ -205,7 +205,7 @@ def _tail(case: Case) -> str:
 
 
 def _joined(case: Case, words: list[str]) -> list[Edit]:
-    """Cures for a word that is none of those that may stand there."""
+    """Cures for a word that is not allowed here."""
     bad = case.bad
     cures = []
     if "EVERY" in case.accepts and bad.text == "for" and (time := case.quantity(case.index + 1)):

@@ -67,7 +67,7 @@ class Case:
         return next((place for place, piece in enumerate(self.pieces) if piece.text == word), None)
 
     def said(self, start: int, end: int | None = None) -> str:
-        """Return pieces as text with one blank between them."""
+        """Return pieces as text with single spaces between them."""
         return " ".join(piece.text for piece in self.pieces[start:end])
 
 
@@ -77,13 +77,13 @@ def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Find
 
 
 def signed(case: Case) -> Finding | None:
-    """A sign that is none, or that stands apart from its number: the cure keeps it."""
+    """An invalid sign, or one separated from its number: the cure keeps it."""
     bad, number = case.bad, case.rest[0] if case.rest else None
     if bad.text not in (*DASHES, "+") or number is None or number.kind != "number" or number.text[0] in "+-−":
         return None
-    what = f'"{bad.text}" (U+{ord(bad.text):04X}) is no minus sign'
+    what = f'"{bad.text}" (U+{ord(bad.text):04X}) is not a minus sign'
     if bad.text in "+-−":
-        what = "a blank stands between the sign and its number"
+        what = "there is a space between the sign and its number"
     cure = Edit(bad.start, number.end, ("+" if bad.text == "+" else "-") + number.text)
     help = 'a minus sign is a plain hyphen, "-", right before the digits'
     return Finding("E106", bad.start, number.end, what, help, (cure,))

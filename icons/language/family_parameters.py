@@ -1,4 +1,4 @@
-"""The parameters of a family from the tree: numbers, ranges and units, with what is wrong told at its place."""
+"""The parameters of a family from the tree: numbers, ranges and units, with errors at their places."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -36,7 +36,7 @@ def parameters_of(builder: Builder, tree: Any) -> Over:
         if name in places:
             line, column = builder.source.place(places[name][0])
             what = f'"{short(name)}" stands on line {line}, column {column} already'
-            builder.add("E213", span(token), what, "each parameter has a name of its own")
+            builder.add("E213", span(token), what, "each parameter needs a different name")
             unread = True
         places.setdefault(name, span(token))
         unread |= found is None
@@ -99,7 +99,7 @@ def _punctuated(builder: Builder, values: Any) -> bool:
     place = next(place for place, gap in enumerate(gaps) if gap == ",")
     low, high = (str(number) for number in values.children[place : place + 2])
     what = f'is "{low},{high}" one value or two?'
-    help = f"the decimal mark is a point: {low}.{high}; two values have a blank after the comma: {low}, {high}"
+    help = f"the decimal mark is a point: {low}.{high}; two values have a space after the comma: {low}, {high}"
     builder.add("E118", (ends[place][0], ends[place + 1][1]), what, help)
     return False
 

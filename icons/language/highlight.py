@@ -47,7 +47,7 @@ class CueLexer(RegexLexer):
             (r"\s+", Whitespace),
             (r"#[^\n]*", Comment.Single),
             (r'"', String.Double, "text"),
-            # A name may be any word, "hold" too, so it is told by what stands before or behind it.
+            # A name may be any word, "hold" too, so it is recognised by what stands before or after it.
             (rf"(icon)({_BLANK})({NAME})", _each(Keyword.Declaration, Whitespace, Name.Function)),
             (rf"(play)({_BLANK})({NAME})", _each(Keyword, Whitespace, Name.Function)),
             (rf"(set)({_BLANK})({NAME})", _each(Keyword.Declaration, Whitespace, Name.Class)),

@@ -187,7 +187,7 @@ class _Header:
         self.listed = (self.listed or kind == "LSQB") and kind != "RSQB"
 
     def part(self) -> _Row:
-        """Return the part taken last, which is no comment."""
+        """Return the part taken last that is not a comment."""
         return next(row for row in reversed(self.rows) if row.kind != "comment")
 
     def lines(self) -> list[str]:
@@ -210,7 +210,7 @@ class _Header:
 
 
 def _joined(words: Iterable[Item]) -> str:
-    """Return words with single blanks between them, but where brackets, commas and dots want none."""
+    """Return words with single spaces between them, except beside brackets, commas and dots."""
     text, before = "", "LPAR"
     for kind, word in words:
         text += word if kind in _NO_BLANK_BEFORE or before in _NO_BLANK_BEHIND else f" {word}"

@@ -60,7 +60,7 @@ def read(source: Source) -> Reading:
 
 
 def _other_format(source: Source) -> Finding | None:
-    """What is plainly another format, told once instead of line by line."""
+    """What is plainly another format, reported once instead of line by line."""
     said = ((n, line) for n, line in enumerate(source.lines) if line.strip() and not line.startswith(("#", "sep=")))
     rows = list(islice(said, 2))
     if not rows:
@@ -196,7 +196,7 @@ class _Reader:
         where = self.blocks[-1][0] if self.blocks else "file"
         if self.text[at] == "}" and not self.blocks:
             self.report(
-                Finding("E110", at, at + 1, "no block is open here", 'take this "}" away', (Edit(at, at + 1, ""),))
+                Finding("E110", at, at + 1, "no block is open here", 'remove this "}"', (Edit(at, at + 1, ""),))
             )
             self.jump(at + 1)
             return
@@ -228,7 +228,7 @@ class _Reader:
         if braced and where in ("icon", "repeat"):
             help = "a parameter stands without braces between statements, with them in a text"
             edit = Edit(at, braced.end(), braced[1])
-            self.report(Finding("E105", at, braced.end(), "these braces have no meaning here", help, (edit,)))
+            self.report(Finding("E105", at, braced.end(), "braces are not allowed here", help, (edit,)))
             self.resume(self.stop(braced.end()), where)
             return
         code = self.report_statement(pieces, index, at, where)
@@ -330,7 +330,7 @@ class _Reader:
         line, _ = self.source.place(at)
         where = "the end of the file" if at >= len(self.text) - 1 else f"line {line}"
         what = f'this block still lacks a "}}" at {where}'
-        self.report(Finding("E109", start, brace + 1, what, 'every "{" needs a "}" of its own, icons do not nest'))
+        self.report(Finding("E109", start, brace + 1, what, 'every "{" needs its own "}"; icons cannot be nested'))
 
     def report(self, finding: Finding) -> None:
         if len(self.findings) < MOST_ERRORS:

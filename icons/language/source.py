@@ -109,7 +109,7 @@ class Source:
         )
 
     def pieces(self, start: int, after: int, listing: bool = False, braces: bool = False) -> list[Piece]:
-        """Cut the text from ``start`` into pieces, without blanks, comments and newlines.
+        """Cut the text from ``start`` into pieces, without spaces, comments and newlines.
 
         They end with the first newline, ``;`` or brace at or behind ``after``, and at most 50 pieces behind it.
         ``listing`` cuts finer, as needed between the parentheses of a family, and goes on over newlines and ``;``;

@@ -1,9 +1,9 @@
 """Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C and A."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from numbers import Real
 from typing import TYPE_CHECKING
 
-from .arguments import amperes, given, number, one_of
 from .shapes import Pulse, Shape, Start, Step, Wave
 from .statements import (
     Bound,
@@ -18,6 +18,8 @@ from .statements import (
     Statement,
     Total,
 )
+from .units import UNITS, Kind
+from .value_limits import fault
 
 if TYPE_CHECKING:
     from .icon import Icon
@@ -66,9 +68,9 @@ def current(*, to: float, at: float | None = None, over: float | None = None) ->
     >>> current(to=0.5, at=1) == Current(0.5, rate_A_per_s=1)
     True
     """
-    one_of("current", {"at": at, "over": over})
-    rate, time = number("current", "at", at, "current_rate"), number("current", "over", over, "time")
-    return Current(given("current", "to", to, "current"), rate, time)
+    _one_of("current", {"at": at, "over": over})
+    rate, time = _number("current", "at", at, "current_rate"), _number("current", "over", over, "time")
+    return Current(_given("current", "to", to, "current"), rate, time)
 
 
 def hold(duration: float) -> Hold:
@@ -77,7 +79,7 @@ def hold(duration: float) -> Hold:
     >>> hold(4) == Hold(duration_s=4)
     True
     """
-    return Hold(given("hold", "duration", duration, "time"))
+    return Hold(_given("hold", "duration", duration, "time"))
 
 
 def rest(duration: float) -> Rest:
@@ -86,7 +88,7 @@ def rest(duration: float) -> Rest:
     >>> rest(1) == Rest(duration_s=1)
     True
     """
-    return Rest(given("rest", "duration", duration, "time"))
+    return Rest(_given("rest", "duration", duration, "time"))
 
 
 def back(*, at: float | None = None, over: float | None = None) -> Return:
@@ -97,8 +99,8 @@ def back(*, at: float | None = None, over: float | None = None) -> Return:
     >>> back(at=3) == Return(rate_per_s=3), back(over=2) == Return(duration_s=2)
     (True, True)
     """
-    one_of("back", {"at": at, "over": over})
-    return Return(number("back", "at", at, "rate"), number("back", "over", over, "time"))
+    _one_of("back", {"at": at, "over": over})
+    return Return(_number("back", "at", at, "rate"), _number("back", "over", over, "time"))
 
 
 def step(
@@ -111,10 +113,10 @@ def step(
     >>> step(by=-6) == Step(by_K=-6), step(to_A=0.5) == Step(to_A=0.5)
     (True, True)
     """
-    one_of("step", {"by": by, "to": to, "by_A": by_A, "to_A": to_A})
-    by, to = number("step", "by", by, "change"), number("step", "to", to, "absolute")
-    amount = amperes("step", by_A)
-    return Step("change", by, to, amount, number("step", "to_A", to_A, "current"))
+    _one_of("step", {"by": by, "to": to, "by_A": by_A, "to_A": to_A})
+    by, to = _number("step", "by", by, "change"), _number("step", "to", to, "absolute")
+    amount = _amperes("step", by_A)
+    return Step("change", by, to, amount, _number("step", "to_A", to_A, "current"))
 
 
 def pulse(*, by: float | None = None, by_A: float | None = None, duration: float) -> Pulse:
@@ -123,9 +125,9 @@ def pulse(*, by: float | None = None, by_A: float | None = None, duration: float
     >>> pulse(by=-3, duration=0.5) == Pulse(by_K=-3, duration_s=0.5)
     True
     """
-    one_of("pulse", {"by": by, "by_A": by_A})
-    by, amount = number("pulse", "by", by, "change"), amperes("pulse", by_A)
-    return Pulse("change", by, amount, given("pulse", "duration", duration, "time"))
+    _one_of("pulse", {"by": by, "by_A": by_A})
+    by, amount = _number("pulse", "by", by, "change"), _amperes("pulse", by_A)
+    return Pulse("change", by, amount, _given("pulse", "duration", duration, "time"))
 
 
 def sine(
@@ -207,7 +209,7 @@ def repeat(count: int, *body: Statement) -> Repeat:
     """
     if not body:
         raise ValueError("repeat() needs statements behind the count, such as repeat(3, hold(1))")
-    return Repeat(int(given("repeat", "count", count, "count")), _statements(body))
+    return Repeat(int(_given("repeat", "count", count, "count")), _statements(body))
 
 
 def play(icon: "Icon") -> Play:
@@ -232,17 +234,17 @@ def total(duration: float, bound: Bound = "exactly") -> Total:
     """
     if bound not in ("exactly", "at most", "at least"):
         raise ValueError(f'total(bound={bound!r}): "exactly", "at most" or "at least" is needed')
-    return Total(given("total", "duration", duration, "time"), bound)
+    return Total(_given("total", "duration", duration, "time"), bound)
 
 
 def _change(
     call: str, direction: Direction, by: float | None, to: float | None, at: float | None, over: float | None
 ) -> Ramp:
-    one_of(call, {"by": by, "to": to})
-    one_of(call, {"at": at, "over": over})
-    size = number(call, "by", by, "change" if direction == "change" else "difference")
-    target = number(call, "to", to, "absolute")
-    return Ramp(direction, size, target, number(call, "at", at, "rate"), number(call, "over", over, "time"))
+    _one_of(call, {"by": by, "to": to})
+    _one_of(call, {"at": at, "over": over})
+    size = _number(call, "by", by, "change" if direction == "change" else "difference")
+    target = _number(call, "to", to, "absolute")
+    return Ramp(direction, size, target, _number(call, "at", at, "rate"), _number(call, "over", over, "time"))
 
 
 def _wave(
@@ -254,8 +256,8 @@ def _wave(
     cut: bool,
     by_A: float | None,
 ) -> Wave:
-    one_of(shape, {"by": by, "by_A": by_A})
-    size, amount = number(shape, "by", by, "difference"), amperes(shape, by_A)
+    _one_of(shape, {"by": by, "by_A": by_A})
+    size, amount = _number(shape, "by", by, "difference"), _amperes(shape, by_A)
     ways = ("warm", "cool") if by_A is None else ("up", "down")
     if amount is not None and amount < 0:
         raise ValueError(f'{shape}(by_A={by_A!r}): an amplitude is positive; to begin downwards, say starting="down"')
@@ -263,14 +265,52 @@ def _wave(
         raise ValueError(f'{shape}(starting={starting!r}): "{ways[0]}" or "{ways[1]}" is needed')
     if not isinstance(cut, bool):
         raise ValueError(f"{shape}(cut={cut!r}): True or False is needed")
-    period, time = given(shape, "every", every, "time"), given(shape, "duration", duration, "time")
+    period, time = _given(shape, "every", every, "time"), _given(shape, "duration", duration, "time")
     return Wave(shape, size, amount, period, time, starting, cut)
 
 
 def _statements(parts: Sequence[object]) -> tuple[Statement, ...]:
-    """Return parts that are all statements; ValueError names the first that is none."""
+    """Return parts that are all statements; ValueError names the first that is not."""
     for part in parts:
         if not isinstance(part, Statement) or isinstance(part, Total):
-            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is no statement"
+            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is not a statement"
             raise ValueError(f"repeat(): {what}")
     return tuple(part for part in parts if isinstance(part, Statement))
+
+
+def _one_of(call: str, given: Mapping[str, object]) -> None:
+    """Raise ValueError unless exactly one of these arguments of a call is given."""
+    names = [name for name, value in given.items() if value is not None]
+    if not names:
+        *most, last = given
+        raise ValueError(f"{call}() needs either {', '.join(most)} or {last}")
+    if len(names) > 1:
+        raise ValueError(f"{call}() takes only one of {', '.join(names[:-1])} and {names[-1]}")
+
+
+def _number(call: str, name: str, value: float | None, kind: Kind) -> float | None:
+    """Return an argument as a float, None as it is; ValueError for what this kind of quantity may not be."""
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, Real):
+        unit = next(iter(UNITS[kind]))
+        raise ValueError(f"{call}({name}={value!r}): a number is needed{f', in {unit}' if unit else ''}")
+    if found := fault(float(value), kind):
+        raise ValueError(f"{call}({name}={value!r}): {found[1]}")
+    return float(value)
+
+
+def _given(call: str, name: str, value: float, kind: Kind) -> float:
+    """As ``number``, for an argument that may not be None."""
+    found = _number(call, name, value, kind)
+    if found is None:
+        raise ValueError(f"{call}() needs {name}")
+    return found
+
+
+def _amperes(call: str, value: float | None) -> float | None:
+    """Return the argument ``by_A`` as a float, None as it is; ValueError for 0 and beyond ±20 A."""
+    found = _number(call, "by_A", value, "current")
+    if found == 0:
+        raise ValueError(f"{call}(by_A={value!r}): a change must not be zero")
+    return found

@@ -1,4 +1,4 @@
-"""Meaning: follow an icon's statements and find what cannot be played, without writing repeats out."""
+"""Meaning: follow an icon's statements and find what cannot work, without writing repeats out."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _STEEPNESS: dict[Shape, float] = {"sine": 2 * math.pi, "triangle": 4.0, "sawtoot
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One thing that cannot be: the statement (None for the icon), which part of it, and what is wrong.
+    """One problem: the statement (None for the icon), which part of it, and what is wrong.
 
     ``cures`` holds pairs of a part and the text to put in its place.
     """
@@ -67,7 +67,7 @@ def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | Non
 
 
 def problems(body: Sequence[Statement | Broken], control: Control, rest: Fraction | None) -> list[Problem]:
-    """Return what cannot be in a body that starts at the level ``rest`` (°C or A; None when that is not known)."""
+    """Return the problems of a body that starts at the level ``rest`` (°C or A; None when that is not known)."""
     return survey(body, control, rest).problems
 
 
@@ -95,7 +95,7 @@ def survey(
         what = f"this icon lasts {float(duration):,.6g} s"
         walker.found.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
     if walker.timed and duration == 0 and body and not walker.found:
-        help = 'a step takes no time of its own; follow it with a line such as "hold for 2 s"'
+        help = 'a step takes no time; follow it with a line such as "hold for 2 s"'
         walker.found.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
     if walker.timed:
         walker.totals(body, duration)
@@ -109,7 +109,7 @@ class _Walker:
     found: list[Problem] = field(default_factory=list)
     blamed: set[int] = field(default_factory=set)
     played: Played = field(default_factory=dict)
-    # Behind a statement that could not be read, nobody knows how long the icon lasts.
+    # Behind a statement that could not be read, the duration of the icon is unknown.
     timed: bool = True
     lowest: float = math.inf
     highest: float = -math.inf
@@ -264,7 +264,7 @@ def advance_blind(part: Leaf) -> Fraction:
 
 
 def absolute(body: Sequence[Statement | Broken]) -> bool:
-    """Tell whether a body holds a statement that leads to a level of its own, wherever it begins."""
+    """Tell whether a body holds a statement that leads to a fixed level, wherever it begins."""
     return any(
         isinstance(part, Return | Current | Play)
         or (isinstance(part, Ramp | Step) and part.to_C is not None)

@@ -35,7 +35,7 @@ def text_fault(text: str) -> str | None:
 class Context:
     """What a set prescribes and where: control, baseline in °C (None: whoever plays it says) and body site.
 
-    Raises ValueError for an unknown control, a baseline outside −10 to 60 °C, or a site that is no name.
+    Raises ValueError for an unknown control, a baseline outside −10 to 60 °C, or a site that is not a name.
 
     >>> Context("display", 32)
     Context(control='display', baseline_C=32.0, site=None)
@@ -81,4 +81,4 @@ class Metadata:
                 raise ValueError(f"{key}: {wrong}")
         for tag in self.tags:
             if (wrong := text_fault(tag)) or "," in tag or tag != tag.strip():
-                raise ValueError(f"tags: {wrong or f'{tag!r} has a comma or blanks around it'}")
+                raise ValueError(f"tags: {wrong or f'{tag!r} has a comma or spaces around it'}")

@@ -81,7 +81,7 @@ class Corners:
 
     @property
     def steepest_per_s(self) -> float:
-        """The size of the steepest slope that is no step, in K/s or A/s."""
+        """The size of the steepest slope that is not a step, in K/s or A/s."""
         points, steps = list(zip(self.time_s, self.value, strict=True)), set(self.steps)
         slopes = (abs(b[1] - a[1]) / (b[0] - a[0]) for n, (a, b) in enumerate(pairwise(points)) if n not in steps)
         return max(slopes, default=0.0)

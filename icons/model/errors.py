@@ -78,7 +78,7 @@ TITLES: dict[str, str] = {
     "E232": "icons that play each other",
 }
 WIDEST = 110
-# Errors shown, and errors behind which reading stops: nobody mends a thousand in one go.
+# Errors shown, and errors behind which reading stops: nobody corrects a thousand at once.
 MOST_ERRORS, MOST_READ = 100, 1000
 
 

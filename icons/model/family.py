@@ -63,7 +63,7 @@ class Family:
     def _fault(self) -> str | None:
         names = [parameter.name for parameter in self.parameters]
         if not names or len(set(names)) < len(names):
-            return "parameters are needed, each with a name of its own"
+            return "parameters are needed, each with a different name"
         if len(self) > MOST_MEMBERS:
             return f"{len(self):,} members; a family has at most {MOST_MEMBERS:,}: {FEWER}"
         for parameter in self.parameters:

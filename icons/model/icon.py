@@ -27,7 +27,8 @@ class Icon:
     Raises ValueError for a bad name or no statements, and CueErrors when the statements cannot be run, for example
     a rest away from baseline. A context without baseline is tried with 32 °C.
 
-    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> from thermicon.icons import Icon
+    >>> from thermicon.icons.model.statements import Ramp, Hold, Return
     >>> Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
     <Icon dip: 8 s, 26 to 32 °C, at most 3 °C/s, control skin, baseline 32 °C assumed>
     """

@@ -12,7 +12,7 @@ Heading = Literal["warm", "cool", "change"]
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """``step``: to another level as fast as the driver can: by K or A, or to °C or A; it takes no time of its own.
+    """``step``: to another level as fast as the driver can: by K or A, or to °C or A; it takes no time.
 
     With ``warm`` or ``cool`` a difference is positive and in K; with ``change`` it is signed. ValueError otherwise.
 
@@ -113,4 +113,4 @@ def _prove_heading(owner: object, direction: str, current: bool) -> None:
 
 def _prove_current_change(owner: object, by_A: float | None) -> None:
     if by_A == 0:
-        raise ValueError(f"{type(owner).__name__}.by_A = 0: a change of nothing is no change")
+        raise ValueError(f"{type(owner).__name__}.by_A = 0: a change must not be zero")

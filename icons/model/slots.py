@@ -39,7 +39,7 @@ def slot_fault(template: tuple[Statement, ...], slot: Slot, parameter: Parameter
     try:
         part = statement_at(template, slot.path)
     except IndexError:
-        return f"there is no statement at {slot.path}"
+        return f"there is not a statement at {slot.path}"
     value = getattr(part, slot.field, None)
     if slot.field not in _KINDS or value is None:
         return f"{slot.field} is not given by {part!r}"

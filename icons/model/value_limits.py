@@ -30,7 +30,7 @@ def fault(value: float, kind: Kind) -> tuple[str, str] | None:
     if kind == "current" and abs(value) > HIGHEST_A:
         return "E219", f"{decimal_text(value)} A is outside the ±20 A that the language allows"
     if kind == "change" and value == 0:
-        return "E202", "a change of nothing is no change"
+        return "E202", "a change must not be zero"
     if kind == "difference" and value <= 0:
         return "E202", "a change has a positive size; its direction is in the word"
     if kind in ("difference", "change") and abs(value) > HIGHEST_C - LOWEST_C:

@@ -18,14 +18,14 @@ _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECAS
 
 
 class BibliographyError(ValueError):
-    """A bibliography that cannot be; the message names the file, the entry, the key and the cure."""
+    """An invalid bibliography; the message names the file, the entry, the key and the cure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reference:
     """A publication: BibTeX fields as texts, where they were ``seen``, and what of them is ``unverified``.
 
-    Raises BibliographyError for an unknown type, an empty text, a year or a DOI that is none.
+    Raises BibliographyError for an unknown type, an empty text, a year or an invalid DOI.
     """
 
     key: str
@@ -54,7 +54,9 @@ class Reference:
         if self.type not in TYPES:
             raise BibliographyError(f"{self.key}: type = {self.type!r} must be one of {', '.join(TYPES)}")
         if self.doi is not None and not _DOI.fullmatch(self.doi):
-            raise BibliographyError(f"{self.key}: doi = {self.doi!r} is no DOI, such as 10.3390/bioengineering10101156")
+            raise BibliographyError(
+                f"{self.key}: doi = {self.doi!r} is not a DOI, such as 10.3390/bioengineering10101156"
+            )
 
     @property
     def surnames(self) -> tuple[str, ...]:

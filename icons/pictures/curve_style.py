@@ -21,7 +21,7 @@ COLOURS: dict[Direction, str] = {"stay": STAY, "cool": COOL, "warm": WARM}
 def directions(corners: Corners) -> list[Direction]:
     """Return, for every straight piece, whether it cools, warms or stays; under control current, more current cools.
 
-    >>> from thermicon.icons import Corners
+    >>> from thermicon.icons.model.corners import Corners
     >>> directions(Corners((0.0, 2.0, 6.0), (32.0, 26.0, 26.0), "temperature_C"))
     ['cool', 'stay']
     """

@@ -87,7 +87,7 @@ def _overlay(icons: "Sequence[Icon]", labels: Sequence[str], title: str, ax: "Ax
     if not icons:
         raise ValueError("there are no icons to draw")
     if len({icon.context.control == "current" for icon in icons}) > 1:
-        raise ValueError("icons under control current are in A, the others in °C: draw them on axes of their own")
+        raise ValueError("icons under control current are in A, the others in °C: draw them on separate axes")
     named = len(icons) <= MOST_NAMED
     own = ax is None
     if ax is None:

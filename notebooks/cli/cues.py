@@ -49,7 +49,8 @@ class Joined:
 
 def read_all(files: Sequence[str]) -> list[IconSet]:
     """Read every file; CueErrors carries what is wrong in all of them, not only in the first."""
-    from thermicon.icons import CueError, CueErrors, read_cue
+    from thermicon.icons import CueErrors, read_cue
+    from thermicon.icons.model.errors import CueError
 
     sets: list[IconSet] = []
     errors: list[CueError] = []

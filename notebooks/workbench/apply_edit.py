@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons import Repeat, Total
+from thermicon.icons.model.statements import Repeat, Total
 
 from .cue_check import read_text
 from .number_literals import keyword_of, kind_of, offset_of, replaced, written

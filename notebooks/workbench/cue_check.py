@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
 
 if TYPE_CHECKING:
-    from thermicon.icons import CueError
+    from thermicon.icons.model.errors import CueError
 
 MOST_NAMES = 200
 """Names that a list of icons shows; a family may have 100,000 members."""

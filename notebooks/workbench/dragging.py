@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons import CueErrors, Icon, Wave
+from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
+from thermicon.icons.model.shapes import Wave
 
 from ..text.number_text import number
 from .cue_check import read_text

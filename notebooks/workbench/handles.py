@@ -8,9 +8,10 @@ from fractions import Fraction
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Literal
 
-from thermicon.icons import Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Return, Step, Total, Wave
 from thermicon.icons.model.icon import rest_level
 from thermicon.icons.model.motion import advance, amplitude, pieces
+from thermicon.icons.model.shapes import Pulse, Step, Wave
+from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
 
 if TYPE_CHECKING:
     from thermicon.icons import Family, Icon

@@ -9,7 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from thermicon.icons import Current, Ramp, Return
+from thermicon.icons.model.statements import Current, Ramp, Return
 from thermicon.icons.model.units import UNITS, Kind
 
 if TYPE_CHECKING:
@@ -115,7 +115,7 @@ def written(text: str, span: tuple[int, int]) -> Written:
 def keyword_of(leaf: Leaf, field: str) -> str:
     """Return the word that a field of a statement stands behind.
 
-    >>> from thermicon.icons import Hold
+    >>> from thermicon.icons.model.statements import Hold
     >>> keyword_of(Hold(4), "duration_s")
     'for'
     """

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from thermicon.icons import Family, Icon, Parameter
+    from thermicon.icons import Family, Icon
+    from thermicon.icons.model.parameter import Parameter
 
 MOVED = 0.5
 FINE = 200
@@ -77,7 +78,7 @@ def member(family: Family, shares: Sequence[float]) -> Icon:
 def value_at(parameter: Parameter, share: float) -> float:
     """Value of a parameter at a share of its range, in its unit: continuous in a span, one of those listed or counted.
 
-    >>> from thermicon.icons import Parameter
+    >>> from thermicon.icons.model.parameter import Parameter
     >>> value_at(Parameter("rate", "°C/s", span=(1, 3, 0.5)), 0.33), value_at(Parameter("n", "", span=(1, 3, 1)), 0.99)
     (1.66, 3.0)
     """

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
-    from thermicon.icons import Icon, Statement
+    from thermicon.icons import Icon
+    from thermicon.icons.model.statements import Statement
 
 FIELDS = (
     *("by_K", "to_C", "by_A", "to_A"),
@@ -42,7 +43,8 @@ class Number:
 def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
     """Every number that can be made larger or smaller, in the order of the text; totals only check and are left out.
 
-    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> from thermicon.icons import Icon
+    >>> from thermicon.icons.model.statements import Ramp, Hold, Return
     >>> dip = Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))
     >>> [(number.field, number.value) for number in numbers_of(dip, 32.0)]
     [('by_K', 6.0), ('rate_K_per_s', 3.0), ('duration_s', 4.0), ('rate_per_s', 3.0)]
@@ -66,7 +68,7 @@ def with_number(icon: Icon, number: Number, value: float) -> Icon:
 
 def repeated(icon: Icon, count: int) -> Icon:
     """The icon with all that moves it in one `repeat`; checks of the total stay outside."""
-    from thermicon.icons import Repeat, Total
+    from thermicon.icons.model.statements import Repeat, Total
 
     body = tuple(part for part in icon.statements if not isinstance(part, Total))
     checks = tuple(part for part in icon.statements if isinstance(part, Total))
@@ -76,7 +78,8 @@ def repeated(icon: Icon, count: int) -> Icon:
 def line_of(icon: Icon, path: Sequence[int]) -> str:
     """The line of text at a path: of a repeat its first line.
 
-    >>> from thermicon.icons import Ramp, Hold, Icon, Return
+    >>> from thermicon.icons import Icon
+    >>> from thermicon.icons.model.statements import Ramp, Hold, Return
     >>> line_of(Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3))), (1,))
     'hold for 4 s'
     """
@@ -86,7 +89,7 @@ def line_of(icon: Icon, path: Sequence[int]) -> str:
 
 
 def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) -> Iterator[Number]:
-    from thermicon.icons import Repeat, Total
+    from thermicon.icons.model.statements import Repeat, Total
 
     for place, part in enumerate(body):
         path = (*before, place)

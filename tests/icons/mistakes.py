@@ -81,12 +81,12 @@ NOTATION = [
     *(
         Mistake(body(f"change by {sign}6 °C at 3 °C/s"), "E106", 3, 13, words, "change by -6 °C at 3 °C/s")
         for sign, words in {
-            "–": '^^ "–" (U+2013) is no minus sign',
-            "— ": '^^^ "—" (U+2014) is no minus sign',
+            "–": '^^ "–" (U+2013) is not a minus sign',
+            "— ": '^^^ "—" (U+2014) is not a minus sign',
             "‐": "(U+2010)",
             "‑": "(U+2011)",
             "‒": "(U+2012)",
-            "- ": "^^^ a blank stands between the sign and its number",
+            "- ": "^^^ there is a space between the sign and its number",
             "− ": "^^^ a blank stands between",
         }.items()
     ),
@@ -219,8 +219,8 @@ FAMILIES = [
     header("a in 1...3 K)", "E118", 14, "two dots between its ends, not three"),
     header("a in [1...3] K)", "E118", 15, "two dots between its ends, not three"),
     header("a in [1..3] K)", "E118", 15, "a range stands without brackets"),
-    header("a in [–3, 3] °C)", "E106", 14, "(U+2013) is no minus sign", "a in [-3, 3] °C)"),
-    header("a in –3..3 step 1 K)", "E106", 13, "(U+2013) is no minus sign", "a in -3..3 step 1 K)"),
+    header("a in [–3, 3] °C)", "E106", 14, "(U+2013) is not a minus sign", "a in [-3, 3] °C)"),
+    header("a in –3..3 step 1 K)", "E106", 13, "(U+2013) is not a minus sign", "a in -3..3 step 1 K)"),
     header("a in [3] mK)", "E103", 17, '"mK" is not a unit', ""),
     header("a in [1, x] K)", "E106", 17, 'a number is needed, not "x"'),
     header("a in 1..3 °C)", "E118", 13, 'this range has no "step"', "a in 1..3 step 1 °C)"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from thermicon.icons import Corners
+from thermicon.icons.model.corners import Corners
 
 from ...solver.inverse import baseline_C
 from ..delivered_drive import DeliveredDrive

@@ -11,7 +11,8 @@ from thermicon.circuit.solver.delivery_deviation import (
     loss_limit,
     loss_table,
 )
-from thermicon.icons import Corners, load_library
+from thermicon.icons import load_library
+from thermicon.icons.model.corners import Corners
 
 
 def test_ramps_levels_and_returns_on_the_clock_of_the_file() -> None:

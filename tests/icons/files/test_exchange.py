@@ -13,24 +13,10 @@ from tests.icons.files.test_exchange_errors import error, with_body
 from thermicon.icons import (
     Context,
     CueErrors,
-    Current,
     Family,
-    Hold,
     Icon,
     IconSet,
     Metadata,
-    Parameter,
-    Play,
-    Pulse,
-    Ramp,
-    Repeat,
-    Rest,
-    Return,
-    Slot,
-    Statement,
-    Step,
-    Total,
-    Wave,
     library_names,
     load_library,
     parse,
@@ -39,6 +25,10 @@ from thermicon.icons import (
 from thermicon.icons.files.exchange import from_json, to_json
 from thermicon.icons.files.exchangetypes import LIMITS
 from thermicon.icons.files.json_schema import schema_text
+from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.shapes import Pulse, Step, Wave
+from thermicon.icons.model.slots import Slot
+from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from thermicon.icons.model.value_limits import fault
 
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))

@@ -32,7 +32,7 @@ def with_body(statements: str, head: str = "", settings: str = '"baseline_C": 32
         ('{"a": 1 "b": 2}', "a comma is missing before this"),
         ('{"a" 1}', "a colon is missing before this"),
         ('{"a": }', "a value is needed here"),
-        ('{"a": 1} {', "the text goes on behind its end"),
+        ('{"a": 1} {', "there is text after the end of the file's object"),
         ('{"a": "x\ny"}', "a text is not closed where its line ends"),
         ('{"a": "x', "the text ends too soon"),
         ('{"a": "\x07"}', "a text holds a control character"),
@@ -54,7 +54,7 @@ def test_what_is_not_json(text: str | bytes, words: str) -> None:
     ("text", "words"),
     [
         ("[1]", "a.json:1:1  E012 not a cue set in JSON\n  1 | [1]\n    | ^^^ the file: [1]: an object is needed"),
-        ('{"format": "cue", "version": 1, "icons": []}', 'format: "cue" is not among what may stand here'),
+        ('{"format": "cue", "version": 1, "icons": []}', 'format: "cue" is not allowed here'),
         ('{"format": "thermicon cue", "version": 2}', "E010 unknown version"),
         ('{"format": "thermicon cue", "version": true}', "this is version 1 of the format, not true"),
         ('{"format": "thermicon cue", "version": 1}', 'the file: "icons" is missing\n  add "icons"'),
@@ -89,13 +89,13 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
             "rate_K_per_s or duration_s is missing|exactly one is given of: rate_K_per_s, dur",
         ),
         ('{"do": "cool", "by_K": 6, "to_C": 3, "duration_s": 1}', "by_K and to_C exclude one another"),
-        ('{"do": "heat", "by_K": 6}', f'4:8  E012|{PATH}.do: "heat" is no statement|did you mean warm?'),
-        ('{"do": 3}', "3 is no statement"),
+        ('{"do": "heat", "by_K": 6}', f'4:8  E012|{PATH}.do: "heat" is not a statement|did you mean warm?'),
+        ('{"do": 3}', "3 is not a statement"),
         ('{"by_K": 6}', f'{PATH}: "do" is missing|it says what the statement is: warm, cool'),
         ("3", f"{PATH}: 3: an object is needed"),
         ('{"do": "hold"}', f'{PATH}: "duration_s" is missing|add "duration_s" in s'),
         ('{"do": "hold", "duration_s": null}', "null: a number is needed in s"),
-        ('{"do": "return", "duration_s": null}', "null says nothing|leave the key out"),
+        ('{"do": "return", "duration_s": null}', "null is not a value here|leave the key out"),
         ('{"do": "hold", "duration_s": 0}', "4:30  E203|duration_s: 0: a time is positive|the value is in s"),
         ('{"do": "hold", "duration_s": 1e999}', "this number is too large"),
         (f'{{"do": "hold", "duration_s": 1{"0" * 400}}}', "a number is needed in s"),
@@ -110,11 +110,11 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
         ('{"do": "total", "duration_s": 1, "bound": "most"}', '"most" is not among|did you mean at most?'),
         ('{"do": "sine", "by_K": 3, "period_s": 1, "duration_s": 1, "start": "up"}', 'start must be "warm" or "cool"'),
         ('{"do": "sine", "by_A": -3, "period_s": 1, "duration_s": 1}', "E202|-3 A: an amplitude is positive"),
-        ('{"do": "step", "by_A": 0}', "E202|a change of nothing is no change"),
+        ('{"do": "step", "by_A": 0}', "E202|a change must not be zero"),
         ('{"do": "play", "icon": "b c"}', "E113|'b c' is not a name"),
         ('{"do": "play", "icon": "aa"}', 'E230|no icon is called "aa"|did you mean a?'),
         ('{"do": "play", "icon": "xyz"}', "E230|play names an icon of this file"),
-        ('{"do": "play", "icon": "a"}', "4:24  E232|this goes round in a circle: a plays a"),
+        ('{"do": "play", "icon": "a"}', "4:24  E232|these icons play each other in a circle: a plays a"),
         ('{"do": "return", "rate_A_per_s": 1}', "E210|this set controls the skin|the key is rate_K_per_s"),
         ('{"do": "drive", "to_A": 1, "duration_s": 1}', f"E209|{PATH}: "),
         ('{"do": "hold", "duration_s": 1}, {"do": "return", "duration_s": 1}', "4:34  E206|icons[0].statements[1]: "),
@@ -213,14 +213,14 @@ def test_amplitudes_and_changes_of_current_in_a_family() -> None:
     amps = '"control": "current"'
     assert "E202 amount not positive" in error(with_body(wave, head.replace("VALUES", "1, -1"), amps))
     pulse = '{"do": "pulse", "by_A": {"parameter": "x"}, "duration_s": 1}'
-    assert "a change of nothing is no change" in error(with_body(pulse, head.replace("VALUES", "1, 0"), amps))
+    assert "a change must not be zero" in error(with_body(pulse, head.replace("VALUES", "1, 0"), amps))
 
 
 def test_settings_are_told_too() -> None:
     said = error(
         with_body('{"do": "hold", "duration_s": 1}', settings='"control": "surface", "site": "a b", "basline": 1')
     )
-    assert '"surface" is not among what may stand here\n  one of: skin, display, current' in said
+    assert '"surface" is not allowed here\n  one of: skin, display, current' in said
     assert "E113 not a name" in said
     assert 'set.basline: unknown key "basline"\n  did you mean baseline_C?' in said
 
@@ -252,7 +252,7 @@ def test_icons_that_cannot_be_together() -> None:
     )
     text = f"{head}{family}, {icon.replace('NAME', 'p')}]}}"
     assert from_json(text.replace("PLAYED", "f_x=3"))["p"].corners().duration_s == 3
-    assert '"f_x=4" is no member of the family f\n  such as f_x=2' in error(text.replace("PLAYED", "f_x=4"))
+    assert '"f_x=4" is not a member of the family f\n  such as f_x=2' in error(text.replace("PLAYED", "f_x=4"))
     assert "is no member" in error(text.replace("PLAYED", "f"))
     clash = icon.replace("NAME", "f_x=2").replace("PLAYED", "f_x=3")
     assert "E012" in error(f"{head}{family}, {clash}]}}")

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
 
-from thermicon.icons import Corners, Icon, IconSet, library_names, load_library, parse
+from thermicon.icons import Icon, IconSet, library_names, load_library, parse
 from thermicon.icons.files.hjif import EXPERIMENTAL, PAUSE_S, HjifError, ticks_per_second, to_hjif
+from thermicon.icons.model.corners import Corners
 
 # What a reader asks of the parts that are written here; ours, from facts about the format, no text of the standard.
 KEYFRAME = {

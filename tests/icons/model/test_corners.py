@@ -6,7 +6,9 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from thermicon.icons import Corners, CueErrors, Icon, Ramp, parse
+from thermicon.icons import CueErrors, Icon, parse
+from thermicon.icons.model.corners import Corners
+from thermicon.icons.model.statements import Ramp
 
 
 def icon(body: str, settings: str = "") -> Icon:

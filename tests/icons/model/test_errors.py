@@ -3,8 +3,8 @@
 import pytest
 
 from tests.icons.mistakes import ALL, DOWN, Mistake
-from thermicon.icons import CueError, CueErrors, parse
-from thermicon.icons.model.errors import TITLES
+from thermicon.icons import CueErrors, parse
+from thermicon.icons.model.errors import TITLES, CueError
 
 
 def errors_of(text: str | bytes) -> tuple[CueError, ...]:

@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from thermicon.icons import CueErrors, Family, Wave, parse
+from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
+from thermicon.icons.model.shapes import Wave
 
 # Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
 VALUES = {
@@ -152,7 +153,7 @@ def test_a_family_is_sound_exactly_when_its_members_are(made: tuple[str, list[st
     ("family", "message"),
     [
         ("x(a in [1, 2] s) { to 1 A over a }", 'E209 .*"to" alone moves a current'),
-        ("x(a in [1, 2] A/s) { cool by 1 K at 1 K/s; return at a }", "E210 .*a is no rate in °C/s; .* the skin"),
+        ("x(a in [1, 2] A/s) { cool by 1 K at 1 K/s; return at a }", "E210 .*a is not a rate in °C/s; .* the skin"),
         ("x(a in [1, 2] A/s) { cool by 1 K at a }", "E104 .*a is in A/s; a rate of temperature is needed"),
         ("x(n in [9000, 11000]) { repeat n { play p } }", "E220 .*110,000 corners .with n=11000"),
         ("x(a in 1..40 step 1 K) { warm by a at 1 K/s }", "E219 .*leads to 61 °C .with a=29, one of 12 such .* of 40"),

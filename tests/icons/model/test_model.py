@@ -8,27 +8,9 @@ from dataclasses import FrozenInstanceError, fields
 
 import pytest
 
-from thermicon.icons import (
-    Context,
-    CueErrors,
-    Current,
-    Hold,
-    Icon,
-    IconSet,
-    Metadata,
-    Play,
-    Pulse,
-    Ramp,
-    Repeat,
-    Rest,
-    Return,
-    Step,
-    Total,
-    Wave,
-    load_library,
-    parse,
-)
-from thermicon.icons.model.statements import Broken
+from thermicon.icons import Context, CueErrors, Icon, IconSet, Metadata, load_library, parse
+from thermicon.icons.model.shapes import Pulse, Step, Wave
+from thermicon.icons.model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
 
 HOLD = (Hold(1),)
 WAIT = Icon("wait", (Rest(1),))
@@ -48,7 +30,7 @@ EVERYTHING = (
     ("make", "message"),
     [
         (lambda: Ramp("up", by_K=1, duration_s=1), 'direction must be "warm", "cool" or "change", not \'up\''),
-        (lambda: Ramp("change", by_K=0, duration_s=1), "a change of nothing is no change"),
+        (lambda: Ramp("change", by_K=0, duration_s=1), "a change must not be zero"),
         (lambda: Ramp("warm", duration_s=1), "either by_K or to_C"),
         (lambda: Ramp("warm", by_K=1, to_C=40, duration_s=1), "and not both"),
         (lambda: Ramp("warm", by_K=1), "either rate_K_per_s or duration_s"),
@@ -75,9 +57,9 @@ EVERYTHING = (
         (lambda: Step("up", by_K=1), 'Step.direction must be "warm", "cool" or "change", not \'up\''),
         (lambda: Step("warm", by_K=-1), "a change has a positive size"),
         (lambda: Step("warm", by_A=1), 'Step: a current is changed, not "warm"ed'),
-        (lambda: Step(by_A=0), "Step.by_A = 0: a change of nothing is no change"),
+        (lambda: Step(by_A=0), "Step.by_A = 0: a change must not be zero"),
         (lambda: Pulse(by_K=1, by_A=1), "Pulse needs either by_K or by_A, and not both"),
-        (lambda: Pulse(by_K=0), "a change of nothing is no change"),
+        (lambda: Pulse(by_K=0), "a change must not be zero"),
         (lambda: Wave("saw", by_K=1), "Wave.shape must be one of sine, square, triangle, sawtooth, not 'saw'"),
         (lambda: Wave("sine", by_A=-1), "Wave.by_A = -1.0: an amplitude is positive"),
         (lambda: Wave("sine", by_K=1, start="up"), 'Wave.start must be "warm" or "cool" here, not \'up\''),

@@ -8,30 +8,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from thermicon.icons import (
-    Context,
-    CueErrors,
-    Current,
-    Family,
-    Hold,
-    Icon,
-    IconSet,
-    Metadata,
-    Parameter,
-    Play,
-    Pulse,
-    Ramp,
-    Repeat,
-    Rest,
-    Return,
-    Slot,
-    Statement,
-    Step,
-    Total,
-    Wave,
-    parse,
-)
-from thermicon.icons.model.shapes import Shape
+from thermicon.icons import Context, CueErrors, Family, Icon, IconSet, Metadata, parse
+from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.shapes import Pulse, Shape, Step, Wave
+from thermicon.icons.model.slots import Slot
+from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from thermicon.icons.model.units import exact, quantity, to_si
 
 TIMES = st.one_of(st.floats(1e-6, 50), st.integers(1, 999).map(lambda n: n / 1000), st.integers(1, 50).map(float))

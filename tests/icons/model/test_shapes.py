@@ -6,9 +6,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from thermicon.icons import Context, Corners, Icon, Statement, parse, pulse, sine, square, step
-from thermicon.icons.model.corners import STEP_S
+from thermicon.icons import Context, Icon, parse, pulse, sine, square, step
+from thermicon.icons.model.corners import STEP_S, Corners
 from thermicon.icons.model.shapes import Shape, Wave
+from thermicon.icons.model.statements import Statement
 
 
 def corners_of(body: str, settings: str = "") -> Corners:

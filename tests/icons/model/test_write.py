@@ -8,7 +8,6 @@ import pytest
 from thermicon.icons import (
     Context,
     Icon,
-    Statement,
     back,
     cool,
     current,
@@ -27,6 +26,7 @@ from thermicon.icons import (
     triangle,
     warm,
 )
+from thermicon.icons.model.statements import Statement
 
 
 def read(line: str, settings: str = "") -> Statement:
@@ -102,7 +102,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: warm(by=6), r"warm\(\) needs either at or over$"),
         (lambda: ramp(by=6, at=1, over=2), r"ramp\(\) takes only one of at and over$"),
         (lambda: cool(by=-6, at=3), r"cool\(by=-6\): a change has a positive size; its direction is in the word"),
-        (lambda: ramp(by=0, at=3), r"ramp\(by=0\): a change of nothing is no change"),
+        (lambda: ramp(by=0, at=3), r"ramp\(by=0\): a change must not be zero"),
         (lambda: warm(to=70, at=3), r"warm\(to=70\): 70 °C is outside the −10 to 60 °C"),
         (lambda: warm(by=1, at=0), r"warm\(at=0\): a rate is positive"),
         (lambda: current(to=30, at=1), r"current\(to=30\): 30 A is outside the ±20 A"),
@@ -116,7 +116,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: back(over=-1), r"back\(over=-1\): a time is positive"),
         (lambda: step(), r"step\(\) needs either by, to, by_A or to_A$"),
         (lambda: step(by=1, to=2, by_A=3), r"step\(\) takes only one of by, to and by_A$"),
-        (lambda: step(by_A=0), r"step\(by_A=0\): a change of nothing is no change"),
+        (lambda: step(by_A=0), r"step\(by_A=0\): a change must not be zero"),
         (lambda: pulse(by=1, by_A=1, duration=1), r"pulse\(\) takes only one of by and by_A"),
         (lambda: pulse(by=1, duration=0), r"pulse\(duration=0\): a time is positive"),
         (lambda: sine(by=-3, every=4, duration=4), r"sine\(by=-3\): a change has a positive size"),
@@ -128,7 +128,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: repeat(3), r"repeat\(\) needs statements behind the count"),
         (lambda: repeat(2.5, hold(1)), r"repeat\(count=2.5\): 2.5 is not a positive whole number"),
         (lambda: repeat("3", hold(1)), r"repeat\(count='3'\): a number is needed$"),
-        (lambda: repeat(3, [hold(1)]), r"repeat\(\): \[Hold.* is no statement"),
+        (lambda: repeat(3, [hold(1)]), r"repeat\(\): \[Hold.* is not a statement"),
         (lambda: repeat(3, total(1)), r"repeat\(\): total\(\) concerns the whole icon"),
         (lambda: play("dip"), r"play\(\) needs an Icon, not 'dip'"),
         (lambda: total(10, "about"), r"total\(bound='about'\): \"exactly\", \"at most\" or \"at least\""),

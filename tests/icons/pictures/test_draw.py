@@ -9,10 +9,11 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from thermicon.icons import Context, Hold, Icon, IconSet, Metadata, library, load_library, parse, plot_icon
+from thermicon.icons import Context, Icon, IconSet, Metadata, library, load_library, parse
 from thermicon.icons.model.corners import Corners
+from thermicon.icons.model.statements import Hold
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
-from thermicon.icons.pictures.draw import plot_icons
+from thermicon.icons.pictures.draw import plot_icon, plot_icons
 from thermicon.icons.pictures.picture import picture, thumbnail
 
 SIX = load_library("six-icons")
@@ -242,7 +243,7 @@ def test_dollars_in_titles_are_no_formula() -> None:
 def test_what_cannot_share_axes_is_refused() -> None:
     with pytest.raises(ValueError, match="there are no icons to draw"):
         plot_icons([])
-    with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on axes of their own"):
+    with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on separate axes"):
         plot_icons([CURRENT["drive"], SIX["cooling-step"]])
     mixed = plot_icons([Icon("a", (Hold(1),), Context("skin")), Icon("b", (Hold(1),), Context("display"))])
     assert mixed.get_ylabel() == "temperature (°C)"

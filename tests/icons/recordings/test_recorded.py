@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from thermicon.icons import Hold, Icon, Ramp, Rest, Return, Step, parse
+from thermicon.icons import Icon, parse
+from thermicon.icons.model.shapes import Step
+from thermicon.icons.model.statements import Hold, Ramp, Rest, Return
 from thermicon.icons.recordings.recorded import from_csv
 
 Array = NDArray[np.float64]

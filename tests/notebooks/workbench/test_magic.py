@@ -71,7 +71,7 @@ def test_mistakes_read_as_well_outside_of_the_magic(
     assert said.startswith("<text>:1:26  E102 missing unit")
     said = failed(
         shell,
-        "from thermicon.icons import *\nIcon('a', (Ramp('warm', by_K=3, duration_s=1), Rest(1)))",
+        "from thermicon.icons import *\nIcon('a', (warm(by=3, over=1), rest(1)))",
         capsys,
     )
     assert said.startswith("<icon a>:1:1  E205 rest away from baseline")

@@ -20,7 +20,8 @@ from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.circuit.packing.pack import pack
-from thermicon.icons import Corners, Icon, load_library, parse
+from thermicon.icons import Icon, load_library, parse
+from thermicon.icons.model.corners import Corners
 
 RIG = Rig.load("thenar")
 THERMODE = Device.load("qst-tcs2")
