@@ -134,7 +134,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     ):
         if path is not None:
             check_output(path, suffixes, what)
-    read = [file] if request.order is None else [file, request.order]
+    read: list[str | Path] = [file] if request.order is None else [file, request.order]
     check_separate(read, (request.json, request.figure, request.order_out))
     icons = read_set([file])
     plan = plan_of(icons, request)
