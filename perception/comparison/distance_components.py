@@ -58,7 +58,7 @@ class DistanceComponent:
     def times(self) -> float | None:
         """How often the just noticeable value goes into it; factors by their logarithms.
 
-        >>> Part("onset", 0.5, "s", 0.2).times, round(DistanceComponent("rate", 2.0, "1", 1.43).times, 2)
+        >>> DistanceComponent("onset", 0.5, "s", 0.2).times, round(DistanceComponent("rate", 2.0, "1", 1.43).times, 2)
         (2.5, 1.94)
         """
         if self.value is None:

@@ -177,11 +177,6 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
     return tuple(made)
 
 
-def pair_ratios(found: Identified, pair: tuple[str, str]) -> tuple[tuple[float, float], ...]:
-    """For each group: how often two shapes are mixed up, and the most that either is with an icon of another kind."""
-    return tuple(_against(normalised(found.probability.mean(axis=0)), found.labels, pair, group) for group in GROUPS)
-
-
 def _against(
     pooled: Array, labels: Sequence[str], pair: tuple[str, str], group: tuple[str, int]
 ) -> tuple[float, float]:
