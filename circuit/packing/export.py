@@ -100,7 +100,7 @@ def export(
     --------
     >>> from thermicon.icons import load_library
     >>> export(load_library("six-icons")["warming-step"], "thenar", "dac-16")
-    Export(1 icon on thenar for dac-16 as csv: 2 files, 68.4 kB)
+    Export(1 icon on thenar for dac-16 as csv: 2 files, ... kB)
 
     """
     form = load_format(format) if isinstance(format, str) else format

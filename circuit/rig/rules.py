@@ -174,8 +174,8 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
             told.add(rule.key)
             faults.append(
                 f"{said}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, a "
-                f"sentence of at least {SHORTEST_REASON} characters on why this is justified, or use "
-                f"{abs(rule.shipped):g}{unit}"
+                f"sentence of at least {SHORTEST_REASON} characters and {FEWEST_WORDS} different words on why this is "
+                f"justified, or use {abs(rule.shipped):g}{unit}"
             )
     return faults + _crossed(changes, reason)
 

@@ -12,7 +12,7 @@ from importlib import resources
 
 from ..records import Table, load_records
 from .parts import Uncertainty
-from .rules import SHORTEST_REASON, is_reason
+from .rules import FEWEST_WORDS, SHORTEST_REASON, is_reason
 
 WORDS = {
     "contact_resistance_relative": ("contact resistance", "contact", 100.0, "%"),
@@ -56,8 +56,8 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
         if value < shipped:
             found.append(
                 f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
-                f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters on "
-                f"how this is known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
+                f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters and "
+                f"{FEWEST_WORDS} different words on how this is known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
             )
     return found
 

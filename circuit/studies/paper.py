@@ -43,7 +43,7 @@ def printed() -> Table:
 def cooling_step(control: str) -> Icon:
     """Return the paper's cue, prescribed on the `skin` as in the paper or on the `display` as in the older experiment.
 
-    >>> cooling_step("skin").frame.control
+    >>> cooling_step("skin").context.control
     'skin'
     """
     return load_library("cooling-step-skin" if control == "skin" else "six-icons")["cooling-step"]

@@ -51,11 +51,13 @@ def export_file(
         ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
     for warning in ready.warnings:
         note(warning)
-    report_icons(ready.prepared)
     if refused(ready, force):
-        note(CAUTION)
         note("nothing was written")
+        for line in (line for one in ready.prepared for line in icon_lines(one)):
+            note(line)
+        note(CAUTION)
         raise typer.Exit(REFUSED)
+    report_icons(ready.prepared)
     written = write(ready, folder, overwrite=force, insist=force)
     count = len(ready.prepared)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
@@ -98,12 +100,12 @@ def icon_lines(one: Prepared) -> Iterator[str]:
 
 
 def refused(ready: PreparedExport, force: bool) -> bool:
-    """Report why icons are refused; True if any is."""
+    """Report why icons are refused or forced; True if nothing may be written."""
     found = ready.against
-    for name, refusal in found:
-        stops = not (force and refusal.forcible)
-        note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
     final = any(not refusal.forcible for _, refusal in found)
+    for name, refusal in found:
+        stops = final or not force
+        note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
     forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:
         note("--force exports it nevertheless, and the sidecar records that")

@@ -68,7 +68,7 @@ def repeated_text(gates: Sequence[Named]) -> str:
         after = f"{back[0]} ({ordered[0][0]}) to {back[1]} ({ordered[-1][0]})"
     return (
         f"{' and '.join(said)}, {plays} plays in {first.session_s / 60:g} min with "
-        f"{number(first.pause_s, 1)} s between them; "
+        f"{first.pause_s:.4g} s between them; "
         f"shortest safe pause: {shortest}; back within {RECOVERED_K:g} K of rest after {after}"
     )
 
