@@ -57,7 +57,8 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
             found.append(
                 f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
                 f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters and "
-                f"{FEWEST_WORDS} different words on how this is known (--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
+                f"{FEWEST_WORDS} different words on how this is known "
+                f"(--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
             )
     return found
 

@@ -3,7 +3,8 @@
 Contact, gain, Seebeck coefficient, thermal conductance and plates are at either end of their uncertainty, in all
 combinations. Heat sink and ambient move together: every temperature rises with those of the heat sink and of deep
 tissue, so the extremes are where both are warm or both are cold. Where deep tissue is solved from the resting
-temperature of bare skin, a warmer room means cooler blood.
+temperature of bare skin, a warmer room means cooler blood. A Peltier module cools most at one current, since its Joule
+heat grows with the square: where the driver can pass that current, gains in between are corners too.
 """
 
 from __future__ import annotations
@@ -16,6 +17,12 @@ from ..inputs import signed
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
 from ..rig.uncertainty import WORDS
+from ..solver.network import COLD, network_of
+from ..solver.steady import state_under_current
+
+GAINS_BETWEEN = (-1.0, -0.5, 0.0, 0.5, 1.0)
+"""Shares of the gain's uncertainty where the coldest gain may lie between the ends: within 0.02 K of it."""
+NEARLY = 0.97
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +61,7 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
       conductance −10 %, plates −20 %']
     """
     unsure = rig.uncertainty
-    spans = [
+    spans: list[tuple[float, ...]] = [
         (-most, most) if most else (0.0,)
         for most in (
             unsure.contact_resistance_relative,
@@ -64,6 +71,8 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
             unsure.plates_relative,
         )
     ]
+    if unsure.gain_relative and passes_most_cooling(rig):
+        spans[1] = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
     found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
     for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
         surroundings(rig), itertools.product(*spans)
@@ -72,6 +81,21 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
         if not corner.nominal:
             found.append(replace(corner, rig=_there(corner)))
     return tuple(found)
+
+
+def passes_most_cooling(rig: Rig) -> bool:
+    """Whether more current cools less at the driver's limit, in steady state: then neither end of the gain is coldest.
+
+    >>> passes_most_cooling(Rig.load("thenar")), passes_most_cooling(Rig.load("thenar").with_(
+    ...     **{"module.seebeck_V_per_K": 0.03}))
+    (False, True)
+    """
+    network, most = network_of(rig), rig.driver.current_max_A * (1.0 + rig.uncertainty.gain_relative)
+    try:
+        less, more = (float(state_under_current(network, share * most)[COLD]) for share in (NEARLY, 1.0))
+    except ArithmeticError:  # no steady state: the module runs hot
+        return True
+    return more >= less
 
 
 def surroundings(rig: Rig) -> tuple[tuple[float, float], ...]:

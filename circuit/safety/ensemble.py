@@ -166,9 +166,12 @@ class Ensemble:
 
 
 def row_of(drive: Drive) -> float:
-    """Distance in s of the rows that a drive is watched at: its shortest update, within ROW_S and FINEST_S."""
+    """Distance in s of the rows that a drive is watched at: its shortest update or a whole part of it, at most ROW_S.
+
+    Rows in step with the updates see each of them whole, and never finer than FINEST_S.
+    """
     shortest = round(float(np.diff(drive.time_s).min()), 9)  # differences of times are off by rounding
-    return float(np.clip(shortest, FINEST_S, ROW_S))
+    return float(max(FINEST_S, shortest / max(1.0, np.ceil(shortest / ROW_S - 1e-9))))
 
 
 def between(drive: Drive, begin_s: float, end_s: float) -> Drive:

@@ -12,7 +12,7 @@ from thermicon.circuit import Device, Prepared, Rig, RigError, prepare
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.packing.prepare import Gate, prepare_set
-from thermicon.icons import Icon, parse
+from thermicon.icons import CueErrors, Icon, parse
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
 WAYS = (
@@ -183,6 +183,6 @@ def some_case(rng: np.random.Generator, number: int, folder: Path, gate: Gate | 
             ready = prepare_set(icons, rig, device, form, pause_s=pause)
         else:
             ready = (prepare(icons[0], rig, device, form, pause_s=pause, gate=gate),)
-    except (RigError, DeviceError):
+    except (RigError, DeviceError, CueErrors):
         return None
     return Case(ready, form_name, pause, number)

@@ -137,7 +137,7 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
     found.seconds["replay " + kind] += round(time.process_time() - begun, 3)
     if worst.unsafe:
         where = {rule: worst.world[rule] for rule in worst.unsafe}
-        found.unsafe.append(f"part {part}: {worst.unsafe} in {where}: {case!r}; {case.ready[0].verdict.notes[0]}")
+        found.unsafe.append(f"part {part}: {worst.unsafe} in {where}: {case!r}; {case.ready[0].verdict!r}")
 
 
 def _replay(ready: list[Prepared], form: Format, rng: np.random.Generator) -> Worst:

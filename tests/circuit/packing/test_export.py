@@ -21,6 +21,7 @@ from thermicon.circuit.packing.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.packing.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest
 from thermicon.circuit.records import Record
+from thermicon.circuit.safety.checks import Check
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -134,6 +135,7 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
         reason: str | None = None
         cautions: tuple[str, ...] = ()
         scenarios: int = 99
+        findings: tuple[Check, ...] = ()
 
         notes: tuple[str, ...] = ()
 
