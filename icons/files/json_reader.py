@@ -15,6 +15,7 @@ from ..model.context import Context, Metadata
 from ..model.errors import CueErrors
 from ..model.expand import HOLE
 from ..model.family import MOST_MEMBERS, Family
+from ..model.family_check import MOST_EFFORT, effort
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
@@ -53,7 +54,7 @@ class Reader:
         self.index: dict[str, int] = {}
         self.done: dict[int, Icon | Family | None] = {}
         self.playing: list[int] = []
-        self.corners = self.members = 0
+        self.corners = self.members = self.effort = 0
 
     def icons(self) -> IconSet | None:
         """Return the set, or None and findings."""
@@ -107,6 +108,12 @@ class Reader:
             if self.members > MOST_MEMBERS:
                 what = f"the families up to here have {self.members:,} members"
                 self.add("E231", (*path, "name"), what, f"a file has at most {MOST_MEMBERS:,}")
+                return None
+            self.effort += effort(prod(len(each) for each in named), body, scope.slots)
+            if self.effort > MOST_EFFORT:
+                what = f"{self.members:,} members have {self.effort:,} statements to check"
+                help = f"a file has at most {MOST_EFFORT:,}: fewer members, statements or repeats, or several files"
+                self.add("E231", (*path, "name"), what, help)
                 return None
             return Family(table.name, named, body, tuple(scope.slots), self.context, _metadata(table))
         except CueErrors as found:

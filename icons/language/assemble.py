@@ -10,7 +10,7 @@ from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_coun
 from ..model.context import Context, Metadata
 from ..model.errors import MOST_ERRORS
 from ..model.family import FEWER, MOST_MEMBERS, Family
-from ..model.family_check import MOST_FAILING, FailedMember, MemberErrors, effort
+from ..model.family_check import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.slots import path_of, statement_at
@@ -25,8 +25,6 @@ from .source import Edit, Finding, Source
 
 Body = tuple[Statement, ...]
 MOST_CORNERS_A_FILE = 200_000
-# Members times statements that are followed: about ten seconds' work.
-MOST_EFFORT = 500_000
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ from ..model.statements import (
 from ..model.units import UNITS, Kind
 from ..model.words import nearest
 from .build import Builder, Place, rule_of, short, span
-from .family_parameters import Over, parameters_of
+from .family_parameters import FamilyParameters, parameters_of
 from .source import Edit
 
 _USES: dict[str, tuple[Kind, ...]] = {
@@ -62,7 +62,7 @@ class IconDraft:
     place: Place
     metadata: Metadata
     body: tuple[Statement | Broken, ...]
-    over: Over | None = None
+    over: FamilyParameters | None = None
     slots: tuple[Slot, ...] = ()
 
 
@@ -92,7 +92,7 @@ def icon_draft(builder: Builder, tree: Any, resolve: Resolve) -> IconDraft:
 class _Scope:
     builder: Builder
     resolve: Resolve
-    over: Over | None
+    over: FamilyParameters | None
     known: bool
     slots: list[Slot] = field(default_factory=list)
     used: set[str] = field(default_factory=set)
@@ -259,7 +259,7 @@ class _Scope:
             return None
         return Repeat(count, body, self.builder.at(span(tree)))
 
-    def finish(self, over: Over, keys: list[Any], metadata: Metadata) -> None:
+    def finish(self, over: FamilyParameters, keys: list[Any], metadata: Metadata) -> None:
         """Report parameters that are never used, and names in the intent that are not parameters."""
         for name, place in over.places.items():
             if name in over.named and name not in self.used and not self.broken:

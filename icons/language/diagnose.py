@@ -6,7 +6,7 @@ from ..model.words import NOT_YET, QUOTES, VOCABULARY, nearest
 from .diagnose_family import family
 from .diagnose_number import not_a_number, notation, unit
 from .diagnose_word import connective, extra, joined, pace, unit_twice, word
-from .failed_statement import Case, at, short, signed, swap
+from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding
 
 __all__ = ["VOCABULARY", "diagnose"]
@@ -15,7 +15,7 @@ _CURLY = re.compile(r"[”“»«’‘'](?!\w)")
 _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, such as cooling-step"
 
 
-def diagnose(case: Case) -> Finding:
+def diagnose(case: FailedStatement) -> Finding:
     """Return the finding for a statement that stopped making sense."""
     for rule in _RULES:
         finding = rule(case)
@@ -25,7 +25,7 @@ def diagnose(case: Case) -> Finding:
     return at(case.bad, "E101", what, _examples(case.where))
 
 
-def not_yet(case: Case) -> Finding | None:
+def not_yet(case: FailedStatement) -> Finding | None:
     """What the language reserves, or does not have on purpose."""
     bad = case.bad
     if case.first in NOT_YET and case.index == 0:
@@ -39,7 +39,7 @@ def not_yet(case: Case) -> Finding | None:
     return None
 
 
-def quotes(case: Case) -> Finding | None:
+def quotes(case: FailedStatement) -> Finding | None:
     """A text between quotation marks that are not straight, or between single ones."""
     bad = case.bad
     if bad.text not in QUOTES or not case.accepts & {"STRING", "TITLE"}:
@@ -50,7 +50,7 @@ def quotes(case: Case) -> Finding | None:
     return Finding("E117", bad.start, end, what, f'"...", not {bad.text}...{QUOTES[bad.text][0]}', (swap(bad, '"'),))
 
 
-def comment(case: Case) -> Finding | None:
+def comment(case: FailedStatement) -> Finding | None:
     """A comment that begins as in another language."""
     bad, rest = case.bad, case.rest
     if case.index and "_NEWLINE" not in case.accepts:
@@ -62,7 +62,7 @@ def comment(case: Case) -> Finding | None:
     return Finding("E105", bad.start, rest[0].end, f'a comment begins with "#", not with "{mark}"', "", (cure,))
 
 
-def text(case: Case) -> Finding | None:
+def text(case: FailedStatement) -> Finding | None:
     """A text that is never closed, or that is missing."""
     bad = case.bad
     if bad.kind == "text" and (len(bad.text) < 2 or not bad.text.endswith('"') or bad.text.endswith('\\"')):
@@ -84,7 +84,7 @@ def text(case: Case) -> Finding | None:
     return None
 
 
-def character(case: Case) -> Finding | None:
+def character(case: FailedStatement) -> Finding | None:
     """A character that no statement has."""
     bad = case.bad
     if bad.kind != "other" or (bad.text in "([" and "LPAR" in case.accepts):
@@ -96,7 +96,7 @@ def character(case: Case) -> Finding | None:
     return at(bad, "E105", f"the character {shown} has no meaning here", "remove it", swap(bad, ""))
 
 
-def opening(case: Case) -> Finding | None:
+def opening(case: FailedStatement) -> Finding | None:
     """A first word that begins nothing."""
     bad = case.bad
     if case.index or "LBRACE" in case.accepts:
@@ -113,7 +113,7 @@ def opening(case: Case) -> Finding | None:
     return at(bad, "E101", what, _examples(case.where), *cures)
 
 
-def block(case: Case) -> Finding | None:
+def block(case: FailedStatement) -> Finding | None:
     """A header that no brace follows."""
     if "LBRACE" not in case.accepts:
         return None
@@ -136,7 +136,7 @@ def block(case: Case) -> Finding | None:
     return at(bad, "E101", f'"{short(bad.text)}" does not fit here', _keys())
 
 
-def name(case: Case) -> Finding | None:
+def name(case: FailedStatement) -> Finding | None:
     """Something else where a name belongs."""
     if "NAME" not in case.accepts:
         return None

@@ -2,7 +2,7 @@
 
 from ..model.units import UNITS
 from ..model.words import VOCABULARY, nearest_unit
-from .failed_statement import Case, at, short, signed, swap
+from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding, Piece
 
 _ALL_UNITS = tuple(dict.fromkeys(unit for units in UNITS.values() for unit in units if unit))
@@ -13,7 +13,7 @@ THREE_DOTS = "a range has two dots between its ends, not three"
 _OPENERS, _CLOSERS = ("[", "{", "<"), ("]", "}", ">")
 
 
-def family(case: Case) -> Finding | None:
+def family(case: FailedStatement) -> Finding | None:
     """What does not fit between the parentheses of a family, or around them."""
     bad = case.bad
     if not case.listing:
@@ -27,7 +27,7 @@ def family(case: Case) -> Finding | None:
     return at(bad, "E118", f'"{short(bad.text)}" does not fit here', _HELP)
 
 
-def _around(case: Case) -> Finding | None:
+def _around(case: FailedStatement) -> Finding | None:
     bad = case.bad
     if case.first != "icon" or "LBRACE" not in case.accepts or bad.text not in ("(", *_OPENERS):
         return None
@@ -37,7 +37,7 @@ def _around(case: Case) -> Finding | None:
     return at(bad, "E118", "parameters stand directly behind the name of the icon", 'icon x(...) means "..." {')
 
 
-def _name(case: Case) -> Finding:
+def _name(case: FailedStatement) -> Finding:
     bad, before = case.bad, case.before
     if bad.text in _ALL_UNITS and before is not None and before.text == ",":
         return at(bad, "E118", _NO_COMMA, _HELP, Edit(before.start, bad.end, " " + bad.text))
@@ -53,7 +53,7 @@ def _name(case: Case) -> Finding:
     return at(bad, "E113", f'"{short(bad.text)}" is not a name', _NAME_HELP, *cures)
 
 
-def _in(case: Case) -> Finding:
+def _in(case: FailedStatement) -> Finding:
     bad, before = case.bad, case.before
     if before is not None and before.text == "in":
         return at(before, "E113", "the name of a parameter is missing here", _NAME_HELP)
@@ -73,7 +73,7 @@ def _in(case: Case) -> Finding:
     return at(bad, "E118", what, _HELP, *cures)
 
 
-def _values(case: Case) -> Finding:
+def _values(case: FailedStatement) -> Finding:
     """Neither a list nor a range begins behind "in"."""
     bad = case.bad
     if found := signed(case):
@@ -91,7 +91,7 @@ def _values(case: Case) -> Finding:
     return at(bad, "E118", what, _HELP)
 
 
-def _dots(case: Case) -> Finding:
+def _dots(case: FailedStatement) -> Finding:
     """A number behind "in" and no ".." behind it: a list without brackets, or a range with another sign."""
     bad, before = case.bad, case.before
     numbers = _run(case, case.index - 1)
@@ -105,7 +105,7 @@ def _dots(case: Case) -> Finding:
     return at(whole, "E118", "a list of values has brackets", _HELP, swap(whole, f"[{_listed(numbers)}]"))
 
 
-def _step(case: Case) -> Finding:
+def _step(case: FailedStatement) -> Finding:
     bad = case.bad
     if bad.text in ("by", "every", "steps", "in", "..", ":", ",") and case.rest and case.rest[0].kind == "number":
         padded = "step" if bad.kind == "word" else " step "
@@ -123,7 +123,7 @@ def _step(case: Case) -> Finding:
     return at(whole, "E118", 'this range has no "step"', _HELP, *cures)
 
 
-def _more(case: Case) -> Finding:
+def _more(case: FailedStatement) -> Finding:
     """Within a list, behind one of its numbers."""
     bad = case.bad
     first = max(place for place in range(case.index) if case.pieces[place].text == "[")
@@ -143,13 +143,13 @@ def _more(case: Case) -> Finding:
     return at(bad, "E118", what, _HELP, Edit(before.end, before.end, "]"))
 
 
-def _closed(case: Case) -> tuple[Edit, ...]:
+def _closed(case: FailedStatement) -> tuple[Edit, ...]:
     # ")" closes the list by mistake, or the list is open and ")" closes the parentheses.
     bad, before = case.bad, case.pieces[case.index - 1]
     return (swap(bad, "]"), Edit(before.end, before.end, "]")) if bad.text == ")" else (swap(bad, "]"),)
 
 
-def _unit_inside(case: Case, first: int) -> Finding:
+def _unit_inside(case: FailedStatement, first: int) -> Finding:
     bad = case.bad
     close = next(n for n in range(case.index, len(case.pieces)) if case.pieces[n].text == "]")
     inside = case.pieces[first + 1 : close]
@@ -160,7 +160,7 @@ def _unit_inside(case: Case, first: int) -> Finding:
     return at(bad, "E118", "the unit stands once, behind the list", "for example: amount in [1, 2] °C", *cures)
 
 
-def _number(case: Case) -> Finding:
+def _number(case: FailedStatement) -> Finding:
     bad, before = case.bad, case.before
     if bad.text == "]" and before is not None:
         if before.text == "[":
@@ -172,7 +172,7 @@ def _number(case: Case) -> Finding:
     return at(bad, "E106", what, "numbers look like 6, 0.5 or 1e-3; the unit stands once, behind them")
 
 
-def _end(case: Case) -> Finding:
+def _end(case: FailedStatement) -> Finding:
     """Behind the values of a parameter: its unit, a comma or the closing parenthesis."""
     bad, before = case.bad, case.before
     end = before.end if before is not None else bad.start
@@ -195,7 +195,7 @@ def _end(case: Case) -> Finding:
     return at(here, "E118", what, _HELP, *separate)
 
 
-def _run(case: Case, start: int) -> list[Piece]:
+def _run(case: FailedStatement, start: int) -> list[Piece]:
     """Return the numbers and commas from a place on."""
     found: list[Piece] = []
     for piece in case.pieces[start:]:

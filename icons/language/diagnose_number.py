@@ -16,7 +16,7 @@ from ..model.words import (
     scaled,
     unit_kinds,
 )
-from .failed_statement import Case, at, short, signed, swap
+from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding, Piece
 
 _UNIT_KINDS: dict[str, Kind] = {
@@ -37,7 +37,7 @@ _DEGREES = ("°", "º", "˚", "deg", "degree", "degrees")
 _PERIODS = ("period", "periods", "cycle", "cycles", "times", "oscillations")
 
 
-def notation(case: Case) -> Finding | None:
+def notation(case: FailedStatement) -> Finding | None:
     """Arithmetic, or the time of a clock, where one number belongs."""
     bad, before, names = case.bad, case.before, case.names or ()
     if case.listing or before is None or case.where not in ("icon", "repeat"):
@@ -77,7 +77,7 @@ def _fraction(pieces: list[Piece]) -> str | None:
     return text if Fraction(text) == value else None
 
 
-def unit(case: Case) -> Finding | None:
+def unit(case: FailedStatement) -> Finding | None:
     """A number without a unit, or with one that does not fit."""
     kinds = [kind for terminal, kind in _UNIT_KINDS.items() if terminal in case.accepts]
     number, bad = case.before, case.bad
@@ -131,7 +131,7 @@ def unit(case: Case) -> Finding | None:
     return at(bad, "E103", f'"{short(bad.text)}" is not a unit', f"{KIND_WORDS[kind]} is in one of: {known}", *cures)
 
 
-def _wrong_kind(case: Case, kind: Kind, others: list[Kind]) -> Finding:
+def _wrong_kind(case: FailedStatement, kind: Kind, others: list[Kind]) -> Finding:
     bad = case.bad
     if kind == "absolute" and bad.text == "K":
         kelvin = "K is for differences; an absolute temperature is in °C"
@@ -148,7 +148,7 @@ def _wrong_kind(case: Case, kind: Kind, others: list[Kind]) -> Finding:
     return at(bad, "E104", what, EXAMPLES[kind], *(swap(bad, text) for text in similar[:1]))
 
 
-def _periods(case: Case) -> Finding | None:
+def _periods(case: FailedStatement) -> Finding | None:
     """Hertz for a period, or a count of periods for a time: what people say of waves."""
     bad, number = case.bad, case.quantity(case.index - 1)
     if case.first not in WAVES or number is None or not 0 < number[0] < 1e9:
@@ -164,7 +164,7 @@ def _periods(case: Case) -> Finding | None:
     return None
 
 
-def not_a_number(case: Case) -> Finding | None:
+def not_a_number(case: FailedStatement) -> Finding | None:
     """Something else where a number, or a parameter, belongs."""
     if "NUMBER" not in case.accepts:
         return None
@@ -203,7 +203,7 @@ def not_a_number(case: Case) -> Finding | None:
     return at(bad, "E106", what, help, *cures)
 
 
-def _bound(case: Case) -> Finding | None:
+def _bound(case: FailedStatement) -> Finding | None:
     """``total most 10 s``, ``total < 10 s``: a bound that is not said in the two words of the language."""
     bad, last = case.bad, case.bad
     text = bad.text

@@ -2,7 +2,7 @@
 
 from ..model.units import UNITS, decimal_text, exact_number
 from ..model.words import EXAMPLES, JOINERS, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
-from .failed_statement import Case, at, either, short, swap
+from .failed_statement import FailedStatement, at, either, short, swap
 from .source import Edit, Finding
 
 _CONNECTIVES = {"AT": "at", "OVER": "over", "BY": "by", "TO": "to", "FOR": "for", "EVERY": "every"}
@@ -10,7 +10,7 @@ _PACE_ALIASES = {"in": "over", "during": "over", "for": "over", "within": "over"
 _TAILS = {"hold": "for 1 s", "rest": "for 1 s", "pulse": "for 500 ms"}
 
 
-def word(case: Case) -> Finding | None:
+def word(case: FailedStatement) -> Finding | None:
     """A word missing that is one of two: most or least, warm or cool, up or down."""
     bad = case.bad
     if "MOST" in case.accepts:
@@ -30,7 +30,7 @@ def word(case: Case) -> Finding | None:
     return at(bad, "E116", f'{either(words)} is needed, not "{short(bad.text)}"', help, *cures)
 
 
-def joined(case: Case) -> Finding | None:
+def joined(case: FailedStatement) -> Finding | None:
     """``and``, ``then`` or a comma between two statements."""
     bad, before = case.bad, case.before
     if "_NEWLINE" not in case.accepts or before is None or bad.text not in JOINERS:
@@ -42,7 +42,7 @@ def joined(case: Case) -> Finding | None:
     return at(bad, "E108", f'"{bad.text}" joins no statements', 'put ";" or a new line between them', cure)
 
 
-def _statement_behind(case: Case) -> int | None:
+def _statement_behind(case: FailedStatement) -> int | None:
     """Return where a statement begins behind nothing but words that join, or None."""
     for piece in case.pieces[case.index :]:
         if piece.text in VOCABULARY[case.where]:
@@ -52,13 +52,13 @@ def _statement_behind(case: Case) -> int | None:
     return None
 
 
-def _worthless(case: Case) -> bool:
+def _worthless(case: FailedStatement) -> bool:
     """Tell whether nothing is lost with what stands from here on: no number, text or statement."""
     rest = case.pieces[case.index :]
     return not any(piece.kind in ("number", "text") or piece.text in VOCABULARY[case.where] for piece in rest)
 
 
-def _two_times(case: Case) -> Finding | None:
+def _two_times(case: FailedStatement) -> Finding | None:
     """``1 min 30 s``: a time in two parts."""
     place = case.index + (case.bad.text in JOINERS)
     first, second = case.quantity(case.index - 2), case.quantity(place)
@@ -76,7 +76,7 @@ def _two_times(case: Case) -> Finding | None:
     return Finding("E108", begin.start, end.end, "a time is one number with one unit", EXAMPLES["time"], (cure,))
 
 
-def extra(case: Case) -> Finding | None:
+def extra(case: FailedStatement) -> Finding | None:
     """Something behind a statement that is complete."""
     bad, before = case.bad, case.before
     if "_NEWLINE" not in case.accepts or before is None or bad.kind == "end":
@@ -104,7 +104,7 @@ def extra(case: Case) -> Finding | None:
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
 
 
-def _behind_play(case: Case) -> Finding | None:
+def _behind_play(case: FailedStatement) -> Finding | None:
     bad, name = case.bad, case.pieces[1]
     if bad.text in VOCABULARY[case.where]:
         return None
@@ -117,7 +117,7 @@ def _behind_play(case: Case) -> Finding | None:
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
 
 
-def _behind_step(case: Case) -> Finding | None:
+def _behind_step(case: FailedStatement) -> Finding | None:
     first, second = case.pieces[:2]
     pace = case.bad.text in ("at", "over")
     if not pace and case.bad.text != "for":
@@ -129,7 +129,7 @@ def _behind_step(case: Case) -> Finding | None:
     return at(case.bad, "E108", what, help, change if pace else swap(first, "pulse"))
 
 
-def _behind_wave(case: Case) -> Finding | None:
+def _behind_wave(case: FailedStatement) -> Finding | None:
     bad, last = case.bad, case.pieces[-1]
     if bad.text == "starting" and case.find("cut") == case.index - 1:
         behind = case.said(case.index)
@@ -146,7 +146,7 @@ def _behind_wave(case: Case) -> Finding | None:
     return None
 
 
-def pace(case: Case) -> Finding | None:
+def pace(case: FailedStatement) -> Finding | None:
     """No rate and no time where one of them belongs."""
     if not case.accepts & {"AT", "OVER"}:
         return None
@@ -171,7 +171,7 @@ def pace(case: Case) -> Finding | None:
     return at(bad, "E107", f'"at" or "over" is needed, not "{short(bad.text)}"', help, *cures)
 
 
-def unit_twice(case: Case) -> Finding | None:
+def unit_twice(case: FailedStatement) -> Finding | None:
     """A unit behind a parameter, which has one already."""
     bad, before = case.bad, case.before
     if before is None or before.text not in (case.names or ()) or case.index < 2 or not unit_kinds(bad.text):
@@ -180,7 +180,7 @@ def unit_twice(case: Case) -> Finding | None:
     return at(bad, "E104", what, "the unit of a parameter stands in the header, behind its values", swap(bad, ""))
 
 
-def connective(case: Case) -> Finding | None:
+def connective(case: FailedStatement) -> Finding | None:
     """Another word, or none, where a connective belongs."""
     words = [text for terminal, text in _CONNECTIVES.items() if terminal in case.accepts]
     if not words or not case.index:
@@ -194,7 +194,7 @@ def connective(case: Case) -> Finding | None:
     return at(bad, "E116", f'{either(words)} is needed, not "{short(bad.text)}"', help, *_joined(case, words))
 
 
-def _tail(case: Case) -> str:
+def _tail(case: FailedStatement) -> str:
     """What could follow a statement that breaks off."""
     if case.first in WAVES and case.index > 2:
         period = case.quantity(5) if "FOR" in case.accepts else None
@@ -204,7 +204,7 @@ def _tail(case: Case) -> str:
     return _TAILS.get(case.first, "") if "FOR" in case.accepts else ""
 
 
-def _joined(case: Case, words: list[str]) -> list[Edit]:
+def _joined(case: FailedStatement, words: list[str]) -> list[Edit]:
     """Cures for a word that is not allowed here."""
     bad = case.bad
     cures = []

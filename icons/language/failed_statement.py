@@ -8,7 +8,7 @@ from .source import Edit, Finding, Piece
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class FailedStatement:
     """A statement as ``pieces`` that broke at ``pieces[index]``, or at its end; ``at`` is the offset.
 
     ``accepts`` are the terminals that the grammar could take there, ``where`` is "file", "set", "icon" or "repeat".
@@ -76,7 +76,7 @@ def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Find
     return Finding(code, piece.start, max(piece.end, piece.start + 1), what, help, cures)
 
 
-def signed(case: Case) -> Finding | None:
+def signed(case: FailedStatement) -> Finding | None:
     """An invalid sign, or one separated from its number: the cure keeps it."""
     bad, number = case.bad, case.rest[0] if case.rest else None
     if bad.text not in (*DASHES, "+") or number is None or number.kind != "number" or number.text[0] in "+-−":

@@ -16,7 +16,7 @@ _LIST_HELP = 'values stand in a list, "[1, 3] °C", or in a range, "1..3 step 0.
 
 
 @dataclass(frozen=True, slots=True)
-class Over:
+class FamilyParameters:
     """The parameters of a family by name, where each stands, and whether one of them could not be read."""
 
     named: dict[str, Parameter]
@@ -24,7 +24,7 @@ class Over:
     unread: bool
 
 
-def parameters_of(builder: Builder, tree: Any) -> Over:
+def parameters_of(builder: Builder, tree: Any) -> FamilyParameters:
     """Return the parameters that a tree lists."""
     named: dict[str, Parameter] = {}
     places: dict[str, Place] = {}
@@ -47,7 +47,7 @@ def parameters_of(builder: Builder, tree: Any) -> Over:
         what = f"this family has {members:,} members" if members < 10**15 else "this family has more than 10^15 members"
         builder.add("E231", span(tree), what, f"a family has at most {MOST_MEMBERS:,}: {FEWER}")
         unread = True
-    return Over(named, places, unread)
+    return FamilyParameters(named, places, unread)
 
 
 def _parameter(builder: Builder, tree: Any) -> Parameter | None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..model.errors import MOST_ERRORS, MOST_READ
 from .diagnose import VOCABULARY, diagnose
-from .failed_statement import Case
+from .failed_statement import FailedStatement
 from .source import Edit, Finding, Piece, Source
 
 if TYPE_CHECKING:
@@ -343,7 +343,7 @@ class _Reader:
         if len(self.findings) >= MOST_ERRORS:
             self.more += 1
             return ""
-        finding = diagnose(Case(pieces, index, at, self.accepts(), where, self.names, self.listing))
+        finding = diagnose(FailedStatement(pieces, index, at, self.accepts(), where, self.names, self.listing))
         self.findings.append(finding)
         return finding.code
 

@@ -131,7 +131,7 @@ class _Walker:
         return level, total
 
     def repeat(self, part: Repeat, level: Fraction | None) -> tuple[Fraction | None, Fraction]:
-        # At most three passes stand for all: what a body does to the level is either a fixed step or a fixed target.
+        # Two passes stand for all: what a body does to the level is either a fixed step or a fixed target.
         after, duration = self.run(part.body, level)
         if part.count == 1 or after == level or level is None or after is None:
             return after, duration * part.count
@@ -139,9 +139,7 @@ class _Walker:
             after, later = self.run(part.body, after)
             return after, duration + later * (part.count - 1)
         step = after - level
-        self.run(part.body, after)
-        if part.count > 2:
-            self.run(part.body, level + step * (part.count - 1))
+        self.run(part.body, level + step * (part.count - 1))
         return level + step * part.count, duration * part.count
 
     def play(self, part: Play, level: Fraction | None) -> tuple[Fraction | None, Fraction]:

@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 
 MOST_FAILING = 1_000
 """Failing members after which the rest of a family is not checked."""
-# A parameter may raise the count of a repeat, of which at most three rounds are followed.
-_ROUNDS = 3
+MOST_EFFORT = 500_000
+"""Statements that are followed to check all families of a file: about ten seconds' work."""
+# A parameter may raise the count of a repeat, of which at most two rounds are followed.
+_ROUNDS = 2
 # In terms of other statements.
 _WAVE = 3
 

@@ -41,7 +41,7 @@ SYNTAX = [
     Mistake(AMPS + "to 1 A at 1\n}", "E102", 4, 13, 'a rate such as "1 A/s"', "to 1 A at 1 A/s"),
     Mistake(body("hold for 4 seconds"), "E103", 3, 14, '"seconds" is not a unit', "hold for 4 s"),
     Mistake(body("cool by 6 ℃ at 3 °C/s"), "E103", 3, 13, "degC", DOWN),
-    Mistake(body("cool by 6 % at 3 °C/s"), "E103", 3, 13, "no unit of this language"),
+    Mistake(body("cool by 6 % at 3 °C/s"), "E103", 3, 13, "is not a unit"),
     Mistake(body("cool by 6 °C at 3 °C"), "E104", 3, 21, "a rate of temperature is needed", DOWN),
     Mistake(body("warm to 300 K at 1 K/s"), "E104", 3, 15, "K is for differences"),
     Mistake(body("cool to 26 K at 1 K/s"), "E104", 3, 14, "in °C", "cool to 26 °C at 1 K/s"),
@@ -66,7 +66,9 @@ SYNTAX = [
     Mistake(f"cue 1\nicon my_icon {{ {DOWN} }}", "E113", 2, 6, "not a name", f"icon my-icon {{ {DOWN} }}"),
     Mistake(f"cue 1\nicon 3rd {{ {DOWN} }}", "E113", 2, 6, "begins with a letter"),
     Mistake(f"cue 1\nicon {{ {DOWN} }}", "E113", 2, 5, "a name is missing"),
-    Mistake(f"cue 1\nicon big dip {{ {DOWN} }}", "E113", 2, 10, "no blanks", f"icon big-dip {{ {DOWN} }}"),
+    Mistake(
+        f"cue 1\nicon big dip {{ {DOWN} }}", "E113", 2, 10, "must not contain spaces", f"icon big-dip {{ {DOWN} }}"
+    ),
     Mistake(f"cue 1\nicon x\n  {DOWN}\n}}", "E114", 2, 6, 'no "{" opens the block', "icon x {"),
     Mistake(body("repeat 3 times { hold for 1 s }"), "E114", 3, 12, 'a "{" is needed', "repeat 3  { hold for 1 s }"),
     Mistake(body("repeat 1 { " * 25 + "hold for 1 s" + " }" * 25), "E115", 3, 221, "more than 20 deep"),
@@ -87,7 +89,7 @@ NOTATION = [
             "‑": "(U+2011)",
             "‒": "(U+2012)",
             "- ": "^^^ there is a space between the sign and its number",
-            "− ": "^^^ a blank stands between",
+            "− ": "^^^ there is a space between",
         }.items()
     ),
     Mistake(body("change –6 °C at 3 °C/s"), "E106", 3, 10, "U+2013", "change by -6 °C at 3 °C/s"),
@@ -108,7 +110,7 @@ NOTATION = [
     Mistake(body("hold for 1,000 ms"), "E106", 3, 12, '"1,000" may be 1000 or 1.000', ""),
     Mistake(body("hold for 1,500 ms"), "E106", 3, 12, "nothing stands between thousands", ""),
     Mistake(body("hold for 0,125 s"), "E106", 3, 12, "is not a number", "hold for 0.125 s"),
-    Mistake(body("hold for 2 500 ms"), "E106", 3, 12, "a blank stands within", "hold for 2500 ms"),
+    Mistake(body("hold for 2 500 ms"), "E106", 3, 12, "a space within the number", "hold for 2500 ms"),
     Mistake(body("hold for 2 77 ms"), "E102", 3, 12, "no unit", ""),
     Mistake(body(DOWN + " and hold for 4 s"), "E108", 3, 26, '"and" joins no', DOWN + "; hold for 4 s"),
     Mistake(body(DOWN + ", then hold for 4 s"), "E108", 3, 25, '"," joins no', DOWN + "; hold for 4 s"),
@@ -146,7 +148,7 @@ SINE = "sine by 3 °C every 4 s for 12 s"
 
 SHAPES = [
     Mistake(body("on thumb { hold for 1 s }"), "E120", 3, 3, "several elements"),
-    Mistake(body("warm to baseline at 3 °C/s", DOWN), "E120", 3, 11, "no target", "return at 3 °C/s"),
+    Mistake(body("warm to baseline at 3 °C/s", DOWN), "E120", 3, 11, "is not a target", "return at 3 °C/s"),
     Mistake(body("step to baseline", DOWN, "hold for 1 s"), "E120", 3, 11, "such as: step to 32 °C"),
     Mistake(body("hold for a while"), "E106", 3, 12, 'a number is needed, not "a"'),
     Mistake(body("hold for a second"), "E106", 3, 12, 'a time such as "4 s"', "hold for 1 s"),
@@ -182,7 +184,14 @@ SHAPES = [
     Mistake(body("play y") + "\nicon yy { hold for 1 s }", "E230", 3, 8, "names an icon of this file", "play yy"),
     Mistake(body('play "y"') + "\nicon y { hold for 1 s }", "E113", 3, 8, "without quotation marks", "play y"),
     Mistake(body("play y 3 times") + "\n" + STEP.replace("x", "y"), "E108", 3, 10, "3 {", "repeat 3 { play y }"),
-    Mistake(body("play big dip") + "\n" + STEP.replace("x", "big-dip"), "E113", 3, 12, "no blanks", "play big-dip"),
+    Mistake(
+        body("play big dip") + "\n" + STEP.replace("x", "big-dip"),
+        "E113",
+        3,
+        12,
+        "must not contain spaces",
+        "play big-dip",
+    ),
 ]
 
 
@@ -205,7 +214,7 @@ FAMILIES = [
     header("a in [1 2] °C)", "E118", 16, "a comma is missing between", "a in [1, 2] °C)"),
     header("a in [1, 2, ] °C)", "E118", 20, "a value is missing behind the comma", "a in [1, 2] °C)"),
     header("a in [] °C)", "E118", 14, "this list is empty"),
-    header("a in °C)", "E118", 13, "no list and no range"),
+    header("a in °C)", "E118", 13, "neither a list nor a range"),
     header("a in)", "E118", 12, "the values are missing"),
     header("a in [1 °C, 2 °C])", "E118", 16, "the unit stands once, behind the list", "a in [1, 2] °C)"),
     header("a in [1, 2], °C)", "E118", 21, "without a comma", "a in [1, 2] °C)"),
@@ -234,7 +243,7 @@ FAMILIES = [
     header("a in [1] foo)", "E103", 17, '"foo" is not a unit'),
     header("a in [1] kelvin)", "E103", 17, "values without one are counts", "a in [1] K)"),
     header("my_a in [1] K)", "E113", 8, '"my_a" is not a name'),
-    header("big a in [1] K)", "E113", 12, "no blanks in it"),
+    header("big a in [1] K)", "E113", 12, "must not contain spaces"),
     header("a in [1] K, s in [1] s)", "E113", 20, '"s" is a unit, and no name'),
     header("a in [1] K, a in [2] K)", "E213", 20, '"a" stands on line 2, column 8 already'),
     header("a in [1, 1] K)", "E213", 17, "1 stands in this list already", "a in [1] K)"),
@@ -257,7 +266,9 @@ FAMILIES = [
     Mistake(family("a in [1] K)", "warm by a/2 at 1 K/s"), "E106", 3, 11, "there is no arithmetic", ""),
     Mistake(family("a in 1...3 K)") + "\nicon y { play x_a=1 }", "E118", 2, 14, "not three"),
     Mistake(family("a in [1] K)", "warm by -a at 1 K/s"), "E105", 3, 11, "no sign before it"),
-    Mistake(family("a in [1] K)", "warm by {a} at 1 K/s"), "E105", 3, 11, "these braces", "warm by a at 1 K/s"),
+    Mistake(
+        family("a in [1] K)", "warm by {a} at 1 K/s"), "E105", 3, 11, "braces are not allowed", "warm by a at 1 K/s"
+    ),
     Mistake(family("a in [1] K)", "hold for a"), "E104", 3, 12, "a is in K; a time is needed here"),
     Mistake(family("a in [1])", "hold for a"), "E104", 3, 12, "a has no unit; a time is needed"),
     Mistake(family("n in [1, 2] s)", "repeat n { hold for 1 s }"), "E104", 3, 10, "a count is needed here"),
@@ -284,7 +295,7 @@ FAMILIES = [
 
 MEANING = [
     Mistake("cue 1\nset a { site thenar }\n", "E008", 2, 21, "ends without an icon"),
-    Mistake(STEP, "E009", 1, 1, "version is not said", "cue 1"),
+    Mistake(STEP, "E009", 1, 1, "version of the language is missing", "cue 1"),
     Mistake("cue 2\n" + STEP, "E010", 1, 5, "version 1", "cue 1"),
     Mistake(body("warm to 26 °C at 3 °C/s"), "E201", 3, 11, "below the 32 °C", "cool to 26 °C at 3 °C/s"),
     Mistake(body("cool to 30 °C at 3 °C/s", DOWN), "E201", 3, 11, "above the 26 °C", "warm to 30 °C at 3 °C/s"),
@@ -338,13 +349,13 @@ MEANING = [
     Mistake(
         body("step cool to 36 °C; hold for 1 s"), "E201", 3, 16, "above the 32 °C", "step warm to 36 °C; hold for 1 s"
     ),
-    Mistake(body("step by 0 K; hold for 1 s"), "E202", 3, 11, "a change of nothing"),
+    Mistake(body("step by 0 K; hold for 1 s"), "E202", 3, 11, "a change must not be zero"),
     Mistake(body("sine by -3 °C every 4 s for 12 s"), "E202", 3, 11, "an amplitude is positive", SINE),
     Mistake(body("sine by 3 A every 4 s for 12 s"), "E210", 3, 11, "controls the skin"),
     Mistake(AMPS + "step by 1 A; sine by 1 A every 1 s for 2 s starting cool\n}", "E210", 4, 55, '"up" or "down"'),
     Mistake(body("total 10 s; hold for 3 s"), "E222", 3, 9, "it is 7 s too short", "total 3 s; hold for 3 s"),
     Mistake(body("total at most 2 s", "hold for 3 s"), "E222", 3, 17, "it is 1 s too long", "total at most 3 s"),
-    Mistake(body("step by 3 °C"), "E223", 2, 6, "a step takes no time of its own"),
+    Mistake(body("step by 3 °C"), "E223", 2, 6, "a step takes no time"),
     Mistake(body("play y", DOWN) + "\n" + STEP.replace("x", "y"), "E224", 3, 3, "y begins at baseline"),
     Mistake(body("sine by 3 °C every 4 s for 11 s"), "E225", 3, 30, "2.75 periods", SINE),
     Mistake(body("repeat 2 { hold for 1 s; total 2 s }"), "E229", 3, 28, "the whole icon, not a repeat"),

@@ -20,9 +20,9 @@ RATES = st.one_of(
     st.floats(0.01, 100), st.integers(1, 600).map(lambda n: n / 60), st.integers(1, 50).map(lambda n: n / 10)
 )
 STEPS = st.one_of(st.floats(1e-3, 3), st.integers(1, 30).map(lambda n: n / 10))
-TEXTS = st.text(st.characters(exclude_categories=("Cc", "Cs"), include_characters='"\\\n\t'), min_size=1).filter(
-    str.strip
-)
+TEXTS = st.text(
+    st.characters(exclude_categories=("Cc", "Cf", "Cs", "Zl", "Zp"), include_characters='"\\\n\t'), min_size=1
+).filter(str.strip)
 TAGS = TEXTS.map(lambda text: text.replace(",", " ").strip()).filter(bool)
 NAMES = st.from_regex(r"[a-zé][a-z0-9é-]{0,12}", fullmatch=True)
 

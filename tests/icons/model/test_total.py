@@ -109,6 +109,10 @@ def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
         "@;" * 100_000,
         "cue 1\nicon x { " + "repeat 1000000000 { " * 19 + "hold for 1 s" + " }" * 20,
         "cue 1\nicon x { " + "repeat 3 { " * 9 + "warm by 1e-6 K at 1 K/s" + " }" * 10,
+        "cue 1; icon x(a in 0.01..10 step 0.01 K, b in 0.1..10 step 0.1 s) { "
+        + "pulse by a for b;" * 6
+        + " hold for 1 s }",
+        "cue 1; icon x(a in 0.001..10 step 0.001 K, b in 0.001..10 step 0.001 s) { pulse by a for b }",
     ],
     ids=lambda text: text[:24],
 )
