@@ -54,14 +54,14 @@ class Limits:
 class MaxMinSubset:
     """Chosen things in ascending order, the distance of their nearest pair, and what no choice exceeds.
 
-    `proven` states that the bound is reached; `programs` is the number of distances that were decided.
+    `proven` states that the bound is reached; `thresholds` is the number of distances that were decided.
     """
 
     chosen: tuple[int, ...]
     value: float
     bound: float
     proven: bool
-    programs: int
+    thresholds: int
 
 
 def max_min_subset(
@@ -126,7 +126,7 @@ def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
 class _Bisection:
     def __init__(self, d: Array, count: int, must: tuple[int, ...], limits: Limits, most_nodes: int) -> None:
         self.d, self.count, self.must, self.limits, self.most_nodes = d, count, must, limits, most_nodes
-        self.programs = 0
+        self.thresholds = 0
 
     def best(self, ties: bool) -> MaxMinSubset | None:
         values = self._values()
@@ -137,7 +137,7 @@ class _Bisection:
         value = nearest_pair(self.d, chosen)
         if bound <= value and ties:
             chosen = self._ties_broken(chosen)
-        return MaxMinSubset(tuple(sorted(chosen)), value, bound, bound <= value, self.programs)
+        return MaxMinSubset(tuple(sorted(chosen)), value, bound, bound <= value, self.thresholds)
 
     def _values(self) -> Array:
         return np.unique(self.d[np.triu_indices(len(self.d), 1)])
@@ -177,7 +177,7 @@ class _Bisection:
                 chosen, _ = rest._widened(chosen, rest._values())
         except UndecidedError:
             pass
-        self.programs += rest.programs
+        self.thresholds += rest.thresholds
         return chosen
 
     def _nearest(self, chosen: Sequence[int]) -> float:
@@ -206,7 +206,7 @@ class _Bisection:
         left = self._pruned(compatible)
         if left is None:
             return None
-        self.programs += 1
+        self.thresholds += 1
         places = {int(thing): place for place, thing in enumerate(left)}
         try:
             clique = find_clique(
