@@ -120,5 +120,5 @@ def scored(objective: str, value: float) -> str:
 def _searched(chosen: dict[str, Any]) -> str:
     if chosen["objective"] == "worst":
         count = chosen["looked_at"]
-        return f"proven by integer programming ({'1 program' if count == 1 else f'{count} programs'})"
-    return f"all {chosen['looked_at']} were looked at, with {chosen['people']} people"
+        return f"proven by bisection over d′ ({'1 threshold' if count == 1 else f'{count} thresholds'})"
+    return f"all {chosen['looked_at']} choices were evaluated, with {chosen['people']} people"

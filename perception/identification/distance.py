@@ -117,12 +117,6 @@ def identification_noise(observer: Observer, norm: Norm, duration_s: float, memo
     return noise
 
 
-def back_to_back_dprime(difference: ArrayLike, observer: Observer, norm: Norm, duration_s: float) -> Array:
-    """d′ of a difference when both are felt one after the other: sensory noise alone."""
-    found: Array = np.asarray(difference, dtype=np.float64) / sensory_noise(norm, observer, duration_s)
-    return found
-
-
 def sensory_noise(norm: Norm, observer: Observer, duration_s: float) -> float:
     """Sensory noise in the units of a norm: 1, but for the integral of correlated noise √(2τT)."""
     if check_norm(norm) == "integral":

@@ -1,7 +1,7 @@
 """The best k of n icons: exact where that can be proven, else the best of seeded restarts with an upper bound.
 
-Icons are compared at the range of the pool they come from, so that a pair is as far apart in every choice; the chosen
-are then judged again at their own range.
+Icons are compared at the range of the pool they come from, so that the d′ of a pair is the same in every choice; the
+chosen icons are then evaluated again at their own range.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ ONE_BY_ONE = 50
 
 @dataclass(frozen=True, slots=True)
 class SubsetChoice:
-    """Places of the chosen, the objective's value, what no choice exceeds, whether that is reached, choices seen."""
+    """Places of the chosen icons, the objective's value, its bound, whether it is reached, and choices examined."""
 
     chosen: tuple[int, ...]
     value: float
@@ -188,7 +188,7 @@ def pick(
             ) from None
         if best is None:
             return None
-        return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.programs)
+        return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.thresholds)
     n, free = len(middle), count - len(must)
     if n <= ENUMERATED or math.comb(n - len(must), free) <= MOST_SUBSETS:
         optimum = namings.enumerated(count, objective, must, within.costs, within.most)

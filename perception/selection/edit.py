@@ -33,7 +33,7 @@ TOLERANCE = 0.1
 FAR = 2.0
 """A pair that falls by more than 0.1 d′ is made worse, unless it stays beyond twice the wanted d′."""
 LARGEST, FARTHEST = 4.0, 256.0
-"""A number becomes at most four times larger or smaller; where that parts no pair, up to 256 times."""
+"""A number becomes at most four times larger or smaller; where that separates no pair, up to 256 times."""
 GRID = 6
 ROUNDS = 4
 DEARER = 1.5
@@ -41,13 +41,13 @@ REPEATS = (2, 3)
 MOST_LONGER_S = 30.0
 CONFIRMED_BY = 200
 MOST_NEAR, NEAR = 5, 3.0
-"""People are asked of up to 5 icons that an edit brings nearer, when these end within three times the wanted d′."""
+"""Up to 5 icons that an edit brings nearer are checked with people, if they end within three times the wanted d′."""
 MOST_CONFIRMED = 8
 
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One line of one icon, before and after; cost, seconds added, and the pair's median d′ that people then have."""
+    """One line of one icon, before and after; cost, added seconds, and the median d′ of the pair after it."""
 
     icon: str
     old: str
@@ -59,7 +59,7 @@ class Edit:
 
     @property
     def text(self) -> str:
-        """One line: old → new, and what it makes of the pair."""
+        """One line: old → new, and the resulting d′ of the pair."""
         added = f", {self.added_s:+.1f} s" if abs(self.added_s) >= 0.05 else ""
         return f"{self.icon}: {self.old} → {self.new}{added}: d′ {self.d_prime:.1f}"
 

@@ -48,11 +48,6 @@ class SetRobustness:
     low: tuple[float, ...]
     values: Array
 
-    @property
-    def survivor(self) -> str:
-        """The set that is best most often; equal ones by their order."""
-        return self.names[int(np.argmax(self.best))]
-
     def __repr__(self) -> str:
         shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
         return f"SetRobustness(best by {self.objective} in {self.draws} draws: {shares})"

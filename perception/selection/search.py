@@ -1,8 +1,8 @@
 """Search of families for a better set: their parameters are varied until the model predicts the best identification.
 
-The best set among the members that the families count out is surrounded by icons that differ a little from its own;
-the best set of that pool is found as in `choose`, surrounded again, and so on, in steps that shrink: first on the
-nominal person, then on a few people. What is found is judged on all people beside the set that it began with.
+The best set among the listed members of the families is surrounded by slightly different icons; the best set of that
+pool is found as in `choose`, surrounded again, and so on, in shrinking steps: first for the nominal person, then for a
+few people. The result is evaluated for all people, together with the starting set.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ SAMPLED = 400
 BATCH = 16
 REFINING = 4
 PER_ROUND = 3
-"""About every icon of the set 16 are tried in a round on the nominal person; a third as many rounds try 4 on a few."""
+"""Each round tries 16 variants per icon on the nominal person; a third as many rounds try 4 on a few people."""
 WIDEST, REFINED, FINEST, SHRINK = 0.25, 0.05, 0.005, 0.85
 ALIKE = -1.0
-"""Instead of a d′: two members of one family, of which each gives one icon."""
+"""Stands for d′ between two members of one family, since each family gives one icon."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def search(
     Icons of the file that are not families stay as they are. Spans are continuous between their ends, counts and lists
     are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set. Raises
     `ChoiceError` for a file without families, for fewer than two icons, or where no set can be played.
-    `evaluations` counts icons that are played to the nominal person.
+    `evaluations` counts the icons evaluated for the nominal person.
     """
     fixed, free = _asked(icons, count, objective)
     run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)

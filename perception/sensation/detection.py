@@ -115,10 +115,3 @@ def log_no_crossing(criterion: float, correlation_s: float, wait_s: float) -> fl
     below = 0.5 * math.erfc(-criterion / math.sqrt(2.0))
     rate = math.exp(-0.5 * criterion * criterion) / (2.0 * math.pi * correlation_s)
     return math.log(below) - wait_s * rate / below
-
-
-def forced_choice_dprime(psi_cold: ArrayLike, psi_warm: ArrayLike) -> Array:
-    """d′ against nothing in a forced choice: the peak of either channel's sensation, shape (...)."""
-    cold, warm = np.asarray(psi_cold, dtype=np.float64), np.asarray(psi_warm, dtype=np.float64)
-    peak: Array = np.maximum(cold.max(axis=-1), warm.max(axis=-1))
-    return peak

@@ -51,13 +51,6 @@ class Measurement:
         found = low if low == high else low + (place - np.floor(place)) * (high - low)
         return float(found) if np.isfinite(found) else None
 
-    @property
-    def log10_sd(self) -> float | None:
-        """SD over people of the decimal logarithm; None for one person, or where somebody felt nothing."""
-        if self.each.size < 2 or self.unfelt > 0.0 or not (self.each > 0.0).all():
-            return None
-        return float(np.log10(self.each).std(ddof=1))
-
     def __repr__(self) -> str:
         value = "not felt" if self.value is None else f"{self.value:.3g} {self.unit}"
         low, high = self.quantile(0.025), self.quantile(0.975)

@@ -105,8 +105,8 @@ def test_of_what_is_not_felt_there_is_nothing_to_compare(cue: Cue, observer: Obs
 
 
 def test_a_part_says_what_it_is() -> None:
-    assert repr(DistanceComponent("onset", 0.5, "s", 0.2)) == "DistanceComponent(onset 0.5 s, just noticed 0.2 s)"
-    assert repr(DistanceComponent("rate", 2.0, "1", 1.43)) == "DistanceComponent(rate 2, just noticed 1.43)"
+    assert repr(DistanceComponent("onset", 0.5, "s", 0.2)) == "DistanceComponent(onset 0.5 s, just noticeable 0.2 s)"
+    assert repr(DistanceComponent("rate", 2.0, "1", 1.43)) == "DistanceComponent(rate 2, just noticeable 1.43)"
     assert list(DistanceComponent("rate", 2.0, "1", 1.43).to_dict()) == [
         "part",
         "value",

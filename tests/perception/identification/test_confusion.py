@@ -61,9 +61,9 @@ def test_impossible_distances_report_their_stress() -> None:
 def test_two_hundred_people_are_quick() -> None:
     many = np.repeat(equal(2.5)[None], 200, axis=0)
     confuse(many)
-    start = time.perf_counter()
+    start = time.process_time()
     confuse(many)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
 
 
 @pytest.mark.parametrize("icons", [3, 6, 12])

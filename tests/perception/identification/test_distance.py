@@ -5,7 +5,6 @@ import pytest
 
 from thermicon.perception import Observer, Percept, percept_distance
 from thermicon.perception.identification.distance import (
-    back_to_back_dprime,
     identification_dprime,
     memory_from_task,
     percept_distances,
@@ -54,10 +53,10 @@ def test_a_shorter_percept_is_held_at_its_end(observer: Observer) -> None:
         percept_distance(long, percept(np.zeros(9), 0.02), observer)
 
 
-def test_dprime_from_memory_and_back_to_back(observer: Observer) -> None:
+def test_dprime_from_memory(observer: Observer) -> None:
     noise = math.hypot(1.0, 2 * 12.0 * 0.30 * 1.5)
     assert identification_dprime(9.0, observer, "max", 18.0, 1.5) == pytest.approx(9.0 / noise)
-    assert back_to_back_dprime(9.0, observer, "max", 18.0) == pytest.approx(9.0)
+    assert sensory_noise("max", observer, 18.0) == 1.0
     assert sensory_noise("integral", observer, 15.0) == pytest.approx(3.0)
 
 

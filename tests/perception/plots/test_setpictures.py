@@ -128,7 +128,7 @@ def test_places_are_probabilities(ranking: Ranking) -> None:
     assert [label.get_text() for label in axes.get_yticklabels()] == [icon.name for icon in best]
     assert [label.get_text() for label in axes.get_xticklabels()] == [str(k) for k in range(1, 9)]
     assert axes.get_title() == "place of each icon, % of 8 people"
-    with pytest.raises(ValueError, match="keeps no places of single people"):
+    with pytest.raises(ValueError, match="no results of single people: rank the icons again"):
         plot_places(replace(ranking, spread=None))
 
 

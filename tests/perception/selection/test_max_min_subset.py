@@ -18,6 +18,7 @@ from thermicon.perception.selection.max_min_subset import (
 )
 
 Array = NDArray[np.float64]
+MOST_STEPS = "thermicon.perception.selection.max_min_subset.MOST_STEPS"
 
 
 def points(seed: int, n: int, axes: int = 2) -> Array:
@@ -79,6 +80,27 @@ def test_an_integer_program_finds_the_same_value() -> None:
     assert not six(math.nextafter(found.value, math.inf))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_integer_program_agrees_with_the_exhaustive_search(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    d = points(seed, 12, 3)
+    limits = Limits(np.random.default_rng(seed).random((1, 12)), (2.0,))
+    searched = max_min_subset(d, 4, (seed,), limits)
+    monkeypatch.setattr(MOST_STEPS, 0)
+    program = max_min_subset(d, 4, (seed,), limits)
+    assert searched is not None
+    assert program is not None
+    assert (program.chosen, program.value, program.proven) == (searched.chosen, searched.value, searched.proven)
+
+
+def test_distances_without_geometry_are_decided_without_a_program(monkeypatch: pytest.MonkeyPatch) -> None:
+    # Programs for 64 such icons take about a second each.
+    d = np.triu(np.random.default_rng(0).lognormal(size=(64, 64)), 1)
+    monkeypatch.setattr("scipy.optimize.milp", undecided)
+    found = max_min_subset(d + d.T, 6)
+    assert found is not None
+    assert found.proven
+
+
 def undecided(*_: object, **__: object) -> SimpleNamespace:
     return SimpleNamespace(x=None, status=LIMIT_REACHED)
 
@@ -86,6 +108,7 @@ def undecided(*_: object, **__: object) -> SimpleNamespace:
 def test_a_program_that_reaches_its_limit_leaves_a_bound_above(monkeypatch: pytest.MonkeyPatch) -> None:
     d = points(5, 30, 3)
     proven = max_min_subset(d, 6)
+    monkeypatch.setattr(MOST_STEPS, 0)
     monkeypatch.setattr("scipy.optimize.milp", undecided)
     limited = max_min_subset(d, 6)
     assert proven is not None
@@ -99,6 +122,7 @@ def test_an_undecided_program_is_reported(monkeypatch: pytest.MonkeyPatch) -> No
     costs = np.array([0.0, 0.3, 0.0, 0.3, 0.3, 0.0, 0.3, 0.0])
     limits = Limits(np.stack([costs, -costs]), (1.05, -1.0))
     assert max_min_subset(points(1, 8), 4, (), limits) is None
+    monkeypatch.setattr(MOST_STEPS, 0)
     monkeypatch.setattr("scipy.optimize.milp", undecided)
     with pytest.raises(UndecidedError):
         max_min_subset(points(1, 8), 4, (), limits)

@@ -33,7 +33,6 @@ def test_shares_add_up_and_are_recomputed(six: list[Icon], rig: Rig) -> None:
     duel = compare_sets(one, two, rig, draws=16, seed=2)
     assert duel.probability == found.best[0]
     assert duel.gain == pytest.approx(np.median(mine - other))
-    assert found.survivor == ("one" if found.best[0] >= 0.5 else "two")
 
 
 def test_a_set_beats_itself_half_of_the_time(six: list[Icon], rig: Rig) -> None:

@@ -10,7 +10,6 @@ from thermicon.perception.sensation.detection import (
     criterion_of,
     detect,
     false_alarms,
-    forced_choice_dprime,
 )
 
 
@@ -71,10 +70,6 @@ def test_only_change_from_the_start_is_detected(observer: Observer) -> None:
     found = detect(np.full(500, 30.0), np.zeros(500), 0.01, observer)
     assert float(found.probability) == pytest.approx(0.0, abs=1e-6)
     assert int(found.channel) == -1
-
-
-def test_forced_choice_takes_the_peak() -> None:
-    assert forced_choice_dprime([[0.0, 2.0], [1.0, 0.0]], [[0.0, 1.0], [0.0, 3.0]]) == pytest.approx([2.0, 3.0])
 
 
 def test_shapes_must_agree(observer: Observer) -> None:
