@@ -104,8 +104,8 @@ def _better(report: ValidationReport) -> Iterator[MarkdownBlock]:
     points.append(f"Neither holds ({len(neither)}): {details or 'nothing'}.")
     yield Bullets(tuple(points))
     yield Text(
-        "At the nominal constants the first two lists exclude each other: with either variable, the results that only the "
-        "other explains are lost."
+        "At the nominal constants the first two lists exclude each other: with either variable, the results that only "
+        "the other explains are lost."
     )
     rows = []
     for name, line in named:
@@ -154,8 +154,8 @@ def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
         rarer = [one for one in pairs if one.rarer]
         mended = sum(one.against is False for one in pairs)
         yield Text(
-            f"{name}: of the pairs in which both predictions miss, {len(opposed)} conflict and {mended} improve together "
-            f"(correlation {STRONG:g} or stronger). Pairs that hold together less often than expected by chance: "
+            f"{name}: of the pairs in which both predictions miss, {len(opposed)} conflict and {mended} improve "
+            f"together (correlation {STRONG:g} or stronger). Pairs that hold together less often than expected by chance: "
             f"{len(rarer)}."
         )
         shown = list(
