@@ -155,7 +155,7 @@ def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
         mended = sum(one.against is False for one in pairs)
         yield Text(
             f"{name}: of the pairs in which both predictions miss, {len(opposed)} conflict and {mended} improve "
-            f"together (correlation {STRONG:g} or stronger). Pairs that hold together less often than expected by chance: "
+            f"together (correlation {STRONG:g} or stronger). Pairs that hold together less often than by chance: "
             f"{len(rarer)}."
         )
         shown = list(
