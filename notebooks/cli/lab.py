@@ -187,14 +187,14 @@ def _end(server: subprocess.Popen[bytes]) -> None:
 
 
 def _state(path: Path, shipped: Mapping[str, Any]) -> State:
-    """What there is at a path, held against what is shipped under its name."""
+    """Compare the file at a path with the notebook shipped under its name."""
     if not path.exists():
         return "new"
     try:
         there = json.loads(read_limited(path, MOST_BYTES))
         found, stamp = _fingerprint(there), there.get("metadata", {}).get(STAMP)
     except (ValueError, AttributeError, KeyError, TypeError, RecursionError, NotRegular, TooLarge):
-        return "changed"  # no notebook at all: the person's
+        return "changed"  # not a notebook: the user's own file
     if found == _fingerprint(shipped):
         return "current"
     return "older" if found == stamp else "changed"

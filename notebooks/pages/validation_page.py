@@ -1,4 +1,4 @@
-"""The validation report as a page: what is written about it, all of it from the report."""
+"""The validation report as a page: its text, tables and pictures."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from thermicon.perception.validation.verdicts import criterion_of_row, plain, va
 
 from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Picture, Text
 
-TITLE = "Validation: predicted beside published"
+TITLE = "Validation: predicted and published values"
 NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
 
 
 def page(report: ValidationReport) -> list[MarkdownBlock]:
-    """Every block of the page, the table of targets first."""
+    """Return all blocks of the page, starting with the table of targets."""
     return [*_head(report), *_better(report), *(b for s in report.sections for b in _section(s)), *_trades(report)]
 
 
 def number_text(line: Line, one: Judged, unit: str = "") -> str:
-    """A prediction as it is written everywhere, with its unit where there is one."""
+    """Format a prediction, with its unit if it has one."""
     if one.predicted.value is None:
         return "not felt"
     return value_text(line.row, one.predicted.value, line.published) + unit_text(unit)
 
 
 def unit_text(unit: str) -> str:
-    """A unit behind a number; nothing for pure numbers and proportions.
+    """Format the unit that follows a number; empty for pure numbers and proportions.
 
     >>> unit_text("s"), unit_text("proportion")
     (' s', '')
@@ -38,11 +38,11 @@ def unit_text(unit: str) -> str:
 
 
 def judged_text(line: Line, one: Judged) -> str:
-    """Prediction, interval, verdict with its size, and the share of draws that hold."""
-    found = one.predicted
-    text = number_text(line, one, found.unit)
-    if found.low is not None or found.high is not None:
-        low, high = ("not felt" if end is None else plain(end) for end in (found.low, found.high))
+    """Format the prediction, its interval, the verdict with its size, and the share of draws that hold."""
+    predicted = one.predicted
+    text = number_text(line, one, predicted.unit)
+    if predicted.low is not None or predicted.high is not None:
+        low, high = ("not felt" if end is None else plain(end) for end in (predicted.low, predicted.high))
         text += "" if low == high else f" [{low} to {high}]"
     if one.verdict.holds is None:
         return text
@@ -52,7 +52,7 @@ def judged_text(line: Line, one: Judged) -> str:
 
 
 def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
-    """The table of targets: held of judged rows for every variant, and the largest miss from temperature."""
+    """Tabulate the targets: how many judged rows hold for each variant, and the misses of the temperature variant."""
     rows = []
     for section in report.sections:
         judged = [line for line in section.lines if line.row.judged]
@@ -68,15 +68,17 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
 def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading(TITLE, 1)
     yield Text(
-        "Every number here is a prediction, set against a published result that was not used to set the model. The "
-        "experiments are simulated on the observer that was calibrated on other results. No parameter is set here, and "
-        "no number of passes is aimed at: a miss is shown with its size and the mechanism suspected."
+        "Every number here is a prediction, compared with a published result that was not used to fit the model. The "
+        "experiments are simulated with the observer, which was calibrated on other results. No parameter is fitted "
+        "here, and there is no target for the number of passes: each miss is shown with its size and its suspected "
+        "mechanism."
     )
     yield Text(
-        "Three variants stand side by side: receptors that go by temperature and receptors that go by heat flow, both "
-        "with this project's adaptation, and the impulse counts of Ring & de Dear, from temperature. Brackets "
-        f"enclose 95 % of {report.draws} observers drawn from what data and assumptions leave open (not felt: at that "
-        "end the largest change was not felt). Holds and misses are said of the nominal observer."
+        "Three variants are compared: receptors that respond to temperature and receptors that respond to heat flow, "
+        "both with this project's adaptation, and the impulse counts of Ring & de Dear, computed from temperature. "
+        f"Brackets enclose 95 % of {report.draws} observers drawn from the ranges that data and assumptions allow (not "
+        "felt: at that end of the interval even the largest change was not felt). Holds and misses refer to the "
+        "nominal observer."
     )
     yield Grid(("#", "target", *NAMES, "misses, from temperature"), tuple(target_rows(report)))
     yield Text(
@@ -86,24 +88,24 @@ def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
 
 
 def _better(report: ValidationReport) -> Iterator[MarkdownBlock]:
-    yield Heading("Temperature or heat flow: which does better where")
+    yield Heading("Temperature or heat flow: which variable explains which result")
     named = [(f"{s.target.number} {line.row.label}", line) for s in report.sections for line in s.lines]
-    found = {name: line.nearer for name, line in named if line.nearer}
+    better = {name: line.nearer for name, line in named if line.nearer}
     points = []
     for what, said in (
         ("temperature", "Only temperature holds"),
         ("heat flow", "Only heat flow holds"),
         ("both", "Both hold"),
     ):
-        those = [name for name, nearer in found.items() if nearer == what]
+        those = [name for name, nearer in better.items() if nearer == what]
         points.append(f"{said} ({len(those)}): {'; '.join(those) or 'nothing'}.")
-    neither = [(name, near) for name, near in found.items() if near.startswith("neither")]
-    told = "; ".join(f"{name} ({near.partition(', ')[2]})" if "," in near else name for name, near in neither)
-    points.append(f"Neither holds ({len(neither)}): {told or 'nothing'}.")
+    neither = [(name, near) for name, near in better.items() if near.startswith("neither")]
+    details = "; ".join(f"{name} ({near.partition(', ')[2]})" if "," in near else name for name, near in neither)
+    points.append(f"Neither holds ({len(neither)}): {details or 'nothing'}.")
     yield Bullets(tuple(points))
     yield Text(
-        "At the nominal constants the first two lists exclude each other: what only one variable explains is lost with "
-        "the other."
+        "At the nominal constants the first two lists exclude each other: with either variable, the results that only "
+        "the other explains are lost."
     )
     rows = []
     for name, line in named:
@@ -125,26 +127,26 @@ def _section(section: Section) -> Iterator[MarkdownBlock]:
         rows.append(
             (Cell(line.row.label), Cell(line.published.text), Cell(criterion_of_row(line.row, line.published)), *cells)
         )
-    yield Grid(("number", "published", "asked for", *NAMES), tuple(rows))
+    yield Grid(("number", "published", "criterion", *NAMES), tuple(rows))
     missed = [
         NAMES[k] for k in range(len(NAMES)) if any(line.judged[k].verdict.holds is False for line in section.lines)
     ]
     if missed:
-        yield Text(f"Misses: from {_listed(missed)}. Mechanism suspected: {target.mechanism}")
+        yield Text(f"Variants with misses: {_listed(missed)}. Suspected mechanism: {target.mechanism}")
     else:
-        yield Text(f"No misses. What it hangs on: {target.mechanism}")
+        yield Text(f"No misses. This result depends on: {target.mechanism}")
     yield Bullets(tuple(_conditions(section)))
 
 
 def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading("Trade-offs")
     if report.draws < FEWEST:
-        yield Text(f"Too few draws to tell ({report.draws}; {FEWEST} are needed).")
+        yield Text(f"Too few draws for an analysis of trade-offs ({report.draws}; at least {FEWEST} are needed).")
         return
     yield Text(
-        "The same plausible observers stand behind all predictions of a variant, so that two of them can be held "
-        "against each other: do the constants that mend one worsen the other? Shares are of all draws; by chance is "
-        "what both would have together if they were unrelated."
+        "All predictions of a variant come from the same plausible observers, so any two predictions can be compared: "
+        "do the constants that improve one worsen the other? Shares are proportions of all draws; 'by chance' is the "
+        "share in which both would hold if the two were independent."
     )
     yield Picture(TRADE_OFF[0], TRADE_OFF[1])
     for name, pairs in zip(NAMES, report.trade_offs, strict=True):
@@ -152,9 +154,9 @@ def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
         rarer = [one for one in pairs if one.rarer]
         mended = sum(one.against is False for one in pairs)
         yield Text(
-            f"From {name}: of the pairs in which both miss, {len(opposed)} pull against each other, and {mended} are "
-            f"mended together (correlation {STRONG:g} or stronger). Pairs that hold together more rarely than chance "
-            f"allows: {len(rarer)}."
+            f"{name}: of the pairs in which both predictions miss, {len(opposed)} conflict and {mended} improve "
+            f"together (correlation {STRONG:g} or stronger). Pairs that hold together less often than by chance: "
+            f"{len(rarer)}."
         )
         shown = list(
             dict.fromkeys(
@@ -183,14 +185,14 @@ def _trades(report: ValidationReport) -> Iterator[MarkdownBlock]:
 
 def _trade(one: TradeOff) -> tuple[Cell, ...]:
     shares = (one.first_holds, one.second_holds, one.both_hold, one.by_chance)
-    said = (
-        "rarer than chance"
+    verdict = (
+        "less often than chance"
         if one.rarer
-        else "against"
+        else "conflict"
         if one.against
-        else "mended together"
+        else "improve together"
         if one.against is False
-        else "none seen"
+        else "none found"
     )
     rho = "–" if one.correlation is None else plain(round(one.correlation, 2))
     return (
@@ -198,18 +200,18 @@ def _trade(one: TradeOff) -> tuple[Cell, ...]:
         Cell(one.second),
         *(Cell(f"{100 * share:.0f} %") for share in shares),
         Cell(rho),
-        Cell(said),
+        Cell(verdict),
     )
 
 
 def _misses(lines: Sequence[Line]) -> str:
     missed = [line for line in lines if line.judged[0].verdict.holds is False]
-    told = [f"{line.row.label}: {line.judged[0].verdict.text.split(';')[0].split(', ')[0]}" for line in missed]
-    return "; ".join(told) or "–"
+    misses = [f"{line.row.label}: {line.judged[0].verdict.text.split(';')[0].split(', ')[0]}" for line in missed]
+    return "; ".join(misses) or "–"
 
 
 def _conditions(section: Section) -> Iterator[str]:
-    """Where published numbers and predictions come from, each said once."""
+    """Yield the sources of published numbers, predictions and criteria, without repetition."""
     yield from dict.fromkeys(
         f"Published: {line.published.source}" + (f" ({line.published.conditions})" if line.published.conditions else "")
         for line in section.lines

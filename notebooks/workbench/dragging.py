@@ -83,7 +83,7 @@ def _drag(text: str, name: str, index: int, time_s: float, level: float, start: 
 
 @dataclass(frozen=True, slots=True)
 class _Move:
-    """A corner about to be moved: the icon, which corner, what it hangs on, and its statement in the text."""
+    """A corner about to be moved: its icon and index, the fields it depends on, and its statement in the text."""
 
     icon: Icon
     index: int
@@ -93,14 +93,14 @@ class _Move:
     place: Written
 
     def amount(self, field: str) -> Amount:
-        """Where a number of the statement stands in the text."""
+        """Return the position of a number of the statement in the text."""
         found = self.place.amounts.get(keyword_of(self.corner.leaf, field))
         if found is None:
             raise _Refused("this corner is not written in the text")
         return found
 
     def edits(self, time_s: float, level: float) -> dict[tuple[int, int], str]:
-        """Which words of the text become which, so that the corner comes to a time and level."""
+        """Return the replacements in the text that move the corner to a time and level."""
         grip, now = self.grip, self.corner
         place = float(now.level), float(now.time_s)
         to_level = level if grip.level and abs(level - place[0]) > 0.5 * self.step(grip.level) else place[0]
@@ -108,16 +108,16 @@ class _Move:
         return {} if (to_level, to_time) == place else self.in_words(*self.solve(to_level, to_time))
 
     def step(self, field: str) -> float:
-        """What a field is rounded to, in SI; for a rate, what the time of its ramp would be."""
+        """Return the rounding step of a field in SI; for a rate, that of the duration of its ramp."""
         leaf = self.corner.leaf
         if field in RATES:
             return 0.05 if self.corner.time_s - self.corner.begin_s >= 0.25 else 0.01
         return self.amount(field).step(getattr(leaf, field), kind_of(leaf, field, self.icon.context.control))
 
     def solve(self, to_level: float, to_time: float) -> tuple[float, float]:
-        """Size of the change from where the statement begins, and its time, that lead the corner there.
+        """Return the size and the duration of the change that bring the corner to a level and time.
 
-        In a repeat a number changes every round, so the place hangs on it by more than one round.
+        In a repeat a number changes every round, so the corner depends on all rounds before it.
         """
         now, grip = self.corner, self.grip
         size, took = float(now.level - now.begin), float(now.time_s - now.begin_s)

@@ -1,4 +1,4 @@
-"""The corners of an icon that a hand can take hold of, and which number of the text each of them hangs on."""
+"""The draggable corners of an icon, and the number in the text that each of them depends on."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ if TYPE_CHECKING:
     from thermicon.icons.model.statements import Leaf
 
 MOST_HANDLES = 150
-"""More corners than anyone can tell apart with a pointer; a repeat may have a thousand million."""
+"""More corners than a pointer can separate; a repeat may have a billion."""
 Part = Literal["end", "top", "last", "peak"]
 PEAK_AT = {"sine": Fraction(1, 4), "triangle": Fraction(1, 4), "sawtooth": Fraction(1, 2), "square": Fraction(1, 2)}
-"""At which share of a period a wave is handed: at its peak, a square wave at the end of its first half."""
+"""The share of a period at which a wave has its handle: at its peak, a square wave at the end of its first half."""
 LEVELS = ("by_K", "to_C", "by_A", "to_A")
 RATES = ("rate_K_per_s", "rate_A_per_s", "rate_per_s")
 
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """One corner as played, exact: the statement behind it, which part of it, where that begins, where the corner is.
+    """One corner as played, exact: its statement, the part of the statement, where that part begins, and the corner.
 
     ``path`` leads to the statement through repeats; None in a played icon, which ``played`` then names. Times in s,
     levels in °C, or A under control current. ``line`` is that of the statement, or of the ``play``.
@@ -48,9 +48,9 @@ class Corner:
 
 @dataclass(frozen=True, slots=True)
 class Handle:
-    """A corner to take hold of: time in s, level in °C (A under control current), what of it moves.
+    """A draggable corner: time in s, level in °C (A under control current), and the directions in which it moves.
 
-    ``why`` says why a direction does not move; None where both do. ``line`` counts from 1.
+    ``why`` is the reason why a direction does not move; None if both do. ``line`` counts from 1.
     """
 
     time_s: float
@@ -63,7 +63,7 @@ class Handle:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """Which fields of a statement a corner hangs on; None for what does not move, with the sentence why."""
+    """The fields of a statement that a corner depends on; None for a direction that does not move, with the reason."""
 
     time: str | None
     level: str | None
@@ -71,9 +71,9 @@ class Grip:
 
 
 def handles_of(icon: Icon, family: Family | None = None, start: float | None = None) -> tuple[Handle, ...]:
-    """Return the corners of an icon, at most 150; of a member of a ``family``, what a parameter writes does not move.
+    """Return the corners of an icon, at most 150; in a member of a ``family``, values set by a parameter do not move.
 
-    ``start`` is the level of rest where the text gives none, as in ``Icon.corners``.
+    ``start`` is the level of rest if the text gives none, as in ``Icon.corners``.
 
     >>> from thermicon.icons import load_library
     >>> for handle in handles_of(load_library("six-icons")["cooling-step"]):
@@ -102,7 +102,7 @@ def slots_of(family: Family | None) -> dict[tuple[Path, str], str]:
 
 
 def grip_of(corner: Corner, written: dict[tuple[Path, str], str]) -> Grip:
-    """Return which numbers a corner hangs on, or why it does not move."""
+    """Return the numbers that a corner depends on, or the reason why it does not move."""
     if corner.path is None:
         return Grip(None, None, f"this is played from {corner.played}; choose that icon to move its corners")
     if corner.leaf.span is None:

@@ -94,7 +94,7 @@ def test_limits_are_kept(ranked: Callable[..., dict[str, Any]]) -> None:
         (("--objective", "bits"), 2, "needs --choose K"),
         (("--must", "double-dip"), 2, "needs --choose K"),
         (("--choose", 3, "--most-energy", -1), 2, "-1 J is not above 0"),
-        (("--choose", 3, "--by", "rules"), 2, "icons are chosen by the model"),
+        (("--choose", 3, "--by", "rules"), 2, "leave out --by rules"),
     ],
 )
 def test_bad_choices(cli: Cli, options: tuple[object, ...], code: int, told: str) -> None:
@@ -114,7 +114,7 @@ def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_pa
     assert all("seed 4" in icon.metadata.tags for icon in found)
     told = " ".join(said.stdout.split())
     assert "before after" in told
-    assert "predictions of a model, not measurements, and the set was searched for on that same model" in told
+    assert "predictions of a model, not measurements, and the set was optimised for that same model" in told
     assert cli(*asked, "-o", "-").stdout == out.read_text(encoding="utf-8")
     assert cli("check", out).exit_code == 0
 

@@ -34,7 +34,7 @@ def test_bibtex(cli: Cli) -> None:
 def test_bibtex_has_no_rig(cli: Cli) -> None:
     said = cli("cite", "--bibtex", "six-icons", "--rig", "thenar")
     assert said.exit_code == 2
-    assert "'--rig': describes a rig in the paragraph; BibTeX entries have no rig" in " ".join(said.stderr.split())
+    assert "'--rig': applies to the paragraph; BibTeX" in " ".join(said.stderr.split())
 
 
 def test_a_file_that_is_wrong(cli: Cli, two: Path) -> None:

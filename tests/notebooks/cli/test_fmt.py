@@ -109,7 +109,7 @@ def test_a_file_that_cannot_be_written_is_told(cli: Cli, tmp_path: Path, monkeyp
 
 def test_usage(cli: Cli) -> None:
     assert cli("fmt").exit_code == 2
-    assert "Bring cue files into canonical layout" in cli("fmt", "--help").stdout
+    assert "canonical layout" in cli("fmt", "--help").stdout
 
 
 def test_json_is_no_cue_file(cli: Cli, tmp_path: Path) -> None:
@@ -117,5 +117,5 @@ def test_json_is_no_cue_file(cli: Cli, tmp_path: Path) -> None:
     path.write_text("{}", encoding="utf-8")
     said = cli("fmt", str(path))
     assert said.exit_code == 1
-    assert "fmt is for cue files; thermicon convert" in said.stderr
+    assert "fmt formats cue files only; thermicon convert" in said.stderr
     assert path.read_text(encoding="utf-8") == "{}"
