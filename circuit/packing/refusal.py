@@ -54,7 +54,9 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
     """
     found, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
-        found.append(Refusal("unsafe", (verdict.reason or "the gate says red") + more_and_cure(verdict.findings)))
+        reason = verdict.reason or "the gate says red"
+        mended_by_pause = "--pause" in reason
+        found.append(Refusal("unsafe", reason if mended_by_pause else reason + more_and_cure(verdict.findings)))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         found.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))

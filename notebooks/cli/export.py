@@ -52,10 +52,10 @@ def export_file(
     for warning in ready.warnings:
         note(warning)
     if refused(ready, force):
-        note("nothing was written")
         for line in (line for one in ready.prepared for line in icon_lines(one)):
             note(line)
         note(CAUTION)
+        note("nothing was written")
         raise typer.Exit(REFUSED)
     report_icons(ready.prepared)
     written = write(ready, folder, overwrite=force, insist=force)

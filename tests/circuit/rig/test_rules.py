@@ -64,7 +64,8 @@ def test_a_tightened_limit_holds_for_simulate_too() -> None:
         (
             "skin_highest_C = 42.5",
             r"mine\.toml: safety\.skin_highest_C = 42\.5 °C: is looser than the shipped limit of 42 °C; give "
-            r"safety\.reason, a sentence of at least 20 characters on why this is justified, or use 42 °C",
+            r"safety\.reason, a sentence of at least 20 characters and 4 different words on why this is justified, "
+            r"or use 42 °C",
         ),
         ('skin_highest_C = 42.5\nreason = "because"', r"give safety\.reason, a sentence of at least 20 characters"),
         (
@@ -151,7 +152,7 @@ def test_who_claims_to_be_surer_gives_a_reason(tmp_path: Path, reason: str) -> N
     first, second = str(caught.value).splitlines()
     assert first.endswith(
         "mine.toml: uncertainty.ambient_K = 1.5 K: is smaller than the shipped 3 K, which loosens the gate of safety; "
-        "give uncertainty.reason, a sentence of at least 20 characters on how this is known "
+        "give uncertainty.reason, a sentence of at least 20 characters and 4 different words on how this is known "
         "(--set 'uncertainty.reason=\"measured ...\"'), or use 3 K or more"
     )
     assert "uncertainty.gain_relative = 0: is smaller than the shipped 0.1, " in second

@@ -101,7 +101,7 @@ class TestRefused:
             for word in ("above the hard limit", "below the hard limit"):
                 told = told.replace(word, "beyond the hard limit")
             assert re.search(r"reaches \S+ °C at \S+ s, with contact .*, beyond the hard limit of .* \(.*\)", told)
-            assert "safety red in 195 scenarios" in said.stderr
+            assert "safety red in 483 scenarios" in said.stderr
             assert "not a medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
             assert said.stderr.endswith("nothing was written\n")
             assert "--force exports it" not in said.stderr

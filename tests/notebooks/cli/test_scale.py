@@ -21,7 +21,7 @@ def test_workers_change_no_byte_and_parts_are_kept_where_asked(cli: Cli, two: Pa
         said = cli("rank", two, "--people", 5, "--parameters", 0, "--json", outs[-1], *extra)
         assert said.exit_code == 0, said.stderr
     assert len({out.read_bytes() for out in outs}) == 1
-    assert len(list((tmp_path / "kept").glob("*/*.parquet"))) == 1
+    assert len(list((tmp_path / "kept").glob("*/*.npz"))) == 1
 
 
 @pytest.mark.parametrize("number", ["0", "-2", "5000"])

@@ -65,7 +65,7 @@ def test_one_icon_is_bad_input(cli: Cli, tmp_path: Path) -> None:
     path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s }\n", encoding="utf-8")
     said = cli("sensitivity", path)
     assert said.exit_code == 1
-    assert said.stderr == f"{path}: a sensitivity needs at least two icons: one alone is never confused\n"
+    assert said.stderr == f"{path}: a sensitivity study needs at least two icons, since one alone is never confused\n"
 
 
 def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ def test_an_order_is_played_and_reported(cli: Cli, two: Path, order: Path) -> No
     lines = said.stdout.splitlines()
     assert lines[0] == "3 plays in 42 s on thenar, 10 s between plays"
     assert lines[1].startswith("safety green in 195 scenarios")
-    for words in ("  dose       0 min CEM43", "the limit of a session is 1", "  baseline   −0.", "back within 0.1 K"):
+    for words in ("  dose       0 min CEM43", "the limit of a session is 1", "  baseline   −0.", "within 0.1 K again "):
         assert words in said.stdout
     table = [line.split() for line in lines if "-step" in line]
     assert [(row[0], row[1], row[2], row[-1]) for row in table] == [

@@ -272,7 +272,7 @@ class TestCommand:
         assert cli("export", two, "--to", "csv", "-o", out, *SURE).exit_code == 0
         done = cli("export", two, "--icon", "cool-step", "--to", "tdms", "-o", out, "--force", *SURE)
         assert done.exit_code == 0, done.stderr
-        assert f"removed from {out}, since their sidecars now describe other drives: cool-step.csv" in done.stderr
+        assert f"removed from {out}, because their sidecars now describe other drives: cool-step.csv" in done.stderr
         assert sorted(path.name for path in out.iterdir()) == [
             "cool-step.json", "cool-step.tdms", "warm-step.csv", "warm-step.json",
         ]  # fmt: skip

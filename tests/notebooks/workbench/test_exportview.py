@@ -67,7 +67,7 @@ def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
 def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
     bench = Bench(tmp_path, "cue 1; icon hot { warm by 14 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }")
     assert bench.view.button.disabled
-    assert "not safe is never written" in bench.said("status")
+    assert "unsafe icons are never written" in bench.said("status")
     bench.view.insist.value = True
     assert bench.view.button.disabled
     assert "NOT SAFE" in bench.said("delivered")
@@ -81,7 +81,7 @@ def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
 def test_what_is_not_reached_is_written_only_on_request(tmp_path: Path) -> None:
     bench = Bench(tmp_path, "cue 1; icon cold { cool by 8 °C at 9 °C/s; hold for 1 s; return at 1 °C/s }")
     assert bench.view.button.disabled
-    assert "only if you tick it" in bench.said("status")
+    assert "only if you tick the box" in bench.said("status")
     bench.view.insist.value = True
     assert not bench.view.button.disabled
     bench.view.button.click()

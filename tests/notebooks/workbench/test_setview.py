@@ -152,7 +152,7 @@ def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
     design.receive({"type": "text", "text": THREE})
     assert not view.worker.busy
     assert view.made is None
-    assert "when this tab is opened" in view.said["status"].value
+    assert "when this tab opens" in view.said["status"].value
 
 
 def test_a_set_of_one_says_that_it_is_never_confused() -> None:
