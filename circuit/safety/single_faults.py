@@ -147,15 +147,14 @@ class Faulty:
         """
         limit = {rule.upper: rule.limit for rule in self.limits.rules if _is_hard_display(rule)}
         low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
-        driver, lanes = self.ensemble.rig.driver, self.ensemble.lanes
+        driver = self.ensemble.rig.driver
         least, most = driver.current_min_A, driver.current_max_A
         if self.ensemble.bridge_A is not None:
             least, most = -self.ensemble.bridge_A, self.ensemble.bridge_A
         slowest, worst, colour = REACTIONS_S[0], "no limit is passed", "green"
         for full in (least, most):
-            amps = full * self.ensemble.gain
-            values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, lanes)
-            slowest = min(slowest, self._reaction_s(amps, values[WATCHED.index("display_C")], low, high))
+            reaction, values = self._stuck(full, low, high)
+            slowest = min(slowest, reaction)
             text, beyond = _passed(self.limits, values)
             if beyond.any():
                 worst, colour = text, "red"
@@ -171,7 +170,7 @@ class Faulty:
         full = max(driver.current_max_A, -driver.current_min_A)
         for most in np.linspace(full, peak, LIMITS_TRIED)[1:].tolist():
             shares = (driver.current_min_A / full, driver.current_max_A / full)
-            if all(self._cut_in_time(share * most * self.ensemble.gain, low, high) for share in shares if share):
+            if all(self._stuck(share * most, low, high)[0] > 0 for share in shares if share):
                 prevented = f"a current limit of {most:.2g} A in the driver's hardware"
                 return f"{prevented}; no cut-off is quick enough at {full:g} A"
         return (
@@ -179,9 +178,11 @@ class Faulty:
             "is low enough"
         )
 
-    def _cut_in_time(self, amps: Array, low: float, high: float) -> bool:
+    def _stuck(self, current_A: float, low: float, high: float) -> tuple[float, Array]:
+        """The longest safe reaction of a cut-off in s with the driver stuck at a current, and WATCHED until then."""
+        amps = current_A * self.ensemble.gain
         values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, self.ensemble.lanes)
-        return self._reaction_s(amps, values[WATCHED.index("display_C")], low, high) > 0
+        return self._reaction_s(amps, values[WATCHED.index("display_C")], low, high), values
 
     def _reaction_s(self, amps: Array, display: Array, low: float, high: float) -> float:
         """The longest reaction time of a cut-off that is safe for given courses of the display (lanes, rows)."""

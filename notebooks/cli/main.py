@@ -29,18 +29,20 @@ from .options import (
     Gap,
     IconName,
     Keep,
+    NormName,
     ReportPage,
     RigName,
+    Tracking,
     Workers,
     check_tail,
     check_task,
+    check_tracking,
 )
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS = "Play on hardware", "Notebooks"
 """Jobs, as the headings of ``thermicon --help``."""
 
-TRACKING = ("replay", "display", "ideal")
 RANKED_BY = ("model", "rules")
 
 app = typer.Typer(
@@ -198,18 +200,8 @@ def rank_command(
             help="Draws of the model's parameters for its uncertainty interval; 0 for none.",
         ),
     ] = 128,
-    tracking: Annotated[
-        str | None,
-        typer.Option(
-            "--tracking",
-            metavar="|".join(TRACKING),
-            help="What is the same for all people: current, display or target.  [default: by control]",
-        ),
-    ] = None,
-    norm: Annotated[
-        str,
-        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
-    ] = "max",
+    tracking: Tracking = None,
+    norm: NormName = "max",
     trials: Annotated[
         int, typer.Option("--trials", metavar="N", help="Number of trials of the predicted experiment.")
     ] = 48,
@@ -258,8 +250,7 @@ def rank_command(
         raise usage("an interval needs at least 2 draws; give 2 or more, or 0 for none", "--parameters")
     if by not in RANKED_BY:
         raise usage(f"{by!r} is not one of {', '.join(RANKED_BY)}", "--by")
-    if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
+    check_tracking(tracking)
     if workers is not None and cluster is not None:
         raise usage("applies to this machine; a cluster brings its own workers", "--workers")
     if workers is not None and not 1 <= workers <= 1024:

@@ -64,7 +64,26 @@ Bias = Annotated[
         "--bias", metavar="SD", help="Standard deviation of people's response bias, in log likelihood, 0 to 5."
     ),
 ]
+TRACKING = ("replay", "display", "ideal")
+Tracking = Annotated[
+    str | None,
+    typer.Option(
+        "--tracking",
+        metavar="|".join(TRACKING),
+        help="What is the same for all people: current, display or target.  [default: by control]",
+    ),
+]
+NormName = Annotated[
+    str,
+    typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
+]
 Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Seconds simulated after the last corner.")]
+
+
+def check_tracking(tracking: str | None) -> None:
+    """Fail with a usage error for a tracking that there is not; None is the usual one."""
+    if tracking is not None and tracking not in TRACKING:
+        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
 
 
 def check_task(context: float, gap_s: float | None, bias: float) -> None:

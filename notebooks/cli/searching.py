@@ -10,12 +10,10 @@ import typer
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES
 from ..text.messages import check_changes, load_rig, note, usage
-from .options import Changes, OneFile, RigName
+from .options import Changes, NormName, OneFile, RigName, Tracking, check_tracking
 
 if TYPE_CHECKING:
     from thermicon.perception import SearchResult
-
-TRACKING = ("replay", "display", "ideal")
 
 
 def search_command(
@@ -40,18 +38,8 @@ def search_command(
         int, typer.Option("--people", metavar="N", help="Number of virtual people for the final scores.")
     ] = 200,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
-    tracking: Annotated[
-        str | None,
-        typer.Option(
-            "--tracking",
-            metavar="|".join(TRACKING),
-            help="What is the same for all people: current, display or target.  [default: by control]",
-        ),
-    ] = None,
-    norm: Annotated[
-        str,
-        typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
-    ] = "max",
+    tracking: Tracking = None,
+    norm: NormName = "max",
     output: Annotated[
         Path | None,
         typer.Option(
@@ -81,8 +69,7 @@ def search_command(
             raise usage(f"{value} is outside {least} to {most}", option)
     if objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
-    if tracking is not None and tracking not in TRACKING:
-        raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
+    check_tracking(tracking)
     if norm not in ("max", "rms", "integral"):
         raise usage(f"{norm!r} is not one of max, rms, integral", "--norm")
     if output is not None:
