@@ -23,20 +23,25 @@ ALL = "all of them"
 
 @dataclass(frozen=True, slots=True)
 class Ablated:
-    """One run: a variant without some mechanisms, its log evidence and how far it misses each row, in SDs."""
+    """One run: a variant without a mechanism, by `name` (nothing: the whole variant), at its maximum."""
 
-    variable: Variable
-    model: Model
-    without: Without
     name: str
-    log_evidence: float
-    squares: float
-    missed: dict[tuple[str, str, str], float]
+    maximum: Maximum
+
+    @property
+    def variant(self) -> tuple[Variable, Model]:
+        """Sensory variable and receptor model."""
+        return self.maximum.posterior.variable, self.maximum.posterior.model
+
+    @property
+    def squares(self) -> float:
+        """Sum of squares of the rows' misses, in their SDs."""
+        return float(sum(each**2 for each in self.maximum.missed().values()))
 
     def __repr__(self) -> str:
         return (
-            f"Ablated({self.variable}, {self.model}, without {self.name or 'nothing'}: "
-            f"log evidence {self.log_evidence:.1f}, Σ(miss/SD)² {self.squares:.1f})"
+            f"Ablated({', '.join(self.variant)}, without {self.name or 'nothing'}: "
+            f"log evidence {self.maximum.log_evidence:.1f}, Σ(miss/SD)² {self.squares:.1f})"
         )
 
 
@@ -68,9 +73,7 @@ def ablate(
         found = maximise(posterior, start)
         if not without:
             whole[variable, model] = found
-        missed = found.missed()
-        squares = float(sum(each**2 for each in missed.values()))
-        results.append(Ablated(variable, model, without, name, found.log_evidence, squares, missed))
+        results.append(Ablated(name, found))
     return tuple(results)
 
 

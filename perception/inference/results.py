@@ -17,6 +17,7 @@ from typing import Any
 
 from thermicon.circuit.inputs import nearest
 
+from ..observer.variants import Model, Variable
 from .evidence import DATA
 
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
@@ -25,11 +26,13 @@ INPUTS = ("evidence.csv", "evidence.toml", "priors.toml", "thresholds.toml")
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """One constant at the maximum: its value, 95 % interval and prior's 95 % interval.
+    """One constant of one variant at its maximum: its value, 95 % interval and prior's 95 % interval.
 
     `narrowed` is the SD over the prior's: 1 where the evidence says nothing.
     """
 
+    variable: str
+    model: str
     name: str
     unit: str
     value: float
@@ -78,14 +81,14 @@ class AblatedRow:
     worst_sd: float
 
 
-@lru_cache(maxsize=1)
-def load_constants() -> tuple[Constant, ...]:
-    """Constants at the maximum.
+@lru_cache(maxsize=4)
+def load_constants(variable: Variable = "temperature", model: Model = "adapting") -> tuple[Constant, ...]:
+    """Constants of a variant at its maximum.
 
     >>> constant("cold limit").unit
     'degC'
     """
-    return tuple(_read(CONSTANTS, Constant))
+    return tuple(row for row in _read(CONSTANTS, Constant) if (row.variable, row.model) == (variable, model))
 
 
 @lru_cache(maxsize=1)

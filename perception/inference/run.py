@@ -10,6 +10,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from ..observer.variants import VARIANTS
 from .ablation import Ablated, ablate
 from .evidence import DATA
 from .leave_out import WITHIN_95, LeftOut, leave_each_out
@@ -38,7 +39,7 @@ def main() -> None:
         ablated = ablate(progress=lambda done, all_, name: _show(bar, done, all_, name))
     head = f"# written by python -m thermicon.perception.inference.run from inputs {inputs_digest()}\n"
     for name, rows in (
-        (CONSTANTS, constants_of(whole)),
+        (CONSTANTS, [row for run in ablated if not run.name for row in constants_of(run.maximum)]),
         (PREDICTIONS, predictions_of(whole, left_out, ablated)),
         (ABLATION, ablation_of(ablated)),
     ):
@@ -46,25 +47,23 @@ def main() -> None:
 
 
 def constants_of(whole: Maximum) -> list[Constant]:
-    """The table of constants."""
-    rows = []
+    """The constants of one variant."""
+    rows, variant = [], (whole.posterior.variable, whole.posterior.model)
     for prior, sd in zip(whole.posterior.priors.each, whole.sd.tolist(), strict=True):
         ends = (*whole.interval(prior.name), *prior.interval)
         value = whole.values[prior.name]
-        rows.append(Constant(prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
+        rows.append(Constant(*variant, prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
     return rows
 
 
 def predictions_of(whole: Maximum, left_out: Sequence[LeftOut], ablated: Sequence[Ablated]) -> list[PredictedRow]:
     """The table of rows: published, fitted by each variant, predicted when left out."""
-    variants = {run.variable if run.model == "adapting" else run.model: run for run in ablated if not run.without}
+    variants = {run.variant: run.maximum.predictions for run in ablated if not run.name}
     table = []
     for out in left_out:
         row = out.row
         ends = [row.shown(row.value + side * WITHIN_95 * row.sd) for side in (-1.0, 1.0)]
-        fitted = [
-            row.shown(row.value + row.sd * variants[name].missed[row.key]) for name in ("heat flow", "ring-de-dear")
-        ]
+        fitted = [row.shown(variants[variant][row.key]) for variant in VARIANTS[1:]]
         predicted = [row.shown(place) for place in (out.predicted, *out.interval)]
         table.append(
             PredictedRow(
@@ -90,16 +89,13 @@ def predictions_of(whole: Maximum, left_out: Sequence[LeftOut], ablated: Sequenc
 def ablation_of(ablated: Sequence[Ablated]) -> list[AblatedRow]:
     """The table of runs."""
     labels = {row.key: row.label for row in load_rows()}
-    whole = {(run.variable, run.model): run.log_evidence for run in ablated if not run.without}
+    whole = {run.variant: run.maximum.log_evidence for run in ablated if not run.name}
     table = []
     for run in ablated:
-        worst = max(run.missed, key=lambda key: abs(run.missed[key]))
-        gain = run.log_evidence - (whole[run.variable, run.model] if run.without else ablated[0].log_evidence)
-        table.append(
-            AblatedRow(
-                run.variable, run.model, run.name, run.log_evidence, gain, run.squares, labels[worst], run.missed[worst]
-            )
-        )
+        missed, evidence = run.maximum.missed(), run.maximum.log_evidence
+        worst = max(missed, key=lambda key: abs(missed[key]))
+        gain = evidence - whole[run.variant if run.name else ablated[0].variant]
+        table.append(AblatedRow(*run.variant, run.name, evidence, gain, run.squares, labels[worst], missed[worst]))
     return table
 
 

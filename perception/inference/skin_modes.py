@@ -82,7 +82,7 @@ class SkinModes:
         """What a receptor at a depth goes by, (rows,) in °C or W/m², while the display goes from corner to corner.
 
         >>> skin_modes("forearm", 2.5e-4).course(0.15e-3, 32.0, [(1.0, -5.0)], 1.0, 3).round(2)
-        array([32.06, 29.35, 28.68])
+        array([32.06, 30.4 , 29.18])
         """
         time: Array = dt_s * np.arange(rows, dtype=np.float64)
         unit = self.ramp_response(depth_m, time, variable)

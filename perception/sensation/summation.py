@@ -40,7 +40,7 @@ def area_factor(
     """Sensitivity at an area over that at a reference area.
 
     >>> round(area_factor(18.0, 9.0, 0.7), 3)
-    1.508
+    1.525
     """
     ratio = summed_area_cm2(area_cm2, field_cm2, end_cm2) / summed_area_cm2(reference_cm2, field_cm2, end_cm2)
     return math.pow(ratio, exponent)
