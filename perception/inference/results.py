@@ -19,9 +19,10 @@ from thermicon.circuit.inputs import nearest
 
 from ..observer.variants import Model, Variable
 from .evidence import DATA
+from .prior_file import load_priors
+from .rows import load_rows
 
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
-INPUTS = ("evidence.csv", "evidence.toml", "priors.toml", "thresholds.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,11 +123,8 @@ def to_csv(rows: Sequence[Any]) -> str:
 
 
 def inputs_digest() -> str:
-    """Hash of everything that was conditioned on; the first line of every table holds its beginning."""
-    digest = hashlib.sha256()
-    for name in INPUTS:
-        digest.update((DATA / name).read_bytes())
-    return digest.hexdigest()[:16]
+    """Hash of everything that was conditioned on, rows and priors; the first line of every table ends with it."""
+    return hashlib.sha256(repr((load_rows(), load_priors())).encode()).hexdigest()[:16]
 
 
 def digest_of(path: Path) -> str:
