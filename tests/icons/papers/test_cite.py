@@ -231,7 +231,7 @@ def test_the_shipped_bibliography_loads_completely() -> None:
         (ENTRY.replace("title", "titel"), "b.bib:3: 'titel = {{T}},' is neither .* fields are: author, title"),
         (ENTRY.replace("{p},", "{p"), "b.bib:5: 'seen = {p' is neither"),
         (ENTRY.replace("seen", "year"), "b.bib:5: 'year = {p},' is neither .* that stands once"),
-        (ENTRY.replace("  title = {{T}},\n", ""), "b.bib: a-2020: title is missing; no entry loads without it"),
+        (ENTRY.replace("  title = {{T}},\n", ""), "b.bib: a-2020: title is missing; without it an entry does not load"),
         (ENTRY.replace("  seen = {p},\n", ""), "b.bib: a-2020: seen is missing"),
         (ENTRY.replace("@article", "@paper"), "b.bib: a-2020: type = 'paper' must be one of article, inproceedings"),
         (ENTRY.replace("{{T}}", "{ }"), "b.bib: a-2020: title is an empty text; leave it out"),
