@@ -59,7 +59,9 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """What travels with an icon or a set: intent, author or source, DOI, licence, tags; ValueError for an empty text.
+    """What travels with an icon or a set: intent, author or source, DOI, licence, tags (each once).
+
+    Raises ValueError for an empty text.
 
     >>> Metadata(means="turn left", tags=("alert",)).means
     'turn left'
@@ -74,7 +76,7 @@ class Metadata:
     def __post_init__(self) -> None:
         if isinstance(self.tags, str):
             raise ValueError(f"tags must be a tuple of texts, not the text {self.tags!r}")
-        object.__setattr__(self, "tags", tuple(self.tags))
+        object.__setattr__(self, "tags", tuple(dict.fromkeys(self.tags)))
         for key in ("means", "by", "doi", "licence"):
             value = getattr(self, key)
             if value is not None and (wrong := text_fault(value)):

@@ -15,8 +15,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from thermicon.circuit.inputs import nearest
 from thermicon.circuit.records import RecordError
+from thermicon.icons.near_words import did_you_mean
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -87,7 +87,7 @@ class Evidence:
         for row in self.statistics:
             if (row.experiment, row.statistic, row.channel) == (experiment, statistic, channel):
                 return row
-        near = nearest(statistic, {row.statistic for row in self.statistics if row.experiment == experiment})
+        near = did_you_mean(statistic, {row.statistic for row in self.statistics if row.experiment == experiment})
         raise RecordError(f"evidence.csv: experiment {experiment!r} has no statistic {statistic!r} ({channel}){near}")
 
     def experiment(self, key: str) -> Experiment:

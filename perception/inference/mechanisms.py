@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from thermicon.circuit.inputs import nearest
+from thermicon.icons.near_words import did_you_mean
 
 Without = frozenset[str]
 
@@ -58,4 +58,4 @@ def find_mechanism(name: str) -> Mechanism:
     for mechanism in MECHANISMS:
         if mechanism.name == name:
             return mechanism
-    raise ValueError(f"there is no mechanism {name!r}: {nearest(name, {each.name for each in MECHANISMS})}")
+    raise ValueError(f"there is no mechanism {name!r}: {did_you_mean(name, {each.name for each in MECHANISMS})}")

@@ -15,7 +15,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.inputs import nearest
+from thermicon.icons.near_words import did_you_mean
 
 from ..observer.variants import Model, Variable
 from .evidence import DATA
@@ -109,7 +109,7 @@ def constant(name: str) -> Constant:
     for each in load_constants():
         if each.name == name:
             return each
-    raise ValueError(f"there is no constant {name!r}: {nearest(name, {each.name for each in load_constants()})}")
+    raise ValueError(f"there is no constant {name!r}: {did_you_mean(name, {each.name for each in load_constants()})}")
 
 
 def to_csv(rows: Sequence[Any]) -> str:
