@@ -114,9 +114,9 @@ def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
     ids=lambda text: text[:24],
 )
 def test_hostile_texts_are_refused_soon(text: str) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()  # of this process: a busy machine must not fail it
     parsed(text)
-    assert time.perf_counter() - begin < 5
+    assert time.process_time() - begin < 5
 
 
 def test_a_large_file_is_refused_before_it_is_read() -> None:
