@@ -9,6 +9,7 @@ which of them is the largest in each node, solve with those, again until none ch
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -104,14 +105,14 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
     matrices = np.stack([np.zeros_like(maps[0].matrix), *(each.matrix for each in maps)])
     constants = np.stack([most, *(side * each.constant for each in maps)])
     now, chosen = most, np.full(most.shape, -1)
+    rig, node = np.ogrid[: most.shape[0], : most.shape[1]]
     for _ in range(MOST_CHOICES):
         options = np.einsum("kcij,cj->kci", matrices, now) + constants
         best = np.argmax(np.nan_to_num(options, nan=-np.inf), axis=0)
         if (best == chosen).all():
             break
         chosen = best
-        rows = np.take_along_axis(matrices, chosen[np.newaxis, :, :, np.newaxis], axis=0)[0]
-        now = _solved(rows, np.take_along_axis(constants, chosen[np.newaxis], axis=0)[0])
+        now = _solved(matrices[chosen, rig, node], constants[chosen, rig, node])
     after = (np.einsum("kcij,cj->kci", matrices, now) + constants).max(axis=0)
     holds = (after <= now + NEAR_K).all(axis=1)
     return side * np.where(holds[:, np.newaxis], now, np.nan)
@@ -119,10 +120,11 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
 
 def _solved(matrix: Array, constant: Array) -> Array:
     """Solutions (rigs, m) of x = matrix·x + constant; NaN where there is none."""
-    found = np.full_like(constant, np.nan)
-    for rig, (one, offset) in enumerate(zip(matrix, constant, strict=True)):
-        try:
-            found[rig] = np.linalg.solve(np.eye(len(offset)) - one, offset)
-        except np.linalg.LinAlgError:
-            continue
+    systems, found = np.eye(constant.shape[1]) - matrix, np.full_like(constant, np.nan)
+    try:
+        return np.asarray(np.linalg.solve(systems, constant[..., np.newaxis])[..., 0], dtype=np.float64)
+    except np.linalg.LinAlgError:  # of one rig at least: the others have theirs
+        for rig, (one, offset) in enumerate(zip(systems, constant, strict=True)):
+            with suppress(np.linalg.LinAlgError):
+                found[rig] = np.linalg.solve(one, offset)
     return found

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, DeviceError, Rig, RigError, deliver, prepare, simulate_current
 from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.circuit.delivery.formats import load_format
@@ -98,7 +99,7 @@ class TestFiles:
 
     def test_a_table_has_times_temperatures_and_events(self) -> None:
         form = load_format("setpoint-csv")
-        files = pack([prepare(STEP, RIG, LOOP, form)], form)
+        files = pack([prepare(STEP, RIG, LOOP, form, gate=GreenVerdict)], form)
         rows = list(csv.DictReader(io.StringIO(files["cooling-step.csv"].decode())))
         assert list(rows[0]) == ["time_s", "display_C", "event"]
         assert (rows[0]["display_C"], rows[0]["event"], rows[1]["event"]) == ("32.00", "rest", "ramp start")
@@ -162,7 +163,8 @@ class TestSpread:
 
     def test_export_and_sidecar_say_it_and_advise_a_loop(self) -> None:
         form = load_format("csv")
-        ready = prepare(load_library("six-icons")["warming-step"], RIG, Device.load("pwm-h-bridge-10"), form)
+        warming, bridge = load_library("six-icons")["warming-step"], Device.load("pwm-h-bridge-10")
+        ready = prepare(warming, RIG, bridge, form, gate=GreenVerdict)
         assert ready.spread is not None
         assert "move by +" in str(ready.spread)
         assert "--device closed-loop-controller --to setpoint-csv" in str(ready.spread)

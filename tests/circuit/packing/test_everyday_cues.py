@@ -28,7 +28,8 @@ SETS = ("six-icons", "cooling-step-skin", "wave-confusions", "wave-shapes", "wil
 STEPS = tuple(product(("skin", "display"), (-6, -3, 3, 6)))
 MARKS = {"unsafe": "not safe", "unreachable": "not reached", "lossy": "loses"}
 ORDINARY = (("thenar", "dac-16"), ("thenar", "pwm-h-bridge-10"), ("thenar", "qst-tcs2"), ("shani2021", "dac-16"))
-QUICK = (ORDINARY[0], *(pytest.param(*pair, marks=pytest.mark.slow) for pair in ORDINARY[1:]))
+QUICK = tuple(pytest.param(*pair, marks=() if pair[1] == "qst-tcs2" else pytest.mark.slow) for pair in ORDINARY)
+"""In the ordinary suite the thermode, whose verdicts are quick; steps by current are exported in `test_export.py`."""
 
 HEAD = """# What is refused, and why
 

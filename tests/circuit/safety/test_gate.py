@@ -3,11 +3,23 @@
 import json
 import math
 from dataclasses import fields
+from functools import cache
 
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Limits, Rig, design, gate, judge_safety, simulate, simulate_current, steady_state
+from thermicon.circuit import (
+    Drive,
+    Gate,
+    Limits,
+    Rig,
+    design,
+    gate,
+    judge_safety,
+    simulate,
+    simulate_current,
+    steady_state,
+)
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.checks import findings_of
 from thermicon.circuit.safety.endings import ENDINGS
@@ -29,9 +41,22 @@ HOT_SIDE = THENAR.with_(**SURE, **STRONG)
 COLD_SIDE = HOT_SIDE.with_(**{"heat_sink.temperature_C": 15.0})
 LIGHT_TOUCH = HOT_SIDE.with_(**{"contact.resistance_m2K_per_W": 1e-2})
 LIGHT_COLD = LIGHT_TOUCH.with_(**{"heat_sink.temperature_C": 15.0})
+REST = Drive([0, 1], [0.08, 0.08])
 PULSE = Drive([0, 1, 1.25, 2], [0.08, 2.0, 0.08, 0.08], held=True)
 PULSED = THENAR.with_(**STRONG, **{"module.cold_plate_J_per_K": 1.5})
 STEP = load_library("six-icons")["cooling-step"]
+
+
+@cache
+def pulsed() -> Gate:
+    """The verdict on a strong pulse, which several tests read."""
+    return gate(PULSE, PULSED)
+
+
+@cache
+def resting() -> Gate:
+    """The verdict on a second of rest, which several tests read."""
+    return gate(REST, THENAR)
 
 
 def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Drive:
@@ -104,7 +129,7 @@ def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
     told = gate(Drive([0, 1, 20, 21], [0.08, 1.4, 1.4, 0.08], held=True), weak_sink).text
     assert "RED    hot plate" in told
     assert "≤ 60 °C hard" in told
-    reason = gate(PULSE, PULSED).reason
+    reason = pulsed().reason
     assert reason is not None
     assert reason.startswith("rate of skin temperature reaches −14.98 K/s at 1.22 s, with contact −30 %")
     assert "below the hard limit of −10 K/s" in reason
@@ -113,7 +138,7 @@ def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
 def test_the_worst_case_matters() -> None:
     """Green on the rig as given, red within its uncertainty: open loop, nothing corrects a better contact or gain."""
     assert gate(PULSE, PULSED.with_(**SURE)).colour == "green"
-    found = gate(PULSE, PULSED)
+    found = pulsed()
     assert found.colour == "red"
     assert found.findings[0].scenario.startswith("contact −30 %, ambient ")
     assert "gain +10 %" in found.findings[0].scenario
@@ -136,7 +161,7 @@ def test_what_follows_matters() -> None:
 
 
 def test_zero_current_drifts_to_39_degrees_and_the_text_says_so() -> None:
-    found = gate(Drive([0, 1], [0.08, 0.08]), THENAR)
+    found = resting()
     assert found.drift_C == pytest.approx(39.0, abs=0.1)
     held, none, off = (found.after_C[ending] for ending in ENDINGS)
     assert held == pytest.approx(32.3, abs=0.1)
@@ -155,15 +180,14 @@ def test_a_corner_that_heats_without_end_is_red_and_not_an_error() -> None:
 
 
 def test_limits_may_be_given_for_once() -> None:
-    drive = Drive([0, 1], [0.08, 0.08])
-    tight = gate(drive, THENAR, limits=Limits.of({"skin_highest_C": 33.0}))
+    tight = gate(REST, THENAR, limits=Limits.of({"skin_highest_C": 33.0}))
     assert tight.colour == "red"
-    assert gate(drive, THENAR).colour == "green"
+    assert resting().colour == "green"
     assert "limits changed by the rig: skin_highest_C 33 °C instead of 42 °C" in tight.text
 
 
 def test_text_and_dictionary_tell_all() -> None:
-    found = gate(Drive([0, 1], [0.08, 0.08]), THENAR)
+    found = resting()
     assert repr(found) == "Gate(green: 22 rules in 195 scenarios on thenar)"
     assert (found.reason, found.cautions, found.safe) == (None, (), True)
     lines = found.text.splitlines()
@@ -184,7 +208,7 @@ def test_text_and_dictionary_tell_all() -> None:
 
 
 def test_it_is_deterministic(monkeypatch: pytest.MonkeyPatch) -> None:
-    first = gate(PULSE, PULSED)
+    first = pulsed()
     monkeypatch.setattr("os.cpu_count", lambda: 1)
     assert gate(PULSE, PULSED) == first
 

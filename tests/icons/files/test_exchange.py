@@ -5,11 +5,12 @@ from importlib import resources
 from typing import Any
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from tests.icons.files.test_exchange_errors import error, with_body
+from tests.properties import for_any
 from thermicon.icons import (
     Context,
     CueErrors,
@@ -216,8 +217,7 @@ def sets(draw: Any) -> IconSet:
         raise
 
 
-@settings(max_examples=60, deadline=None)
-@given(sets())
+@for_any(sets(), examples=60)
 def test_any_set_comes_back_equal(icons: IconSet) -> None:
     text = to_json(icons)
     assert from_json(text) == icons
@@ -244,8 +244,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None)
-@given(st.text() | VALUES.map(json.dumps) | st.binary())
+@for_any(st.text() | VALUES.map(json.dumps) | st.binary(), examples=150)
 def test_garbage_raises_nothing_else(text: str | bytes) -> None:
     with pytest.raises(CueErrors, match=r"E\d\d\d "):
         from_json(text)
@@ -254,8 +253,7 @@ def test_garbage_raises_nothing_else(text: str | bytes) -> None:
 GOOD = json.loads(to_json(parse(EVERYTHING)))
 
 
-@settings(max_examples=120, deadline=None)
-@given(st.data())
+@for_any(st.data(), examples=120)
 def test_a_damaged_set_raises_nothing_else(data: st.DataObject) -> None:
     document = json.loads(json.dumps(GOOD))
     for _ in range(data.draw(st.integers(1, 3))):

@@ -8,11 +8,11 @@ from random import Random
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import thermicon.icons
 from tests.icons.model.test_roundtrip import families, icons, sets
+from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, library_names, parse
 from thermicon.icons.language.layout import tidy_number
 
@@ -104,8 +104,7 @@ def comments_of(text: str) -> Counter[str]:
     return Counter(match.rstrip() for match in re.findall(r"#[^\n]*", bare))
 
 
-@settings(max_examples=150)
-@given(st.integers(0, 10**9))
+@for_any(st.integers(0, 10**9), examples=150)
 def test_any_sound_text(seed: int) -> None:
     text = Scribbler(seed).file()
     written = format_text(text)
@@ -120,8 +119,7 @@ def test_any_sound_text(seed: int) -> None:
     assert not any("{" in a.partition("#")[0] and not b for a, b in pairwise(lines))
 
 
-@settings(max_examples=100)
-@given(st.one_of(icons(), families(), sets()))
+@for_any(st.one_of(icons(), families(), sets()), examples=100)
 def test_the_text_of_a_model_is_in_canonical_layout(model: Icon | Family | IconSet) -> None:
     assert format_text(str(model)) == str(model)
 

@@ -4,9 +4,9 @@ from itertools import product
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
 from thermicon.icons.model.shapes import Wave
@@ -121,8 +121,7 @@ def outcome(text: str) -> Any:
         return found
 
 
-@settings(max_examples=300)
-@given(families())
+@for_any(families(), examples=300)
 def test_a_family_is_sound_exactly_when_its_members_are(made: tuple[str, list[str]]) -> None:
     text, members = made
     family, icons = outcome(text), [outcome(member) for member in members]

@@ -5,9 +5,10 @@ from fractions import Fraction
 from typing import Any, get_args
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume
 from hypothesis import strategies as st
 
+from tests.properties import for_any
 from thermicon.icons import Context, CueErrors, Family, Icon, IconSet, Metadata, parse
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.shapes import Pulse, Shape, Step, Wave
@@ -205,8 +206,7 @@ def sets(draw: Any) -> IconSet:
     return IconSet(draw(st.just("") | NAMES), draw(st.just("") | TEXTS), context, draw(METADATA), tuple(entries))
 
 
-@settings(max_examples=200)
-@given(icons())
+@for_any(icons(), examples=200)
 def test_an_icon_reads_back_equal(icon: Icon) -> None:
     again = parse(str(icon)).icons[0]
     assert again == icon
@@ -216,8 +216,7 @@ def test_an_icon_reads_back_equal(icon: Icon) -> None:
     assert "\n" not in repr(icon)
 
 
-@settings(max_examples=100)
-@given(families())
+@for_any(families(), examples=100)
 def test_a_family_and_its_members_read_back_equal(family: Family) -> None:
     (again,) = parse(str(family)).entries
     assert again == family
@@ -231,8 +230,7 @@ def test_a_family_and_its_members_read_back_equal(family: Family) -> None:
         assert family.find(member.name) == member
 
 
-@settings(max_examples=80)
-@given(sets())
+@for_any(sets(), examples=80)
 def test_a_set_reads_back_equal(made: IconSet) -> None:
     again = parse(str(made))
     assert again == made
@@ -243,8 +241,7 @@ def test_a_set_reads_back_equal(made: IconSet) -> None:
         assert parse(str(entry)).entries[-1] == entry
 
 
-@settings(max_examples=300, deadline=None)
-@given(st.floats(1e-6, 1e3), st.sampled_from(["time", "rate", "current_rate", "difference"]))
+@for_any(st.floats(1e-6, 1e3), st.sampled_from(["time", "rate", "current_rate", "difference"]), examples=300)
 def test_a_number_reads_back_to_the_same_float(value: float, kind: Any) -> None:
     number, unit = quantity(value, kind).split(" ")
     assert to_si(number, unit, kind) == value

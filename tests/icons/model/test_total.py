@@ -4,9 +4,9 @@ import re
 import time
 
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.properties import for_any
 from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
 
 TEXT = """cue 1 icon set { } ; " cool warm by to 6 °C K s ms at over return hold for repeat rest 3 -1 1e999 0 @ # means
@@ -60,33 +60,30 @@ PARAMETERS = [
 ]
 
 
-@settings(max_examples=200, deadline=None)
-@given(st.lists(st.sampled_from(PARAMETERS), max_size=16), st.lists(st.sampled_from(WORDS), max_size=10))
+@for_any(
+    st.lists(st.sampled_from(PARAMETERS), max_size=16), st.lists(st.sampled_from(WORDS), max_size=10), examples=200
+)
 def test_any_family(parameters: list[str], words: list[str]) -> None:
     parsed(f"cue 1\nicon f({' '.join(parameters)}) {{ change by x at 1 K/s; {' '.join(words)} }}")
 
 
-@settings(max_examples=150, deadline=None)
-@given(st.text())
+@for_any(st.text(), examples=150)
 def test_any_text(text: str) -> None:
     parsed(text)
 
 
-@settings(max_examples=100, deadline=None)
-@given(st.binary())
+@for_any(st.binary(), examples=100)
 def test_any_bytes(data: bytes) -> None:
     parsed(data)
 
 
-@settings(max_examples=250, deadline=None)
-@given(st.lists(st.sampled_from(WORDS), max_size=40), st.sampled_from(["", " "]), st.booleans())
+@for_any(st.lists(st.sampled_from(WORDS), max_size=40), st.sampled_from(["", " "]), st.booleans(), examples=250)
 def test_any_words(words: list[str], between: str, inside: bool) -> None:
     text = between.join(words)
     parsed(f"cue 1\nicon x {{ {text} }}" if inside else text)
 
 
-@settings(max_examples=250, deadline=None)
-@given(st.sampled_from(SOUND), st.data())
+@for_any(st.sampled_from(SOUND), st.data(), examples=250)
 def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
     for _ in range(data.draw(st.integers(1, 4))):
         start = data.draw(st.integers(0, len(text)))
@@ -117,9 +114,9 @@ def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
     ids=lambda text: text[:24],
 )
 def test_hostile_texts_are_refused_soon(text: str) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()  # of this process: a busy machine must not fail it
     parsed(text)
-    assert time.perf_counter() - begin < 5
+    assert time.process_time() - begin < 5
 
 
 def test_a_large_file_is_refused_before_it_is_read() -> None:

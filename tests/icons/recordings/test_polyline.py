@@ -5,10 +5,10 @@ from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from tests.properties import for_any
 from thermicon.icons.recordings.fewest import fewest_links
 from thermicon.icons.recordings.polyline import fit_corners, noise
 
@@ -40,8 +40,7 @@ def farthest(time: Array, value: Array, corners: Corners) -> float:
 # The fewest pieces
 
 
-@settings(max_examples=60, deadline=None)
-@given(st.lists(st.integers(0, 6), min_size=2, max_size=7), st.sampled_from([0.25, 0.6, 1.0]))
+@for_any(st.lists(st.integers(0, 6), min_size=2, max_size=7), st.sampled_from([0.25, 0.6, 1.0]), examples=60)
 def test_no_path_with_corners_on_a_grid_has_fewer_pieces(levels: list[int], room: float) -> None:
     from scipy.optimize import linprog
 
@@ -165,8 +164,7 @@ def recordings(draw: st.DrawFn) -> tuple[Corners, Array, Array, float]:
     return corners, time, value + random.uniform(-size, size, len(value)), tolerance
 
 
-@settings(max_examples=150, deadline=None)
-@given(recordings())
+@for_any(recordings(), examples=150)
 def test_the_tolerance_is_kept_with_no_more_corners_than_there_were(
     recording: tuple[Corners, Array, Array, float],
 ) -> None:
@@ -178,10 +176,10 @@ def test_the_tolerance_is_kept_with_no_more_corners_than_there_were(
     assert len(found[0]) <= len(corners[0]) + 2
 
 
-@settings(max_examples=150, deadline=None)
-@given(
+@for_any(
     st.lists(st.tuples(st.integers(0, 50), st.integers(2000, 4000)), min_size=2, max_size=40),
     st.sampled_from([0.01, 0.3, 2.0]),
+    examples=150,
 )
 def test_any_recording_is_followed_within_the_tolerance(rows: list[tuple[int, int]], tolerance: float) -> None:
     rows = sorted(rows, key=lambda row: row[0])

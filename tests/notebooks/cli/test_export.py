@@ -90,22 +90,22 @@ def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Pat
 class TestRefused:
     """Exit code 3, and nothing written."""
 
-    def test_unsafe_even_when_forced(self, cli: Cli, tmp_path: Path) -> None:
+    @pytest.mark.parametrize("force", [("--force",), pytest.param((), marks=pytest.mark.slow)])
+    def test_unsafe_even_when_forced(self, cli: Cli, tmp_path: Path, force: tuple[str, ...]) -> None:
         path = tmp_path / "deep.cue"
         path.write_text(COLD, encoding="utf-8")
-        for force in ((), ("--force",)):
-            said = cli("export", path, "--to", "csv", "-o", tmp_path / "out", *STRONG, *force)
-            assert said.exit_code == 3
-            assert "refused: frost is NOT SAFE: skin surface reaches " in said.stderr
-            told = next(line for line in said.stderr.splitlines() if line.startswith("refused"))
-            for word in ("above the hard limit", "below the hard limit"):
-                told = told.replace(word, "beyond the hard limit")
-            assert re.search(r"reaches \S+ °C at \S+ s, with contact .*, beyond the hard limit of .* \(.*\)", told)
-            assert "safety red in 483 scenarios" in said.stderr
-            assert "not a medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
-            assert said.stderr.endswith("nothing was written\n")
-            assert "--force exports it" not in said.stderr
-            assert not (tmp_path / "out").exists()
+        said = cli("export", path, "--to", "csv", "-o", tmp_path / "out", *STRONG, *force)
+        assert said.exit_code == 3
+        assert "refused: frost is NOT SAFE: skin surface reaches " in said.stderr
+        told = next(line for line in said.stderr.splitlines() if line.startswith("refused"))
+        for word in ("above the hard limit", "below the hard limit"):
+            told = told.replace(word, "beyond the hard limit")
+        assert re.search(r"reaches \S+ °C at \S+ s, with contact .*, beyond the hard limit of .* \(.*\)", told)
+        assert "safety red in 483 scenarios" in said.stderr
+        assert "not a medical or ethical clearance; hardware on skin needs a temperature cut-off" in said.stderr
+        assert said.stderr.endswith("nothing was written\n")
+        assert "--force exports it" not in said.stderr
+        assert not (tmp_path / "out").exists()
 
     def test_red_only_in_the_worst_case_is_refused_too(self, cli: Cli, tmp_path: Path) -> None:
         path = tmp_path / "hot.cue"

@@ -24,11 +24,16 @@ def test_what_plays_every_icon_refuses(cli: Any, large: str, command: tuple[str,
     assert "10,000 icons" in said.stderr
 
 
-def test_it_is_checked_whole_and_against_a_rig_by_some(cli: Any, large: str) -> None:
+@pytest.mark.parametrize("most", [100, pytest.param(None, marks=pytest.mark.slow)])
+def test_it_is_checked_whole_and_against_a_rig_by_some(
+    cli: Any, large: str, monkeypatch: pytest.MonkeyPatch, most: int | None
+) -> None:
+    if most is not None:
+        monkeypatch.setattr("thermicon.notebooks.cli.check.MOST_ICONS", most)
     said = cli("check", large, "--rig", "thenar")
     assert said.exit_code == 0
     assert "10,000 icons" in said.stdout
-    assert "2,000 of its 10,000 icons" in said.stderr
+    assert f"{most or 2000:,} of its 10,000 icons" in said.stderr
 
 
 def test_one_of_them_is_played(cli: Any, large: str) -> None:

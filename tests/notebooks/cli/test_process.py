@@ -65,7 +65,11 @@ def test_an_interrupt_is_told_wherever_it_comes(
 @pytest.mark.parametrize(
     ("command", "files"),
     [
-        (("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"), ("l.json", "fl/distance.png")),
+        pytest.param(
+            ("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"),
+            ("l.json", "fl/distance.png"),
+            marks=pytest.mark.slow,
+        ),
         (("simulate", "two.cue", "-o", "t.csv", "--figure", "t.png"), ("t.csv", "t-cool-step.png", "t-warm-step.png")),
         pytest.param(
             ("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png"), marks=pytest.mark.slow

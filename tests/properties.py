@@ -1,0 +1,29 @@
+"""Properties that hold for any input: few examples in the ordinary suite, all of them in the slow one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis.strategies import SearchStrategy
+
+ORDINARY_SHARE = 4
+"""The ordinary suite has one in so many of the examples."""
+
+
+def for_any(*strategies: SearchStrategy[Any], examples: int) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Make a test of a property: with a quarter of the examples, and slow with all."""
+
+    def decorate(holds: Callable[..., None]) -> Callable[..., None]:
+        few = examples // ORDINARY_SHARE
+
+        @pytest.mark.parametrize("examples", [few, pytest.param(examples, marks=pytest.mark.slow)])
+        def test(examples: int) -> None:
+            settings(max_examples=examples, deadline=None)(given(*strategies)(holds))()
+
+        test.__name__, test.__doc__, test.__module__ = holds.__name__, holds.__doc__, holds.__module__
+        return test
+
+    return decorate
