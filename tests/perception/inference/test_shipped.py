@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception.inference.evidence import DATA
-from thermicon.perception.inference.mechanisms import MECHANISMS
+from thermicon.perception.observer.mechanisms import MECHANISMS
 from thermicon.perception.inference.posterior import Posterior
 from thermicon.perception.inference.results import (
     ABLATION,
