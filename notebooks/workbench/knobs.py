@@ -147,23 +147,18 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
 
 
 def aged(observer: Observer, age_years: float) -> Observer:
-    """Return an observer of an age: thresholds of both channels times ``age_factor``, as for drawn people.
+    """Return an observer of an age: thresholds times ``age_factor`` of their channel, as for drawn people.
 
     >>> young, old = Observer.load(), aged(Observer.load(), 65.0)
-    >>> round(old.cold.threshold_drive / young.cold.threshold_drive, 3)
-    1.414
+    >>> 1.3 < old.cold.threshold_drive / young.cold.threshold_drive < 4.0
+    True
     """
-    factor = age_factor(age_years)
 
-    def raised(receptor: Receptor) -> Receptor:
-        # Gain follows drive in kelvin, which age leaves alone.
-        return replace(
-            receptor,
-            threshold_drive=receptor.threshold_drive * factor,
-            gain_scale=receptor.gain_scale / factor,
-        )
+    def raised(channel: Channel) -> Receptor:
+        receptor = observer.receptor(channel)
+        return replace(receptor, threshold_drive=receptor.threshold_drive * age_factor(age_years, channel))
 
-    return observer if factor == 1.0 else replace(observer, cold=raised(observer.cold), warm=raised(observer.warm))
+    return replace(observer, cold=raised("cold"), warm=raised("warm"))
 
 
 def _turned(rig: Rig, values: Mapping[str, float | str], nominal: Rig | None = None) -> Rig:

@@ -71,10 +71,17 @@ def threshold_change_K(observer: Observer, channel: Channel, area_m2: float, sit
     known = load_thresholds()
     rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
     wanted = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
-    middle = 0.5 * sum(observer.neutral(channel))
+    # Halfway into the part of the neutral zone in which the channel answers at all.
+    low, high = observer.neutral(channel)
+    limit = observer.receptor(channel).limit_C
+    if limit is not None and channel == "cold":
+        high = min(high, limit)
+    elif limit is not None:
+        low = max(low, limit)
+    middle = 0.5 * (low + high)
     sign = -1.0 if channel == "cold" else 1.0
     size = wanted
-    for _ in range(ROUNDS):  # drive is in proportion to size, but for the gain that it lowers itself
+    for _ in range(ROUNDS):  # drive is in proportion to size, but near a limit of quality
         time = np.arange(0.0, size / rate + held, DT_S)
         felt = receptor_drive(middle + sign * np.minimum(rate * time, size), DT_S, channel, observer)
         size *= wanted / float(felt.max())

@@ -182,12 +182,11 @@ class Observer:
         A variant's own number stands under the quantity's name with the variant's ending, where it has one.
         """
         check_variant(variable, model)
-        variant = source_of(variable, model)
+        variant, known = source_of(variable, model), {record.quantity for record in table}
 
         def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
             own = f"{quantity}{variant}"
-            named = own if table.select(own) else quantity
-            return table.one(named, channel=channel, site=site, method=method).central
+            return table.one(own if own in known else quantity, channel=channel, site=site, method=method).central
 
         def receptor(channel: Channel) -> Receptor:
             flux = table.one("neutral heat flow", channel=channel).interval if variable == "heat flow" else None
