@@ -13,8 +13,8 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-SQRT_HALF = math.sqrt(0.5)
-INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
+from .passage import log_not_passed
+
 
 
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
@@ -64,10 +64,6 @@ def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
                 pair += 1
 
 
-def _cumulative(x: float) -> float:
-    return 0.5 * math.erfc(-x * SQRT_HALF)
-
-
 def _detect(
     cold: Any, warm: Any, dt: float, criterion: Any, tau: float, a: float, raised: Any, crossing: Any, missed: Any
 ) -> None:
@@ -76,44 +72,38 @@ def _detect(
     `criterion` (rows, 2) in d′; `raised` (gains,) are the sizes of gain of a presentation to the power p: a drive that
     is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Probabilities are averaged over the gains.
     """
+    louder = np.empty(cold.shape[1])
     for row in range(cold.shape[0]):
+        for channel in range(2):
+            psi = cold[row] if channel == 0 else warm[row]
+            crossing[row, channel] = first_crossing(psi, criterion[row, channel], dt)
         unfelt = 0.0
         for gain in range(raised.size):
             log_missed = 0.0
             for channel in range(2):
                 psi = cold[row] if channel == 0 else warm[row]
                 c = criterion[row, channel]
-                first = gain == 0
-                if first:
-                    crossing[row, channel] = math.nan
-                start = with_gain(psi[0], raised[gain], a)
-                plain, x0 = 0.0, 0.0
-                log_missed += math.log(cumulative(c))
-                if first and c <= 0.0:
-                    crossing[row, channel] = 0.0
-                for t in range(1, psi.size):
-                    x1 = abs(with_gain(psi[t], raised[gain], a) - start)
-                    if first:
-                        now = abs(psi[t] - psi[0])
-                        if math.isnan(crossing[row, channel]) and now >= c:
-                            crossing[row, channel] = dt * (t - 1 + (c - plain) / (now - plain))
-                        plain = now
-                    if log_missed > -40.0:
-                        h = c - 0.5 * (x0 + x1)
-                        speed = (x1 - x0) / dt
-                        z = speed * tau
-                        mean_rise = INV_SQRT_2PI * math.exp(-0.5 * z * z) / tau + speed * cumulative(z)
-                        below = cumulative(max(h, -8.0))
-                        log_missed -= dt * mean_rise * INV_SQRT_2PI * math.exp(-0.5 * max(h, -8.0) ** 2) / below
-                    elif not first or not math.isnan(crossing[row, channel]):
-                        break
-                    x0 = x1
+                if raised[gain] == 1.0:
+                    louder[:] = psi
+                else:
+                    for t in range(psi.size):
+                        louder[t] = 0.0 if psi[t] == 0.0 else a * math.log1p(raised[gain] * math.expm1(psi[t] / a))
+                log_missed += log_not_passed(louder, dt, c, tau)
             unfelt += math.exp(log_missed) / raised.size
         missed[row] = math.log(max(unfelt, 1e-300))
 
 
-def _with_gain(psi: float, raised: float, a: float) -> float:
-    return psi if raised == 1.0 else a * math.log1p(raised * math.expm1(psi / a))
+def _first_crossing(psi: Any, criterion: float, dt: float) -> float:
+    """When the change from the first sample reaches a criterion, s; NaN where it never does."""
+    if criterion <= 0.0:
+        return 0.0
+    before = 0.0
+    for t in range(1, psi.size):
+        now = abs(psi[t] - psi[0])
+        if now >= criterion:
+            return dt * (t - 1 + (criterion - before) / (now - before))
+        before = now
+    return math.nan
 
 
 def _nearest(gram: Any, projected: Any, counts: Any) -> None:
@@ -155,8 +145,7 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
 Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
-cumulative: Callable[[float], float] = _compile(_cumulative)
-with_gain: Callable[[float, float, float], float] = _compile(_with_gain)
+first_crossing: Callable[..., float] = _compile(_first_crossing)
 sensation: Loop = _compile(_sensation)
 blur: Loop = _compile(_blur)
 differences: Loop = _vector(_differences)

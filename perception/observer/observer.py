@@ -296,6 +296,7 @@ def on_forearm(site: str) -> bool:
     return any(name in site.lower() for name in FOREARM_SITES)
 
 
+@lru_cache(maxsize=1)
 def load_thresholds() -> Table:
     """The shipped table of published numbers.
 

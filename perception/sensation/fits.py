@@ -59,14 +59,14 @@ def anchored(observer: Observer, shipped: Observer) -> Observer:
 
 def peak_drive(channel: Channel, observer: Observer) -> float:
     """Peak receptor drive of a fast step as large as the forced-choice threshold of the thenar."""
-    known = load_thresholds()
-    size = known.one("detection threshold", channel=channel, site=SITE).central
-    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
-    played = _step(RIG, channel, size, rate, held)
+    played = _threshold_step(channel)
     return float(receptor_drive(played.received(observer.variable, channel)[0], played.dt_s, channel, observer).max())
 
 
-@lru_cache(maxsize=64)
-def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimulus:
-    end = round(size_K / rate_K_per_s + hold_s, 2)
-    return Bench(Rig.load(rig)).play([ramp(channel, size_K, rate_K_per_s)], end)
+@lru_cache(maxsize=2)
+def _threshold_step(channel: Channel) -> Stimulus:
+    known = load_thresholds()
+    size = known.one("detection threshold", channel=channel, site=SITE).central
+    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
+    end = round(size / rate + held, 2)
+    return Bench(Rig.load(RIG)).play([ramp(channel, size, rate)], end)
