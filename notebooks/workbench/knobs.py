@@ -16,7 +16,7 @@ from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import YOUNG_YEARS, age_factor
 
 if TYPE_CHECKING:
-    from thermicon.perception.observer.observer import Receptor
+    from thermicon.perception.observer.observer import Channel, Receptor
 
 OLDEST_YEARS, YOUNGEST_YEARS = 100.0, 18.0
 """What ``perception.people.age_factor`` covers."""

@@ -17,12 +17,12 @@ from ..arrays import Array
 from ..kernels import passage as first_passage
 from ..kernels.adapted_drive import adapted_drive
 from ..observer.channels import CHANNELS, Channel, sign_of
-from ..observer.variants import Model, Variable
 from ..observer.delays import LEG_M_PER_S, Conduction
-from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
-from ..observer.transducer import Transducer
-from .crowd import SHARES, TRIALS, Crowd, draw_crowd
 from ..observer.mechanisms import Without
+from ..observer.transducer import Transducer
+from ..observer.variants import Model, Variable
+from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
+from .crowd import SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, skin_modes
 
 DT_S = 0.025

@@ -16,7 +16,6 @@ from thermicon.circuit.compiled import kernel
 from .passage import log_not_passed
 
 
-
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
     """ψ = a·ln(1 + u^p/b) of u = scale·drive."""
     for row in range(drive.shape[0]):
@@ -101,7 +100,7 @@ def _first_crossing(psi: Any, criterion: float, dt: float) -> float:
     for t in range(1, psi.size):
         now = abs(psi[t] - psi[0])
         if now >= criterion:
-            return dt * (t - 1 + (criterion - before) / (now - before))
+            return float(dt * (t - 1 + (criterion - before) / (now - before)))
         before = now
     return math.nan
 

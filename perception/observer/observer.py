@@ -65,9 +65,8 @@ class Observer:
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
     `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
-    presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to `decision_s`,
-    `memory_noise` the noise of identification in log units of drive for each norm of
-    distance. `variable` says what the receptors go by, temperature or heat flow, and `model` how; `without` names the
+    presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
+    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable` says what the receptors go by, temperature or heat flow, and `model` how; `without` names the
     mechanisms that are turned off.
 
     >>> person = Observer.load()

@@ -1,4 +1,4 @@
-"""Constants that follow from others by playing a stimulus: neutral heat flow, and threshold drives of drawn observers."""
+"""Constants that follow from others by playing a stimulus: neutral heat flow, threshold drives of drawn observers."""
 
 from __future__ import annotations
 

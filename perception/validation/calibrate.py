@@ -1,7 +1,7 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
-Constants come from the maximum of the posterior (`inference`), each with its 95 % interval. Records marked `predict` are
-never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
+Constants come from the maximum of the posterior (`inference`), each with its 95 % interval. Records marked `predict`
+are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
 """
 
 from __future__ import annotations

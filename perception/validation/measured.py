@@ -61,7 +61,7 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """Columns (n,) that procedures need: multipliers of thresholds and criteria, conduction of each channel s, decision s."""
+    """Columns (n,) of people: multipliers of thresholds and criteria, conduction of each channel s, decision s."""
 
     threshold_cold: Array
     threshold_warm: Array

@@ -20,6 +20,7 @@ from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import anchored
 from ..sensation.parameters import ANCHORED, latin
 
+
 def uncertain_records(variable: Variable = "temperature", model: Model = "adapting") -> tuple[Record, ...]:
     """Every record with an interval that draws are made from, for one variant: what changes its observer.
 

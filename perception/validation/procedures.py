@@ -184,9 +184,7 @@ def _said_yes(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array
     for one in played:
         cold, warm = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
         multiples = [own[:, None] for own in crowd.criterion]
-        report = detect(
-            cold, warm, one.dt_s, observer, criterion_cold=multiples[0], criterion_warm=multiples[1]
-        )
+        report = detect(cold, warm, one.dt_s, observer, criterion_cold=multiples[0], criterion_warm=multiples[1])
         found.append(report.probability[:, 0])
     return np.stack(found, axis=1)
 

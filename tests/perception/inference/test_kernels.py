@@ -10,8 +10,8 @@ import pytest
 from thermicon.perception.inference.crowd import SHARES
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.adapted_drive import adapted_drive
-from thermicon.perception.sensation.first_passage import log_survival
 from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.sensation.first_passage import log_survival
 
 DT = 0.025
 TRANSDUCER = Transducer(11.0, 1.2)
