@@ -66,8 +66,9 @@ class Observer:
 
     `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
     presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
-    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable` says what the receptors go by, temperature or heat flow, and `model` how; `without` names the
-    mechanisms that are turned off.
+    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable`
+    says what the receptors go by, temperature or heat flow, and `model` how; `without` names the mechanisms that are
+    turned off.
 
     >>> person = Observer.load()
     >>> 0.5 < person.receptor("warm").velocity_m_per_s < 2.5

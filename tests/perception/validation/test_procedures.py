@@ -109,7 +109,7 @@ def test_what_is_not_felt_is_none_and_not_a_number(person: Observer, bench: Benc
 def test_the_nominal_person_is_the_observer(person: Observer) -> None:
     crowd = crowd_of(person, "forearm", None)
     assert len(crowd) == 1
-    assert crowd.conduction_s[1][0] == pytest.approx(0.55 / 0.5)
+    assert crowd.conduction_s[1][0] == pytest.approx(0.55 / person.warm.velocity_m_per_s + 0.225 / 2.0)
 
 
 def test_messages(person: Observer, bench: Bench) -> None:
