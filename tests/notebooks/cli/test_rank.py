@@ -267,7 +267,7 @@ def test_by_rules_the_table_has_no_number_of_the_model(cli: Cli, tmp_path: Path)
         assert word not in words
     assert "icon score rules passed distinct pairs margin fails" in words
     assert "Set: 15 of 15 pairs distinguishable by the rules" in words
-    assert "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes" in words
+    assert "depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes" in words
     assert "Worst pair by rules: warming-step and linear-warming, distinguishable - " in words
     assert "Scored by rules of thumb alone on the thenar rig: the share of rules passed" in words
     assert "Rules on latency and felt peak need the model and are not counted" in words

@@ -180,12 +180,12 @@ def test_only_latency_and_felt_peak_come_from_the_model(cue: Any, observer: Obse
 def test_depths_are_a_rule_on_the_rig() -> None:
     cold, warm = rig_rules(Rig.load("thenar"))
     assert (cold.passed, warm.passed) == (True, True)
-    assert cold.text == (
-        "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes; on this rig that is inside the stratum corneum"
-    )
+    assert cold.text == ("depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the dermis")
     deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
-    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.195))
-    assert deep.text.endswith("0.5 mm against 0.295 to 0.305 mm: fails; on this rig that is inside the dermis")
+    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.08))
+    assert deep.text.endswith("0.5 mm against 0.11 to 0.42 mm: fails; on this rig that is inside the dermis")
+    surface = Rig.load("thenar").with_(**{"skin.depth_from": "surface", "skin.cold_receptor_mm": 0.15})
+    assert rig_rules(surface)[0].text.startswith("depth (cold): -0.02 mm against 0.046 to 0.21 mm: fails")
 
 
 def test_margins_are_compared_in_shares_of_their_threshold(cue: Any, observer: Observer) -> None:

@@ -58,14 +58,14 @@ def test_every_variant_feels_a_cooling_cold_and_a_warming_warm(variable: Variabl
 
 @pytest.mark.parametrize("variable", ["temperature", "heat flow"])
 def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
-    """From the base of the horny layer (0.17 mm on the thenar) receptors are deeper, felt later and less."""
+    """From the base of the stratum corneum (0.17 mm on the thenar) receptors are deeper, felt later and less."""
     person, icon = Observer.load(variable=variable), load_library("six-icons")["warming-step"]
-    surface = Rig.load("thenar")
-    base = surface.with_(**{"skin.depth_from": "stratum corneum"})
-    assert surface.receptor_depths().warm_mm == pytest.approx(0.30)
-    assert base.receptor_depths().warm_mm == pytest.approx(0.47)
+    base = Rig.load("thenar")
+    surface = base.with_(**{"skin.depth_from": "surface"})
+    assert surface.receptor_depths().warm_mm == pytest.approx(0.21)
+    assert base.receptor_depths().warm_mm == pytest.approx(0.38)
     traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, base)]
-    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.32, "skin.warm_receptor_mm": 0.47}), tail_s=3.0)
+    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.27, "skin.warm_receptor_mm": 0.38}), tail_s=3.0)
     felt = [perceive(trace, person) for trace in (*traces, same)]
     assert felt[1].psi_warm == pytest.approx(felt[2].psi_warm, abs=1e-6)
     assert felt[0].onset_s is not None

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer
-from thermicon.perception.sensation.first_passage import quarters
 from thermicon.perception.sensation.detection import (
     channel_name,
     criterion_of,
     detect,
     false_alarms,
 )
+from thermicon.perception.sensation.first_passage import quarters
 
 
 def test_criterion_keeps_its_false_alarms() -> None:

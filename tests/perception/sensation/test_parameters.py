@@ -20,7 +20,14 @@ def test_what_is_uncertain_is_what_the_file_says() -> None:
     assert "memory noise (rms)" not in names
     assert "memory noise (rms)" in [p.name for p in observer_parameters("rms")]
     # What differs between people is their spread; a neutral zone is a range, not an uncertain number.
-    for left in ("path length", "decision time (", "lapse rate", "neutral zone", "threshold drive", "neutral heat flow"):
+    for left in (
+        "path length",
+        "decision time (",
+        "lapse rate",
+        "neutral zone",
+        "threshold drive",
+        "neutral heat flow",
+    ):
         assert not [name for name in names if name.startswith(left)]
     assert all(p.source and p.use in ("calibrate", "assumed") for p in observer_parameters())
 
