@@ -58,6 +58,7 @@ def test_a_rise_of_cool_skin_is_not_warm() -> None:
 def test_first_passage_agrees_with_the_other_implementation() -> None:
     time = DT * np.arange(200)
     course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
+    observer = replace(Observer.load(), noise_correlation_s=0.3)
     gains, criteria = np.array([0.5, 1.0, 2.0, 4.0]), np.array([2.5, 2.5, 3.5, 2.0])
     times, passed = passage(np.log(course), np.log(gains), criteria)
     for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):

@@ -74,7 +74,7 @@ def test_published_numbers_come_from_the_records(report: ValidationReport) -> No
     was = {(row.target, row.label): published_for(row, moved) for target in targets for row in target.rows}
     other = assemble(targets, was, moved, report.evidence, 12, 8, 0, 48)
     before, after = (r.sections[2].lines[0] for r in (report, other))
-    assert (before.published.text, after.published.text) == ("0.77 s", "9 s")
+    assert (before.published.text, after.published.text) == ("0.77 [0.63 to 0.94] s, fitted", "9 s, fitted")
     assert before.judged[0].predicted == after.judged[0].predicted
     assert after.judged[0].verdict.text.startswith("−")
 
