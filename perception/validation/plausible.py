@@ -33,12 +33,8 @@ def uncertain_records(variable: Variable = "temperature", model: Model = "adapti
 
     def matters(record: Record) -> bool:
         low, high = record.interval
-        if (
-            record.value is None
-            or low == high
-            or record.quantity.startswith(ANCHORED)
-            or record.quantity.endswith(tuple(others))
-        ):
+        fixed = record.value is None or low == high or record.quantity.startswith(ANCHORED)
+        if fixed or record.quantity.endswith(tuple(others)):
             return False
         moved = _swapped(table, {record: low if low != record.central else high})
         return Observer.from_table(moved, variable=variable, model=model) != whole

@@ -64,12 +64,8 @@ def test_first_passage_agrees_with_the_other_implementation() -> None:
     for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
         psi = TRANSDUCER.psi(gain * course)
         # The other implementation counts the change from the first sample; here that is as good as none.
-        logs = log_survival(
-            np.concatenate([[0.0], psi - psi[0]])[None, 1:],
-            DT,
-            criterion - float(psi[0]),
-            replace(Observer.load(), noise_correlation_s=0.3),
-        )[0]
+        change = np.concatenate([[0.0], psi - psi[0]])[None, 1:]
+        logs = log_survival(change, DT, criterion - float(psi[0]), observer)[0]
         answered = 1.0 - np.exp(logs)
         assert passed[lane] == pytest.approx(answered[-1], abs=0.01)
         for share, when in zip(SHARES.tolist(), times[lane].tolist(), strict=True):
