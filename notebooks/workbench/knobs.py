@@ -12,7 +12,7 @@ from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.icons.number_text import number, span
 from thermicon.perception import Observer
-from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.observer import load_thresholds, observer_records
 from thermicon.perception.observer.people import YOUNG_YEARS, age_factor
 
 if TYPE_CHECKING:
@@ -66,9 +66,8 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
      ('limit', '1.5 A')]
     """
     known = load_thresholds()
-    zone, old, spread = (
-        known.one(name) for name in ("complete adaptation", "threshold in old age", "contact resistance spread")
-    )
+    zone, spread = (known.one(name) for name in ("complete adaptation", "contact resistance spread"))
+    lost = observer_records().one("sensitivity lost per decade", channel="cold")
     thermode = known.one("thermode area of the forced-choice thresholds")
     area = round(rig.contact.area_m2 * 1e4, 6)
     smallest = round(min(Rig.load(name).contact.area_m2 for name in rig_names()) * 1e4, 6)
@@ -86,8 +85,8 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
         Knob("site", "site", "", 0.0, 0.0, 0.0, rig.site, "layers of skin, depths of receptors, thresholds, path",
              "the shipped rigs", tuple(dict.fromkeys((rig.site, *_sites())))),
         Knob("age", "age", "years", YOUNGEST_YEARS, OLDEST_YEARS, 1.0, YOUNG_YEARS,
-             "thresholds of both channels, from none to a doubling at 65: the middle is taken",
-             f"{old.quantity}: {old.source} ({old.use})"),
+             "thresholds of both channels, each by its own loss per decade",
+             f"{lost.quantity}: {lost.source}"),
         *([_limit_knob(rig)] if rig.thermode is None else []),
     )  # fmt: skip
 
