@@ -26,7 +26,13 @@ TEXT_FAULT = "text"
 
 
 class InputError(Exception):
-    """Bad input, reported in plain words (what, where, value, limit, unit, cure); safe to show on a terminal."""
+    """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
+
+    Examples
+    --------
+    >>> str(InputError("hand.toml: contact.area_cm2 = 0; it must be above 0 cm²"))
+    'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
+    """
 
     def __init__(self, *texts: object) -> None:
         super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))

@@ -48,6 +48,11 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     rate_Hz
         Rows of the traces per second.
 
+    Returns
+    -------
+    DeliveredDrive
+        Design and delivery, each with its simulation.
+
     Raises
     ------
     RigError
@@ -60,7 +65,6 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> from thermicon.icons import load_library
     >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
-
     """
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)

@@ -23,7 +23,17 @@ from ..records import Record, RecordError
 
 
 class DeviceError(InputError):
-    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure."""
+    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Device
+    >>> try:
+    ...     Device.load("dac-15")
+    ... except DeviceError as problem:
+    ...     print(problem)
+    dac-15: no such device; ...
+    """
 
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]

@@ -49,21 +49,30 @@ def netlist(
     rest_A
         Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
         later. None: the drive's first current.
-    out_file
-        Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
-    rows_Hz
-        Rows per second of that file.
     title
         First line of the netlist.
+    rows_Hz
+        Rows per second of `out_file`.
+    out_file
+        Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
     reltol
         Relative tolerance of the solver.
+
+    Returns
+    -------
+    str
+        The netlist.
+
+    Raises
+    ------
+    RigError
+        For a thermode, and where there is no steady state to start from.
 
     Examples
     --------
     >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
-
     """
     net = network_of(rig)
     names, skin = _skin(rig, net)

@@ -20,15 +20,42 @@ from .refusal import Refusal
 
 
 class ExportError(InputError):
-    """An export that was refused, or a folder that cannot take one; the text says why and what to change."""
+    """An export that was refused, or a folder that cannot take one; the text says why and what to change.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "notes.txt").write_text("mine")
+    ...     try:
+    ...         export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini", folder=folder)
+    ...     except ExportError as problem:
+    ...         print("refused:", problem)
+    refused: ... is not an empty folder; ...
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """The result of `export`: bytes by file name, or none where any icon was refused.
+    """The result of `export`.
 
-    `refused` has every cause against writing, with the name of its icon; a forced export has causes and files.
-    `prepared` holds what the device delivers of each icon, with its verdict.
+    Attributes
+    ----------
+    rig_name, device_name, format_name
+        Names of the rig, the device and the file format.
+    prepared
+        What the device delivers of each icon, with its verdict.
+    refused
+        Every reason against writing, with the name of its icon; a forced export has reasons and files.
+    files
+        Bytes by file name; empty where an icon was refused.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> result = export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini")
+    >>> result.refused, sorted(result.files)
+    ((), ['warming-step.json', 'warming-step.protocol.ini'])
     """
 
     rig_name: str

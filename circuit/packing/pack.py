@@ -44,10 +44,37 @@ def pack(
     felt: Mapping[str, Mapping[str, object]] | None = None,
     losses: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, bytes]:
-    """Return file names and their bytes: a sidecar and a drive for each cue, then what belongs to the set.
+    """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set.
 
-    `felt` and `losses` are the reports of perception by the names of cues; a cue with refusals is marked as forced.
-    Raises FormatError where two cues would get the same name, or one is unsafe.
+    Parameters
+    ----------
+    ready
+        The prepared cues; one with refusals is marked as forced.
+    form
+        The file format.
+    felt
+        For each cue, by its name, the report of perception on the delivered drive.
+    losses
+        For each cue, by its name, sentences on what is lost in delivery.
+
+    Returns
+    -------
+    dict
+        Bytes by file name; nothing is written.
+
+    Raises
+    ------
+    FormatError
+        Where two cues would get the same name, or one is unsafe.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Device, Rig, prepare
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
+    >>> list(pack([prepare(icon, Rig.load("tcs2"), Device.load("qst-tcs2"), form)], form))
+    ['warming-step.json', 'warming-step.protocol.ini']
     """
     check_names([one.delivery.icon.name for one in ready], form)
     drives = {}

@@ -32,7 +32,21 @@ FREE_V = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why a cue is not exported. What is unsafe cannot be forced."""
+    """Why a cue is not exported.
+
+    Parameters
+    ----------
+    kind
+        `unsafe`, `unreachable` or `lossy`; an export that is unsafe cannot be forced.
+    text
+        The reason, with its cure.
+
+    Examples
+    --------
+    >>> refusal = Refusal("lossy", "the device is too coarse")
+    >>> str(refusal), refusal.forcible
+    ('loses too much: the device is too coarse', True)
+    """
 
     kind: Literal["unsafe", "unreachable", "lossy"]
     text: str

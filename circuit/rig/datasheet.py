@@ -52,11 +52,21 @@ class Extraction:
 
 @dataclass(frozen=True, slots=True)
 class Datasheet:
-    """The figures a maker prints for one hot-side temperature `t_hot_C`.
+    """The figures that a maker prints for a Peltier module at one hot-side temperature.
 
-    `i_max_A` and `v_max_V` belong to the greatest temperature difference `dt_max_K`; `q_max_W` is the heat absorbed at
-    `i_max_A` and ΔT = 0, None where it is not printed.
+    Parameters
+    ----------
+    i_max_A, v_max_V
+        Current in A and voltage in V at the greatest temperature difference.
+    dt_max_K
+        Greatest temperature difference in K.
+    t_hot_C
+        Hot-side temperature in °C for which the figures hold.
+    q_max_W
+        Heat in W absorbed at `i_max_A` and ΔT = 0; None where it is not printed.
 
+    Examples
+    --------
     >>> sheet = Datasheet(6.4, 14.4, 66, 25, q_max_W=50)
     >>> sheet.three_figures()
     Extraction(three figures: 0.0483 V/K, 1.752 Ω, 1.839 K/W at 8.5 °C, Qmax +12.6 %)

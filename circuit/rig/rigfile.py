@@ -26,7 +26,17 @@ from .uncertainty import uncertainty_faults
 
 
 class RigError(InputError):
-    """An impossible rig: one line per fault, with key, value, limit, unit and cure."""
+    """An impossible rig: one line per fault, with key, value, limit, unit and cure.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> try:
+    ...     Rig.load("thenar").with_(**{"contact.area_cm2": -9})
+    ... except RigError as problem:
+    ...     print(problem)
+    rig thenar: contact.area_cm2 = -9...
+    """
 
 
 Celsius = Annotated[float, Field(ge=-20, le=120)]

@@ -60,6 +60,17 @@ class Rule:
 class Limits:
     """All rules that a run is checked against, and the reason for those that are loosened.
 
+    Parameters
+    ----------
+    rules
+        The rules, each with quantity, limit, unit and source.
+    reason
+        Why rules are looser than the shipped ones; empty where none is.
+    session_s
+        Length in s of a session, over which doses add up.
+
+    Examples
+    --------
     >>> Limits.shipped()
     Limits(22 rules, as shipped)
     >>> Limits.of({"skin_highest_C": 39.0})

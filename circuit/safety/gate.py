@@ -39,10 +39,32 @@ WHAT_IT_IS_NOT = (
 class Gate:
     """The verdict on one drive.
 
-    `checks` has every rule in its worst scenario, `once` the same for a single play and what follows it; times count
-    from the first row of that play. `after_C` is the skin of the rig as given 60 s after the last sample, for each
-    ending; `drift_C` is its steady state under zero current, None for a device without a current. `repeated` is the
-    verdict on repeated plays, which `checks` include; `demands` is what the hardware must prevent.
+    Attributes
+    ----------
+    rig_name
+        Name of the rig.
+    duration_s
+        Duration of the drive in s.
+    uncertainty, limits
+        The uncertainty of the rig and the limits that were applied.
+    scenarios
+        Number of combinations of corner and ending.
+    checks
+        Every rule in its worst scenario; times count from the first row of the play.
+    once
+        The same for a single play and what follows it.
+    after_C
+        Skin of the rig as given in °C, 60 s after the last sample, for each ending.
+    drift_C
+        Its steady state in °C under zero current; None for a device without a current.
+    repeated
+        The verdict on repeated plays, which `checks` include.
+    demands
+        What the hardware must prevent.
+
+    See Also
+    --------
+    gate : The function that returns it.
     """
 
     rig_name: str
@@ -143,11 +165,16 @@ def gate(
     rest_A
         Current in A held before the drive and in the pauses; None: the drive's first current.
     bridge_A
-        The current that a bridge switches; `rest_A` and the last current of the drive are then means.
+        The current in A that a bridge switches; `rest_A` and the last current of the drive are then means.
     limits
         Limits in place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the recovery time.
+
+    Returns
+    -------
+    Gate
+        Colour, and the worst value of every rule with its scenario.
 
     Raises
     ------
@@ -169,7 +196,6 @@ def gate(
     >>> ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
     >>> gate(ended, rig, rest_A=plan.rest_A).safe
     True
-
     """
     return gate_set(
         [(drive, rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s

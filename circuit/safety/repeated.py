@@ -31,7 +31,16 @@ PAUSE_STEP_S = 0.1
 
 
 class PauseError(InputError):
-    """An impossible pause between plays."""
+    """An impossible pause between plays.
+
+    Examples
+    --------
+    >>> try:
+    ...     check_pause(-1.0)
+    ... except PauseError as problem:
+    ...     print(problem)
+    a pause of -1 s between plays is not possible; give 0 to 600 s
+    """
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,16 +23,38 @@ ORDER_MB = 1.0
 
 
 class SessionError(InputError):
-    """A session that cannot be planned or played; the text gives the reason and what to change."""
+    """A session that cannot be planned or played; the text gives the reason and what to change.
+
+    Examples
+    --------
+    >>> try:
+    ...     SessionPlan(())
+    ... except SessionError as problem:
+    ...     print(problem)
+    a session ...
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class SessionPlan:
-    """Names of icons in the order of play, and `gap_s` from the end of one to the start of the next.
+    """The order of play in a session, and the gap between plays.
 
-    `seed` is that of a shuffled order, None for one that was given. Raises SessionError for an empty order, for more
-    than 5,000 plays, and for a gap outside 0 to 3,600 s.
+    Parameters
+    ----------
+    order
+        Names of icons in the order of play, at most 5,000.
+    gap_s
+        Time in s from the end of one play to the start of the next, 0 to 3,600 s.
+    seed
+        Seed of a shuffled order; None for an order that was given.
 
+    Raises
+    ------
+    SessionError
+        For an empty or too long order, and for a gap outside its range.
+
+    Examples
+    --------
     >>> SessionPlan(("dip", "glow", "dip"), gap_s=5.0)
     SessionPlan(3 plays of 2 icons, 5 s apart)
     """

@@ -39,13 +39,36 @@ def play_session(
 ) -> Session:
     """Simulate the icons of a plan in sequence on a rig, as one continuous run.
 
-    With tracking `replay` the current of each icon, designed from rest, is played open loop, as exported drives are,
-    and its holding current in the gaps; with `display` the driver follows each icon's display temperature, as a
-    thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` replaces
-    those of the rig; `progress` is called with the seconds of the worst case that are done, and their total.
-    Raises SessionError where the plan names an icon that is not given, is too long, or cannot be tracked, and RigError
-    where the rig cannot hold a baseline.
+    Parameters
+    ----------
+    icons
+        The icons that the plan names.
+    plan
+        Order of play and gap.
+    rig
+        The rig.
+    tracking
+        `replay` plays the current of each icon, designed from rest, open loop, as exported drives are, and its holding
+        current in the gaps; with `display` the driver follows each icon's display temperature, as a thermode does.
+    limits
+        Limits in place of the rig's.
+    progress
+        Called with the seconds of the worst case that are done, and their total.
 
+    Returns
+    -------
+    Session
+        One row per update of the driver, and at least 100 rows per second, with the verdict.
+
+    Raises
+    ------
+    SessionError
+        Where the plan names an icon that is not given, is too long, or cannot be tracked.
+    RigError
+        Where the rig cannot hold a baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> plan = SessionPlan(("cooling-step", "warming-step"), gap_s=10.0)
     >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))

@@ -68,12 +68,44 @@ def simulate_many(
     tracking: str | None = None,
     probes: Sequence[str] = USUAL,
 ) -> Batch:
-    """Simulate every cue on every rig until `end_s`; the result does not depend on the number of cores.
+    """Simulate every cue on every rig; the result does not depend on the number of cores.
 
-    `tracking` is one of TRACKINGS, or None for the default of each cue: `replay` plays the current designed on
-    `nominal` open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits,
-    `ideal` solves anew for each rig. Rigs with a PID loop run it; a thermode shows the same display to everybody.
-    Raises RigError where a rig cannot hold a baseline.
+    Parameters
+    ----------
+    icons
+        The cues.
+    rigs
+        The rigs, such as one for each virtual person. With a PID loop in the rig file, it is simulated.
+    nominal
+        The rig for which the currents are designed.
+    end_s
+        Time in s until which every run continues.
+    rate_Hz
+        Rows per second.
+    tracking
+        `replay` plays the current designed on `nominal` open loop, `display` tracks the display temperature designed on
+        `nominal` within each driver's limits, `ideal` designs anew for each rig; None: the default of each cue. A
+        thermode shows the same display to everybody.
+    probes
+        Columns of a trace to record.
+
+    Returns
+    -------
+    Batch
+        Recorded temperatures in °C (probes, rigs, icons, rows).
+
+    Raises
+    ------
+    RigError
+        Where a rig cannot hold a baseline, or the rigs differ in what a batch needs in common.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> thenar = Rig.load("thenar")
+    >>> rigs = [thenar, thenar.with_(**{"skin.rest_C": 33.0})]
+    >>> simulate_many(tuple(load_library("six-icons"))[:2], rigs, nominal=thenar, end_s=9.0)
+    Batch(2 icons on 2 rigs, 901 rows, 9 s: skin_C, cold_receptor_C, warm_receptor_C)
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -120,8 +152,37 @@ def simulate_stream(
     probes: Sequence[str] = USUAL,
     at_once: int = 256,
 ) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
-    """Simulate any number of cues on one rig, `at_once` of them in memory; yields (cues, their batch) in order.
+    """Simulate any number of cues on one rig, a part of them in memory at a time.
 
+    Parameters
+    ----------
+    icons
+        The cues.
+    rig
+        The rig.
+    end_s
+        Time in s until which every run continues.
+    rate_Hz
+        Rows per second.
+    probes
+        Columns of a trace to record.
+    at_once
+        Number of cues in memory.
+
+    Yields
+    ------
+    icons : tuple of Icon
+        The cues of a part, in order.
+    batch : Batch
+        Their runs.
+
+    Raises
+    ------
+    RigError
+        Where the rig cannot hold a baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
     >>> [(len(cues), batch.values.shape) for cues, batch in parts]

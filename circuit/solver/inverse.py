@@ -69,8 +69,6 @@ def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
 def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     """Return the current that plays a cue on a rig.
 
-    Skin and display control give currents held over each driver period; current control gives the cue's own corners.
-
     Parameters
     ----------
     icon
@@ -80,12 +78,22 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     end_s
         Time in s until which the current is designed; the last level is held.
 
+    Returns
+    -------
+    Design
+        The drive, its resting current, and whether the target is reached. Skin and display control give a current held
+        over each driver period; current control gives the corners of the cue.
+
     Raises
     ------
     RigError
         For a baseline that the rig cannot hold.
 
-
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> design(load_library("six-icons")["cooling-step"], Rig.load("thenar"), 8.0)
+    Design(Drive(801 rows, 8 s, -0.477... … 1.108... A, held), rest 0.0828 A, reached)
     """
     plan = design_ideal(icon, rig, end_s)
     if rig.controller is None or icon.context.control == "current":

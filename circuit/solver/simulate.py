@@ -80,7 +80,26 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:
-    """Time in s from a cue's start to its last corner; under current control, it depends on the holding current."""
+    """Return the time in s from a cue's start to its last corner.
+
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig; under current control the duration depends on its holding current.
+
+    Returns
+    -------
+    float
+        Duration in s.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> duration_s(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    8.0
+    """
     if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
@@ -89,8 +108,31 @@ def duration_s(icon: Icon, rig: Rig) -> float:
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
-    """Simulate every cue of a set on one rig until `end_s`; as `simulate`, in parallel where that is quicker.
+    """Simulate every cue of a set on one rig, in parallel where that is quicker.
 
+    Parameters
+    ----------
+    icons
+        The cues.
+    rig
+        The rig.
+    end_s
+        Time in s until which every trace continues.
+    rate_Hz
+        Rows of the traces per second.
+
+    Returns
+    -------
+    tuple of Trace
+        One trace per cue, as `simulate` gives it.
+
+    Raises
+    ------
+    RigError
+        Where no current holds a baseline, or a run is not physical or too long.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
     6
@@ -132,11 +174,20 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     start_C
         Another state (n + 3,) in °C to start from.
 
+    Returns
+    -------
+    Trace
+        A run without a target.
+
     Raises
     ------
     RigError
         Where the first current has no steady state, or the run is not physical.
 
+    Examples
+    --------
+    >>> simulate_current(Drive([0, 1, 4], [0.08, 0.5, 0.5]), Rig.load("thenar"))
+    Trace('drive' on thenar, 401 rows, 4 s, skin ... °C, 0.08 … 0.50 A)
     """
     return _replay(drive, rig, rate_Hz, None, start_C)[0]
 

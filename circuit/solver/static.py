@@ -20,12 +20,28 @@ from .steady import holding_current_A, state_under_current, steady_state
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
-    """Return one sentence for each reason why a cue is impossible on a rig; empty where there is none.
+    """Return the reasons why a cue is impossible on a rig, without simulating it.
 
-    Checks the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and, under
-    display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig.
+
+    Returns
+    -------
+    tuple of str
+        A sentence for each reason; empty where there is none.
+
+    Notes
+    -----
+    Checked are the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and,
+    under display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
     `simulate` reports whether the rig reaches the target in time.
 
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     ()

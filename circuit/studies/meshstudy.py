@@ -163,12 +163,36 @@ def mesh_study(
     rate_Hz: float = 1000.0,
     tail_s: float = 0.0,
 ) -> MeshStudy:
-    """Simulate a cue or a drive on several meshes of a rig's skin and on a converged one.
+    """Simulate a cue or a drive on several meshes of a rig's skin, and compare them with a converged one.
 
-    With `way="current"` all get the current designed on the rig as it is; with `"temperature"` each follows the cue
-    with its own. Time steps are the rows, the same for all, and 1 ms by default, so that they do not affect the result.
-    Raises RigError for a way that does not exist, or a drive without a prescribed temperature.
+    Parameters
+    ----------
+    rig
+        The rig.
+    cue
+        A cue or a drive.
+    way
+        With `current` all meshes get the current designed on the rig as it is; with `temperature` each follows the cue
+        with its own current.
+    meshes
+        The meshes; None: the shipped mesh, coarser and finer ones, and fixed elements.
+    rate_Hz
+        Rows and time steps per second, the same for all meshes. At 1000 Hz they do not affect the comparison.
+    tail_s
+        Time in s that the run continues after the cue's last corner.
 
+    Returns
+    -------
+    MeshStudy
+        Errors in K at the depths of both receptors.
+
+    Raises
+    ------
+    RigError
+        For an unknown way, or a drive without a prescribed temperature.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
     MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.8 mK; reference within 0.11 mK)
