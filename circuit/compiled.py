@@ -141,7 +141,7 @@ def kept_in() -> Path | None:
     except NotPrivate as problem:
         if multiprocessing.parent_process() is None:
             logging.getLogger("thermicon").warning(
-                "compiled code is not kept, so that every run compiles it anew: %s", problem
+                "compiled code cannot be stored, so that every run compiles it again: %s", problem
             )
         return None
     _forget_stale(folder.parent)

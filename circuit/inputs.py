@@ -102,7 +102,7 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] =
     except NotRegular as found:
         if found.kind == "folder":
             raise error(f"{path}: this is a directory, not a {what}") from None
-        raise error(f"{path}: {found}; save what it gives as a {what}, and name that") from None
+        raise error(f"{path}: {found}; save its output as a {what}, and give that file") from None
     except TooLarge as found:
         raise error(
             f"{path}: {found.size / 1e6:.0f} MB is too large for a {what}; the limit is {limit_MB:g} MB"

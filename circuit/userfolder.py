@@ -42,14 +42,14 @@ def private_folder(path: Path) -> Path:
         for folder in reversed(missing):
             folder.mkdir(mode=0o700, exist_ok=True)
     except OSError as problem:
-        raise NotPrivate(f"{path} cannot be made ({problem.strerror or problem})") from None
+        raise NotPrivate(f"{path} cannot be created ({problem.strerror or problem})") from None
     if sys.platform != "win32":
         real = path.resolve()
         for folder in (real, *real.parents):
             if fault := _fault(folder, folder == real):
                 raise NotPrivate(f"{folder} {fault}; set THERMICON_CACHE to a folder that only you can write to")
     if not os.access(path, os.W_OK | os.X_OK):
-        raise NotPrivate(f"{path} is not writable for you")
+        raise NotPrivate(f"{path} is not writable")
     return path
 
 

@@ -150,7 +150,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
     if abs(peak) > (rig.driver.current_max_A if peak > 0 else -rig.driver.current_min_A) + 1e-9:
         text = (
             f"the rig's driver gives {signed(rig.driver.current_min_A)} … {signed(rig.driver.current_max_A)} A "
-            f"(driver.current_limit_A), the cue asks for {signed(peak, '.3g')} A; ask for less current, or raise the "
+            f"(driver.current_limit_A), the cue needs {signed(peak, '.3g')} A; use less current, or raise the "
             f"limit if driver and module can"
         )
         return Narrowed(text, most, best.outcome)

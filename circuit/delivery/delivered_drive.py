@@ -98,7 +98,7 @@ class DeliveredDrive:
     @property
     def _drives(self) -> tuple[Drive, Drive]:
         if self.drives is None:
-            raise DeviceError(f"{self.device.name} is a thermode: it shows temperatures, and no current of it is known")
+            raise DeviceError(f"{self.device.name} is a thermode: its current is not known")
         return self.drives
 
     @property

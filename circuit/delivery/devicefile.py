@@ -169,7 +169,7 @@ def _faults(table: DeviceTable) -> list[str]:
         if fault := _unit_fault(record, table.driven_by):
             found.append(f"{where}: {fault}")
         if stated[record.quantity] is not record:
-            found.append(f"{where}: is there twice; keep one")
+            found.append(f"{where}: appears twice; keep one")
         if record.quantity in INTERVALS and (fault := _interval_fault(record)):
             found.append(f"{where}: {fault}")
             continue
@@ -198,7 +198,7 @@ def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
     wanted, found = _unit_of(record.quantity, driven_by), record.unit
     if wanted is None:
         takers = " or ".join(UNITS_BY_DRIVE[record.quantity])
-        return f"says nothing of a device driven by {driven_by}, only of one driven by {takers}; remove it"
+        return f"does not apply to a device driven by {driven_by}, only to one driven by {takers}; remove it"
     if found == wanted:
         return None
     others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == found]

@@ -109,7 +109,7 @@ def sample(
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
-    _check_count(device, "the fewest that it plays", least)
+    _check_count(device, "the minimum that it plays", least)
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
@@ -118,7 +118,7 @@ def sample(
     limit = device.most("slew rate")
     limited = _slewed(wanted, limit / rate_Hz)
     if np.abs(limited - wanted).max() > 1e-12:
-        warnings.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s holds the command back")
+        warnings.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s limits the command")
     scale = device.scale(float(np.abs(limited).max()))
     codes = np.rint((limited - scale.offset) / scale.step).astype(np.int64)
     clipped = np.clip(codes, scale.lowest, scale.highest)

@@ -74,7 +74,7 @@ def closed(device: Device, setpoints: Setpoints) -> Setpoints:
     most = int(device.most("segments"))
     if added and len(setpoints.segments) + count > most:
         raise DeviceError(
-            f"{device.name}: {len(setpoints.segments) + count} segments are needed with the way back to the baseline, "
+            f"{device.name}: {len(setpoints.segments) + count} segments are needed with the return to baseline; "
             f"it takes {most}; shorten the icon, or let it return by itself"
         )
     return replace(setpoints, segments=(*setpoints.segments, *added), closing=len(added))

@@ -135,7 +135,7 @@ def _raf(drive: bytes, told: Told, about: Mapping[str, Any]) -> Figures:
 def _array(drive: bytes, told: Told, about: Mapping[str, Any]) -> Figures:
     found = re.search(r"_wave\[\][^{]*\{([^}]*)\}", drive.decode("ascii"))
     if found is None:
-        raise ValueError("holds no array of codes")
+        raise ValueError("contains no array of codes")
     return _of_codes(np.array([int(code) for code in found[1].split(",") if code.strip()]), None, told)
 
 

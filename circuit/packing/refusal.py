@@ -132,16 +132,16 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
     """The rig's own shortfall, with what it would take."""
     text = outcome.reason or "the target is missed"
     if delivery.drives is None:  # a thermode, which has neither driver nor module
-        return f"{text}; ask for a slower or smaller change, or use a thermode that can"
+        return f"{text}; use a slower or smaller change, or use a thermode that can"
     rig, driver = delivery.rig, delivery.rig.driver
     held = [name for name, _ in outcome.limits]
     if not held or rig.controller is not None:
-        return f"{text}; ask for a slower or smaller change"
+        return f"{text}; use a slower or smaller change"
     if held == ["compliance voltage"]:
-        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or ask for a slower change"
+        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"
     needed = needed_A(delivery.icon, rig)
     if needed is None:
-        return f"{text}; no current of this module reaches it: ask for a slower or smaller change"
+        return f"{text}; no current of this module reaches it: use a slower or smaller change"
     narrow = ""
     if delivery.narrowed:
         narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"

@@ -175,7 +175,7 @@ def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], re
     start = SingleFault(
         "first play on a display that was without power",
         "green",
-        f"the display stands between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
+        f"the display is between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
         f"holding the baseline for {held} before the first play",
     )
     polarity, _ = faulty.polarity()

@@ -91,7 +91,7 @@ def unlike_before(
     keys = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
     if build.plate_J_per_K is None and not set(keys) <= set(stated):
         found.append(
-            f"module {name}: its plates are not on record, so those of the rig stay, {plates[0]:g} (hot) and "
+            f"module {name}: its plates are unknown, so the rig keeps its own, {plates[0]:g} (hot) and "
             f"{plates[1]:g} J/K (cold); set {' and '.join(keys)}"
         )
     if build.face_cm2 is not None and area_cm2 > 1.01 * build.face_cm2:
@@ -145,7 +145,7 @@ def module_faults(table: ModuleTable) -> str:
     sheets = table.datasheet
     if not ways:
         return (
-            f"module: nothing says which module; give {', '.join(PARAMETERS)}, "
+            f"module: no module is stated; give {', '.join(PARAMETERS)}, "
             f"or one or two [[module.datasheet]], or the name of a shipped module"
         )
     if len(ways) > 1:

@@ -165,7 +165,7 @@ class Rig:
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         text = toml_text(json.loads(self.document))
         if _build(parse_toml(text, str(where)), str(where)) != self:
-            raise RigError(f"{where}: rig {self.name} does not read back as it is; it was not saved")
+            raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
             where.write_text(text, encoding="utf-8")
         except OSError as problem:
@@ -211,7 +211,7 @@ class Rig:
 
     @property
     def blood_C(self) -> float:
-        """Temperature of deep tissue and blood in °C, solved from the resting skin unless the rig fixes it."""
+        """Temperature of deep tissue and blood in °C, from the heat balanceing skin unless the rig fixes it."""
         return self.deep_C
 
     @property
@@ -241,7 +241,7 @@ class Rig:
         """What to know about this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
 
         >>> print(Rig.load("thenar").about().splitlines()[2])
-          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
+          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (from the heat balance), 80 W/m² lost by bare skin
         """
         return rig_summary(self)
 

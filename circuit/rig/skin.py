@@ -73,7 +73,7 @@ class Layer:
 class Skin:
     """Layers, surface first, with the depths of the receptors and what determines the deep temperature.
 
-    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: they are solved from the rest.
+    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: solved from the heat balance.
     `elements` gives a fixed number of elements per layer (T-sections) instead of the graded mesh.
     The depths of the receptors count from the surface here; `depth_from` is how the rig file counts them.
     """

@@ -96,7 +96,7 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
     cures = [cure for names, cure in CURES if any(one.quantity.startswith(names) for one in hard)]
-    return f"{more}; ask for {', '.join(cures)}" if cures else more
+    return f"{more}; use {', '.join(cures)}" if cures else more
 
 
 def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:

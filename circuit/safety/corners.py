@@ -2,7 +2,7 @@
 
 Contact, gain, Seebeck coefficient, thermal conductance and plates are at either end of their uncertainty, in all
 combinations. Heat sink and ambient move together: every temperature rises with those of the heat sink and of deep
-tissue, so the extremes are where both are warm or both are cold. Where deep tissue is solved from the resting
+tissue, so the extremes are where both are warm or both are cold. Where deep tissue is from the heat balance at resting
 temperature of bare skin, a warmer room means cooler blood. A Peltier module cools most at one current, since its Joule
 heat grows with the square: where the driver can pass that current, gains in between are corners too.
 """

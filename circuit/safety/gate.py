@@ -211,7 +211,7 @@ def gate_set(
     pause_s: float | None = None,
     averaged: bool = False,
 ) -> tuple[Gate, ...]:
-    """Check drives, each with its rest in A, that may be played again and again in any order; as `gate` does.
+    """Check drives, each with its rest in A, that may be played repeatedly in any order; as `gate` does.
 
     Each is judged by itself, and between bounds on the states that any sequence of all of them can reach. Without a
     pause, that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
@@ -283,7 +283,7 @@ def _lines(one: Gate) -> Iterator[str]:
         f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
         f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
     )
-    yield f"played again and again: {again.text}"
+    yield f"repeated plays: {again.text}"
     table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:

@@ -141,7 +141,7 @@ class Repeating:
     def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
         """The tally of a play from a state with its pause, and the state at the end of the play."""
         plays = plays_in(cycle, self.limits.session_s)
-        again = f"played again and again with {cycle.pause_s:.4g} s of pause{what}"
+        again = f"repeated plays with {cycle.pause_s:.4g} s of pause{what}"
         names = [f"{corner}, {again}" for corner in self.ensemble.corners]
         tally, now = Tally(self.limits, names, plays=plays, begun_C=begun), state
         for (rows, values), then in self.ensemble.play(cycle.drive, state):

@@ -59,7 +59,7 @@ class Faulty:
             after *= 0.5
         after = round(after, 2) if after > 0.05 else 0.0
         text = f"the current hangs for {HANG_S:g} s: {worst}"
-        prevented = f"a watchdog that cuts the current after {after:g} s without a sign of the host"
+        prevented = f"a watchdog that cuts the current after {after:g} s without a message from the host"
         if after == 0.0:
             prevented = "a cut-off on the measured temperature; no watchdog is quick enough"
         return after, SingleFault("host hangs in mid-play", _colour(beyond), text, prevented)

@@ -150,7 +150,7 @@ def _cycle_checks(
     what: str,
     rates: bool,
 ) -> list[tuple[Check, ...]]:
-    again = f"{shown.way}, played again and again with {pause_s:.4g} s of pause{what}"
+    again = f"{shown.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     names = [f"{corner}, {again}" for corner in under.corners]
     values, ended = under.play(shown, states)
     tally = Tally(limits, names, plays=_plays(shown, pause_s, limits.session_s), begun_C=begun_C)
@@ -210,7 +210,7 @@ def _demands(
             "set-point hangs in mid-play",
             "red" if watchdog < ENDING_S else "green",
             f"display held at {_levels(hangs)} for {ENDING_S:g} s",
-            f"a return to the baseline {watchdog:g} s after the last sign of the host",
+            f"a return to the baseline {watchdog:g} s after the last message from the host",
         ),
         SingleFault(
             "loop stuck at the end of its range",

@@ -265,7 +265,7 @@ class _Stage:
         """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point."""
         if control == "skin":
             raise RigError(
-                "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
+                "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
                 "use tracking display, or rigs without [controller]"
             )
         bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz

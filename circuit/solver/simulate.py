@@ -257,8 +257,8 @@ def _trace(
         at = int(np.argmin(possible))
         where = RECORDED[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
         raise RigError(
-            f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
-            f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
+            f"rig {rig.name}: {where} leaves the physical range ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at "
+            f"{rows[at]:.2f} s, under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
         )
     current = drive.at(rows)
     values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
@@ -295,7 +295,7 @@ def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str,
     if asked.max() > 1e-9:
         most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
         found.append(
-            f"the drive asks for {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+            f"the drive needs {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
     needed = np.abs(voltage) - driver.voltage_limit_V

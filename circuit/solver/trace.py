@@ -56,7 +56,7 @@ class Outcome:
     Examples
     --------
     >>> print(Outcome(False, -1.2, 3.0, 0.4, (("current limit", 2.5),)).reason)
-    misses its target by 1.20 K at 3.00 s, held back by the current limit from 2.50 s
+    misses its target by 1.20 K at 3.00 s, limited by the current limit from 2.50 s
     """
 
     reached: bool
@@ -83,7 +83,7 @@ class Outcome:
         late = f"; its step at {self.late_s[0]:.2f} s does not arrive in time" if self.late_s else ""
         return (
             f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s{late}"
-            f"{f', held back by the {held}' if held else ''}"
+            f"{f', limited by the {held}' if held else ''}"
         )
 
 

@@ -122,7 +122,7 @@ def _check(icons: list[Icon]) -> None:
     if not icons:
         raise HjifError("there is no icon to write")
     if len(icons) > MOST_ICONS:
-        raise HjifError(f"HJIF takes {MOST_ICONS} icons a file at most (profile Main, level 1); choose among them")
+        raise HjifError(f"HJIF takes {MOST_ICONS} icons per file at most (profile Main, level 1); choose among them")
     for icon in icons:
         if icon.context.control == "current":
             help = "write the set with control skin or display, or export the current as a waveform"

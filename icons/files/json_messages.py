@@ -83,7 +83,7 @@ def finding(error: ErrorDetails, document: Any, places: Places) -> Finding:
     elif kind in _WORDS:
         what = f"{shown(value)}: {_WORDS[kind]}{unit if kind == 'float_type' else ''}"
         text = isinstance(value, str) and kind in ("float_type", "int_type")
-        help = "numbers stand without quotation marks; the unit is in the name of the key" if text else ""
+        help = "numbers have no quotation marks; the unit is in the name of the key" if text else ""
     elif kind == "ways":
         what, help = error["msg"], 'such as "values": [1, 2, 3], or "low": 1, "high": 3, "step": 0.5'
     else:

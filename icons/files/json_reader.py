@@ -131,7 +131,7 @@ class Reader:
             here = (*path, "parameters", place)
             span = None if table.low is None else (table.low, table.high, table.step)
             if table.name in found:
-                self.add("E213", (*here, "name"), f'"{table.name}" stands in this list already', "keep one of them")
+                self.add("E213", (*here, "name"), f'"{table.name}" is already in this list', "keep one of them")
             try:
                 found[table.name] = Parameter(table.name, table.unit, tuple(table.values or ()), span)  # type: ignore[arg-type]
             except (ValueError, OverflowError) as error:

@@ -103,7 +103,7 @@ def is_json(source: str | Path) -> bool:
 
 
 def file_bytes(source: str | Path) -> bytes | None:
-    """Return what is in a file, or None when there is none of this name.
+    """Return what is in a file, or None when there is not one of this name.
 
     Raises CueErrors when it is a folder (but not one with the name of a shipped set), unreadable or too large.
 

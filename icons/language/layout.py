@@ -1,4 +1,4 @@
-"""The formatter: a cue text in canonical layout, one statement a line, with every comment and number of its author."""
+"""The formatter: a cue text in canonical layout, one statement per line; comments and numbers are kept."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

@@ -263,7 +263,7 @@ def repeat(count: int, *body: Statement) -> Repeat:
     3
     """
     if not body:
-        raise ValueError("repeat() needs statements behind the count, such as repeat(3, hold(1))")
+        raise ValueError("repeat() needs statements after the count, such as repeat(3, hold(1))")
     return Repeat(int(given("repeat", "count", count, "count")), _statements(body))
 
 

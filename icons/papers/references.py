@@ -111,7 +111,7 @@ def read_references(text: str, where: str) -> tuple[Reference, ...]:
         except BibliographyError as problem:
             raise BibliographyError(f"{where}: {problem}") from None
         if made.key in found:
-            raise BibliographyError(f"{name}: the key {made.key} stands twice")
+            raise BibliographyError(f"{name}: the key {made.key} appears twice")
         found[made.key] = made
     return tuple(found.values())
 

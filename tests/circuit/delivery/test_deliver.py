@@ -99,7 +99,7 @@ def test_the_default_converter_gives_every_shipped_rig_all_that_its_driver_can(n
 def test_a_slew_rate_holds_the_command_back() -> None:
     found = deliver(STEP, RIG, changed(Device.load("dac-16"), "slew rate", value=10.0))
     assert np.abs(np.diff(samples(found).command)).max() <= 0.1 + 1e-3
-    assert found.device_warnings == ("dac-16: its slew rate of 10 V/s holds the command back",)
+    assert found.device_warnings == ("dac-16: its slew rate of 10 V/s limits the command",)
 
 
 @pytest.mark.parametrize(

@@ -178,7 +178,7 @@ def test_what_a_statement_cannot_be(statement: str, words: str) -> None:
         (
             FAMILY.replace("}]", '}, {"name": "x", "values": [1]}]'),
             '{"do": "warm", "by_K": {"parameter": "x"}, "duration_s": 1}',
-            'E213|"x" stands in this list already',
+            'E213|"x" is already in this list',
         ),
         (
             FAMILY.replace('"values": [1, 2]', '"low": 1, "high": 50000001, "step": 1').replace("K", "s"),

@@ -236,7 +236,7 @@ def test_the_shipped_bibliography_loads() -> None:
         (ENTRY.replace('"T"', '" "'), "b.toml: a-2020: title = ' ' must be a text that is not empty"),
         (ENTRY.replace("2020\n", '"2020"\n'), "b.toml: a-2020: year = '2020' must be a whole number from 1800 to 2100"),
         (ENTRY + 'doi = "doi:10.1/x"\n', "b.toml: a-2020: doi = 'doi:10.1/x' is not a DOI, such as 10.3390/"),
-        (ENTRY + ENTRY, "b.toml: reference 2: the key a-2020 stands twice"),
+        (ENTRY + ENTRY, "b.toml: reference 2: the key a-2020 appears twice"),
     ],
 )
 def test_a_bibliography_that_cannot_be(text: str, words: str) -> None:

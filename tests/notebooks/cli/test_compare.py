@@ -154,7 +154,7 @@ LOGS = [
     ("time_s,skin_C\n0,30\n\n2,31\n1,31\n", ":5: time_s 1 s does not come after 2 s; times must increase"),
     ("time_s,skin_C\n0,30\n,31\n", ":3: time_s is empty"),
     ("time_s,skin_C\n0,30\n", "1 rows; at least two are needed"),
-    ("time_s,skin_C,skin_C\n0,30,1\n1,30,1\n", ":1: the column skin_C is there twice; remove one of them"),
+    ("time_s,skin_C,skin_C\n0,30,1\n1,30,1\n", ":1: the column skin_C appears twice; remove one of them"),
     ("time_s,display_C\n0,30\n1,30\n", "no column with values in both: bad.csv has display_C; good.csv has skin_C"),
     ("time_s,skin_C\n5,30\n9,30\n", "no two rows at a common time: bad.csv 5–9 s and good.csv 0–2 s; shift time_s"),
     ("time_s,skin_C\n0,30,4,5\n1,30\n2,3,4,5,6\n", "not a table of comma-separated values"),

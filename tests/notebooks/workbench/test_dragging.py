@@ -17,7 +17,7 @@ HEAD = "cue 1\n"
 
 
 def text_of(body: str, head: str = HEAD) -> str:
-    """A text with one icon, one statement a line."""
+    """A text with one icon, one statement per line."""
     return f"{head}icon dip {{\n  {body}\n}}\n"
 
 
@@ -131,7 +131,7 @@ def test_corners_of_a_played_icon_say_where_they_are_moved() -> None:
     handles = handles_of(parse(text)["two"])
     assert [(handle.line, handle.moves_time) for handle in handles] == [(3, True)] + 4 * [(3, False)]
     refused = drag(text, "two", 1, 3.0, 30.0).refused
-    assert refused == "this is played from dip; choose that icon to move its corners"
+    assert refused == "this is played from dip; select that icon to move its corners"
 
 
 def test_handles_of_a_long_repeat_are_capped() -> None:

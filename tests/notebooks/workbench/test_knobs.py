@@ -109,7 +109,7 @@ def test_age_raises_thresholds_and_onset(rig: Rig) -> None:
         ({"contact": -1.0}, "contact resistance stays at 1 ×, −1 × cannot be: rig thenar: contact.resistance"),
         ({"area": float("nan")}, "contact area stays at 9 cm²: nan is no number"),
         ({"area": "big"}, "contact area stays at 9 cm²: big is no number"),
-        ({"site": "nose"}, "site stays at thenar: nose is none of thenar, fingertip, forearm, hand-dorsum"),
+        ({"site": "nose"}, "site stays at thenar: nose is not one of thenar, fingertip, forearm, hand-dorsum"),
         ({"site": 3.0}, "site stays at thenar: 3.0 is none of"),
         ({"age": 200.0}, "age stays at 25 years: an age of 200 years is not covered: give 18 to 100"),
     ],

@@ -84,8 +84,8 @@ def test_empty_cells_are_told(shell: InteractiveShell, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("two-icons", "%%cue: 'two-icons' is no name for a variable; two_icons would do\nusage: %%cue [NAME] [--rig"),
-        ("class", "%%cue: 'class' is no name for a variable\nusage"),
+        ("two-icons", "%%cue: 'two-icons' is not a valid variable name; try two_icons\nusage: %%cue [NAME] [--rig"),
+        ("class", "%%cue: 'class' is not a valid variable name\nusage"),
         ("a b", "%%cue: unrecognized arguments: b\nusage"),
         ("--rigs x", "%%cue: unrecognized arguments: --rigs"),
         ("--rig", "%%cue: argument --rig: expected one argument\nusage"),
@@ -135,7 +135,7 @@ def test_the_line_magic_shows_again(shell: InteractiveShell, capsys: pytest.Capt
     assert len(shell.run_cell("%cue six-icons").result) == 6
     assert "E001 no such file" in failed(shell, "%cue seven-icons", capsys)
     assert failed(shell, "%cue", capsys).startswith(
-        "%cue: say what to show: a variable, a shipped set or a file\nusage"
+        "%cue: name what to show: a variable, a shipped set or a file\nusage"
     )
 
 
