@@ -68,13 +68,17 @@ class Export:
     def __repr__(self) -> str:
         count = f"{len(self.prepared)} icon{'s' * (len(self.prepared) != 1)}"
         size = sum(len(content) for content in self.files.values())
-        said = f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
-        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {said})"
+        summary = (
+            f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
+        )
+        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {summary})"
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to know of the drives before they are played, each with the name of its icon."""
-        return tuple(f"{one.delivery.icon.name}: {text}" for one in self.prepared for text in one.warnings)
+        return tuple(
+            f"{prepared.delivery.icon.name}: {text}" for prepared in self.prepared for text in prepared.warnings
+        )
 
 
 def export(
@@ -138,7 +142,7 @@ def export(
         raise ExportError("there is no icon to export; give at least one")
     goal = None if folder is None else _free(Path(folder))
     ready = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s)
-    refused = tuple((one.delivery.icon.name, refusal) for one in ready for refusal in one.refusals)
+    refused = tuple((cue.delivery.icon.name, refusal) for cue in ready for refusal in cue.refusals)
     barred = [(name, refusal) for name, refusal in refused if not (force and refusal.forcible)]
     files = {} if barred else pack(ready, form)
     if goal is not None:

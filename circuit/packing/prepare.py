@@ -185,7 +185,7 @@ def prepare_set(
         if step is not None:
             step(done, len(icons))
     verdicts = worst_cases(deliveries, pause_s) if deliveries else ()
-    return tuple(_judged(one, verdict) for one, verdict in zip(deliveries, verdicts, strict=True))
+    return tuple(_judged(delivery, verdict) for delivery, verdict in zip(deliveries, verdicts, strict=True))
 
 
 def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:

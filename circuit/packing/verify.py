@@ -9,7 +9,7 @@ from typing import Any, Literal
 from ..program import code_digest, own_version
 from .claims import Claims, claims_of, table_of
 from .digests import digest, digest_of_content
-from .readback import Figures, Told, differences, read_back
+from .readback import Figures, StatedFigures, differences, read_back
 from .sidecar import sealed, sidecar_text
 
 AGAIN = "export the icon again"
@@ -73,10 +73,10 @@ def verify(files: Mapping[str, bytes]) -> Verification:
         about = table_of(files[name]) or {}
         findings += [*_own(name, files[name], about), *_names(name, each, claims), *_parts(name, about)]
         findings += _bound(name, each, files)
-        found, unit, problems = _figures(each.drive, files, about)
+        actual, unit, problems = _figures(each.drive, files, about)
         findings += problems
         icon = about.get("icon")
-        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", found, unit))
+        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", actual, unit))
     findings += _extra(files, claims)
     return Verification(tuple(pairs), tuple(dict.fromkeys(findings)))
 
@@ -132,12 +132,12 @@ def _parts(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
     if digest_of_content(device) != about.get("device_sha256"):
         yield Finding(name, "wrong", "contains another device than the one of its digest (device_sha256)", RESTORE)
     yield from _icon(name, about.get("icon"))
-    made = about.get("program")
-    made = made if isinstance(made, dict) else {}
-    if made.get("version") != own_version() or about.get("thermicon") != made.get("version"):
+    program = about.get("program")
+    program = program if isinstance(program, dict) else {}
+    if program.get("version") != own_version() or about.get("thermicon") != program.get("version"):
         other = f"thermicon {about.get('thermicon')}, this is {own_version()}"
         yield Finding(name, "told", f"was exported by {other}; if it is exported again, the drive may differ")
-    elif made.get("code_sha256") != code_digest():
+    elif program.get("code_sha256") != code_digest():
         yield Finding(
             name,
             "told",
@@ -164,11 +164,11 @@ def _icon(name: str, icon: object) -> Iterator[Finding]:
         yield Finding(name, "wrong", "holds no icon", RESTORE)
         return
     try:
-        found = parse(str(icon.get("text"))).find(str(icon.get("name")))
+        icon_now = parse(str(icon.get("text"))).find(str(icon.get("name")))
     except ValueError:
         yield Finding(name, "told", "contains an icon that this version cannot read")
         return
-    if found is None or found.content_hash != icon.get("content_hash"):
+    if icon_now is None or icon_now.content_hash != icon.get("content_hash"):
         yield Finding(name, "wrong", "contains another icon than the one of its content_hash", RESTORE)
 
 
@@ -179,15 +179,19 @@ def _figures(
     if drive not in files:
         return None, "", ()
     try:
-        told = Told.of(about)
+        stated = StatedFigures.of(about)
     except (LookupError, TypeError, ArithmeticError, ValueError, StopIteration, AttributeError):
         return None, "", (Finding(drive, "told", "is not compared in length and extremes: its sidecar has no figures"),)
     try:
-        found = read_back(files[drive], about)
+        actual = read_back(files[drive], about)
     except ValueError as problem:
-        return None, told.unit, (Finding(drive, "wrong", f"cannot be read as its format ({problem})", RESTORE),)
-    apart = () if found is None else differences(found, told)
-    return found, told.unit, tuple(Finding(drive, "wrong", f"{text}, as its sidecar says", RESTORE) for text in apart)
+        return None, stated.unit, (Finding(drive, "wrong", f"cannot be read as its format ({problem})", RESTORE),)
+    apart = () if actual is None else differences(actual, stated)
+    return (
+        actual,
+        stated.unit,
+        tuple(Finding(drive, "wrong", f"{text}, as its sidecar says", RESTORE) for text in apart),
+    )
 
 
 def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator[Finding]:

@@ -137,7 +137,7 @@ class Datasheet:
         return Extraction(method, seebeck, ohm, theta, self.mean_C, miss, relative)
 
 
-def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
+def at_mean_C(extractions: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
     """α V/K, R Ω and Θ K/W at a mean module temperature, linear between two extractions; one is taken as it is.
 
     Outside the two, the nearer one is used, since no sheet supports an extrapolation; callers report it.
@@ -146,7 +146,7 @@ def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float,
     >>> [round(value, 4) for value in at_mean_C((cool, warm), (cool.mean_C + warm.mean_C) / 2)]
     [0.0495, 1.8598, 1.8503]
     """
-    first, last = min(found, key=lambda one: one.mean_C), max(found, key=lambda one: one.mean_C)
+    first, last = min(extractions, key=lambda one: one.mean_C), max(extractions, key=lambda one: one.mean_C)
     span = last.mean_C - first.mean_C
     share = min(max((mean_C - first.mean_C) / span, 0.0), 1.0) if span > 0 else 0.0
     return (

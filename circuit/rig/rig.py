@@ -109,14 +109,14 @@ class Rig:
     changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        shown = (
+        source = (
             f"driver {self.driver.current_min_A:g} … {self.driver.current_max_A:g} A"
             if self.thermode is None
             else f"thermode {self.thermode.lowest_C:g} … {self.thermode.highest_C:g} °C"
         )
         return (
             f"Rig({self.name!r}, {self.skin.site}, {self.contact.area_m2 * 1e4:g} cm², "
-            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {shown})"
+            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {source})"
         )
 
     def __hash__(self) -> int:

@@ -73,14 +73,14 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
     ]
     if unsure.gain_relative and passes_most_cooling(rig):
         spans[1] = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
-    found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
     for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
         surroundings(rig), itertools.product(*spans)
     ):
         corner = Corner(contact, around[0], gain, around[1], seebeck, conductance, plates, rig)
         if not corner.nominal:
-            found.append(replace(corner, rig=_there(corner)))
-    return tuple(found)
+            corners.append(replace(corner, rig=_there(corner)))
+    return tuple(corners)
 
 
 def passes_most_cooling(rig: Rig) -> bool:

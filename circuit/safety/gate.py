@@ -226,14 +226,14 @@ def gate_set(
 
 
 def _gated(
-    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, held: Limits, pause_s: float | None
+    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, limits: Limits, pause_s: float | None
 ) -> tuple[Gate, ...]:
-    singles = [Single.of(ensemble, drive, rest, held) for drive, rest in drives]
+    singles = [Single.of(ensemble, drive, rest, limits) for drive, rest in drives]
     alone = [single for single in singles if not single.safe]  # never written, so never part of a sequence
     together = [single for single in singles if single.safe]
     gates: dict[int, Gate] = {}
     for group in ([together] if together else []) + [[single] for single in alone]:
-        gates |= zip(map(id, group), _gated_together(group, ensemble, held, pause_s), strict=True)
+        gates |= zip(map(id, group), _gated_together(group, ensemble, limits, pause_s), strict=True)
     return tuple(gates[id(single)] for single in singles)
 
 
@@ -250,14 +250,14 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
         shortest_pause_s(repeating) if singles[0].safe else None
     )  # no pause makes a play safe that is red by itself
     repeats = []
-    for single, own, cycle in zip(singles, tallies, cycles, strict=True):
-        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, limits.session_s)
+    for single, own_tallies, cycle in zip(singles, tallies, cycles, strict=True):
+        checks, plays = worst_of(tally.checks() for tally in own_tallies), plays_in(cycle, limits.session_s)
         repeats.append(Repeated(pause, single.recovery_s, shortest, plays, limits.session_s, checks))
     every = [*(single.checks for single in singles), *(repeated.checks for repeated in repeats)]
     display = [check.value for checks in every for check in checks if check.quantity == "display"]
     reach = (min(display), max(display))
-    for single, repeated, own in zip(singles, repeats, tallies, strict=True):
-        yield _gate(single, repeated, single.demands(repeated, own, reach))
+    for single, repeated, own_tallies in zip(singles, repeats, tallies, strict=True):
+        yield _gate(single, repeated, single.demands(repeated, own_tallies, reach))
 
 
 def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
@@ -277,36 +277,36 @@ def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
     )
 
 
-def _lines(one: Gate) -> Iterator[str]:
-    unsure, again = one.uncertainty, one.repeated
+def _lines(verdict: Gate) -> Iterator[str]:
+    unsure, again = verdict.uncertainty, verdict.repeated
     yield (
-        f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
-        f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
+        f"safety {verdict.colour.upper()}: {verdict.duration_s:.4g} s on {verdict.rig_name} and {ENDING_S:g} s after, "
+        f"in {verdict.scenarios} scenarios ({stated(unsure)}; {', '.join(verdict.after_C)})"
     )
     yield f"repeated plays: {again.text}"
-    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
+    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(verdict, check) for check in verdict.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:
         yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in one.after_C.items())
+    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in verdict.after_C.items())
     yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    if one.drift_C is not None:
-        yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
-    if one.limits.changed:
-        yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
-    if one.limits.loosened:
-        yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
+    if verdict.drift_C is not None:
+        yield f"zero current is not the baseline: in the end it takes the skin to {verdict.drift_C:.1f} °C"
+    if verdict.limits.changed:
+        yield f"limits changed by the rig: {'; '.join(verdict.limits.changed)}"
+    if verdict.limits.loosened:
+        yield f"limits LOOSENED: {'; '.join(verdict.limits.loosened)}. Reason given: {verdict.limits.reason}"
     if claims := tightened(unsure):
         yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in one.demands.faults:
+    for fault in verdict.demands.faults:
         yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
     yield WHAT_IT_IS_NOT
 
 
-def _row(one: Gate, check: Check) -> tuple[str, ...]:
+def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
     mark = "ok" if check.passed else ("RED" if check.severity == "hard" else "amber")
     unit = "" if check.unit == "1" else f" {check.unit}"
-    late = check.time_s - one.duration_s
+    late = check.time_s - verdict.duration_s
     when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
     side = "≤" if check.upper else "≥"
     limit = f"{side} {signed(check.limit, '.4g')}{unit} {check.severity}"

@@ -75,7 +75,7 @@ class PlayMap:
     def fixed_point(self) -> tuple[Array, npt.NDArray[np.bool_]]:
         """Nodes (rigs, m) that come back to themselves, and whether all others tend to them (rigs,)."""
         point = _solved(self.matrix, self.constant)
-        return point, np.array([_settles(one) for one in self.matrix]) & np.isfinite(point).all(axis=1)
+        return point, np.array([_settles(matrix) for matrix in self.matrix]) & np.isfinite(point).all(axis=1)
 
 
 def _settles(matrix: Array) -> bool:
@@ -119,10 +119,10 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
 
 def _solved(matrix: Array, constant: Array) -> Array:
     """Solutions (rigs, m) of x = matrix·x + constant; NaN where there is none."""
-    found = np.full_like(constant, np.nan)
-    for rig, (one, offset) in enumerate(zip(matrix, constant, strict=True)):
+    solution = np.full_like(constant, np.nan)
+    for rig, (rig_matrix, offset) in enumerate(zip(matrix, constant, strict=True)):
         try:
-            found[rig] = np.linalg.solve(np.eye(len(offset)) - one, offset)
+            solution[rig] = np.linalg.solve(np.eye(len(offset)) - rig_matrix, offset)
         except np.linalg.LinAlgError:
             continue
-    return found
+    return solution

@@ -109,7 +109,7 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
     line and the nearest name.
     """
     where = Path(path)
-    found: list[str] = []
+    names: list[str] = []
     known: set[str] = set()
     for line, name in _words(read_text(where, "file of an order", ORDER_MB, SessionError)):
         if name not in known:
@@ -117,11 +117,11 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
                 known.add(icons[name].name)
             except KeyError as problem:
                 raise SessionError(f"{where}:{line}: {problem}") from None
-        found.append(name)
-    if not found:
+        names.append(name)
+    if not names:
         raise SessionError(f"{where}: there is no icon in this order, only comments; write one name per line")
-    _check_count(len(found), str(where))
-    return tuple(found)
+    _check_count(len(names), str(where))
+    return tuple(names)
 
 
 def order_text(plan: SessionPlan) -> str:

@@ -234,13 +234,13 @@ class _Stage:
         ends = periods(self.nominal, self.end_s)
         if way == "display" and control == "skin":
             rate = self.nominal.driver.update_Hz
-            shown = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
-            targets, control = np.array([display[1 : len(ends) + 1] for display in shown]), "display"
-            bases = [float(display[0]) for display in shown]
+            displays = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
+            targets, control = np.array([display[1 : len(ends) + 1] for display in displays]), "display"
+            bases = [float(display[0]) for display in displays]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        held = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
-        lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
+        steady = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
         states = [state for _, state in lanes]
         if self.nominal.controller is None:
             currents = self._follow(control, targets, states)
@@ -277,11 +277,11 @@ class _Stage:
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
         times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
-        held = np.concatenate([currents, currents[:, -1:]], axis=1)
+        extended = np.concatenate([currents, currents[:, -1:]], axis=1)
         bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
-        intervals = cut(self.rows, times, held, held=True)
+        intervals = cut(self.rows, times, extended, held=True)
         out = run_forward(bank, rig_of, cue_of, intervals, bank.states(states), self.probes)
         return out.reshape(len(self.probes), *shape, len(self.rows))

@@ -185,10 +185,10 @@ def _places(header: list[str], where: Path) -> list[int]:
             f"this one does is in the sidecar beside it, under predicted"
         )
     if missing:
-        found = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
+        present = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
         raise DriveError(
             f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "
-            f"(found {found or 'nothing'})"
+            f"(found {present or 'nothing'})"
         )
     return [header.index(name) for name in COLUMNS]
 

@@ -141,7 +141,7 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
-        return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
+        return tuple(simulate(cue, rig, rate_Hz=rate_Hz, tail_s=tail) for cue, tail in zip(icons, tails, strict=True))
     plans, rows, bank = design_many(icons, rig, end_s), rows_until(end_s, rate_Hz), bank_of(rig)
     lanes = np.arange(len(icons), dtype=np.int64)
     intervals = cut(rows, plans[0].drive.time_s, np.array([plan.drive.current_A for plan in plans]), held=True)
@@ -234,21 +234,21 @@ def _run(
     rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
     outcome: Outcome | None, readings: tuple[Index, Array] | None,
 ) -> tuple[Trace, Array]:  # fmt: skip
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     parts = between(rows, rig)
     fine = divided(rows, parts)
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
-    own = readings_of(rig)
-    recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
+    own_probes = readings_of(rig)
+    recorded = run_forward(bank, lane, lane, intervals, bank.states([state]), extra=joined(own_probes, readings))[:, 0]
     probes, others = recorded[: len(RECORDED), ::parts], recorded[len(RECORDED) :]
-    listed = 0 if own is None else len(own[0])
+    listed = 0 if own_probes is None else len(own_probes[0])
     trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
     return trace, others[listed:, ::parts]
 
 
 def _trace(
     rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
-    probes: Array, own: tuple[tuple[str, Array], ...],
+    probes: Array, own_probes: tuple[tuple[str, Array], ...],
 ) -> Trace:  # fmt: skip
     """The trace of RECORDED quantities (probes, rows); RigError where they are not physical."""
     temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
@@ -278,7 +278,7 @@ def _trace(
         current_A=current,
         voltage_V=voltage,
         target_C=target,
-        probes=own,
+        probes=own_probes,
         limits=rig.limits,
         **values,
     )
@@ -290,19 +290,19 @@ def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
 
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
     """Sentences for a drive that exceeds the driver."""
-    driver, found = rig.driver, []
-    asked = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
-    if asked.max() > 1e-9:
-        most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
-        found.append(
+    driver, sentences = rig.driver, []
+    excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    if excess_A.max() > 1e-9:
+        most, since = int(np.argmax(excess_A)), float(rows[int(np.argmax(excess_A > 1e-9))])
+        sentences.append(
             f"the drive needs {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
     needed = np.abs(voltage) - driver.voltage_limit_V
     if needed.max() > 1e-6:
         most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
-        found.append(
+        sentences.append(
             f"the drive needs {voltage[most]:.3g} V at {rows[most]:.2f} s; this driver gives at most "
             f"{driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
         )
-    return tuple(found)
+    return tuple(sentences)

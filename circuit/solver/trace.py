@@ -79,11 +79,11 @@ class Outcome:
         """Why the target was missed, in one sentence; None where it was reached."""
         if self.reached:
             return None
-        held = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
+        limits = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
         late = f"; its step at {self.late_s[0]:.2f} s does not arrive in time" if self.late_s else ""
         return (
             f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s{late}"
-            f"{f', limited by the {held}' if held else ''}"
+            f"{f', limited by the {limits}' if limits else ''}"
         )
 
 
@@ -170,12 +170,12 @@ class Trace:
             array.setflags(write=False)
 
     def __repr__(self) -> str:
-        said = "" if self.outcome is None or self.outcome.reached else ", target missed"
-        said += ", beyond the driver" if self.beyond else ""
+        notes = "" if self.outcome is None or self.outcome.reached else ", target missed"
+        notes += ", beyond the driver" if self.beyond else ""
         drive = f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A" if self.has_current else "a thermode"
         return (
             f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
-            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, {drive}{said})"
+            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, {drive}{notes})"
         )
 
     def _repr_html_(self) -> str:
@@ -277,25 +277,25 @@ def judge(
     at the end of the run does not count as late.
     """
     miss = reached_C - target_C
-    close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
+    close, counted = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
     ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []
     for begin, until in steps_s:
         window = np.flatnonzero((ends > begin + 1e-9) & (ends <= until + 1e-9))
         arrived = window[close[window]]
-        asked[window[window < arrived[0]] if len(arrived) else window] = False
+        counted[window[window < arrived[0]] if len(arrived) else window] = False
         if len(arrived):
             took = max(took, float(ends[arrived[0]]) - begin)
         elif len(window) and (math.isfinite(until) or ends[-1] - begin >= LAST_S):
             late.append(begin)
-            asked[window[-1]] = True
+            counted[window[-1]] = True
         elif not len(window) and until < ends[-1]:  # it is over before the driver's next update
             late.append(begin)
-    if not asked.any():
+    if not counted.any():
         return Outcome(not late, 0.0, 0.0, 0.0, limits, took, tuple(late))
-    worst = int(np.argmax(np.where(asked, np.abs(miss), -1.0)))
-    over = asked & ~close
+    worst = int(np.argmax(np.where(counted, np.abs(miss), -1.0)))
+    over = counted & ~close
     largest = float(miss[worst])
     reached = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
-    rms = float(np.sqrt(np.mean(miss[asked] ** 2)))
+    rms = float(np.sqrt(np.mean(miss[counted] ** 2)))
     slowest = took if steps_s else None
     return Outcome(bool(reached and not late), largest, (worst + 1) * period_s, rms, limits, slowest, tuple(late))

@@ -60,9 +60,9 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
     layers = len(rig.skin.layers)
     outer = max(1, layers - 3)
     fixed = [(1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20)]
-    own = rig.skin.elements
-    if own is not None and own not in fixed:
-        fixed.insert(0, own)
+    own_elements = rig.skin.elements
+    if own_elements is not None and own_elements not in fixed:
+        fixed.insert(0, own_elements)
     return (
         SHIPPED,
         Mesh("twice as coarse", 2 * FIRST_CELL_M, 2 * CELL_GROWTH),
@@ -129,14 +129,14 @@ class MeshStudy:
 
     def rows(self) -> tuple[MeshRow, ...]:
         """One row for each mesh."""
-        found = []
+        rows = []
         for k, mesh in enumerate(self.meshes):
             wrong = np.abs(self.error_K[k])
             at = wrong.argmax(axis=1)
             worst = [(float(wrong[d, at[d]]), float(self.time_s[at[d]])) for d in range(2)]
             parts = (*self.part(k, 0.5), *self.part(k, 4.0))
-            found.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
-        return tuple(found)
+            rows.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
+        return tuple(rows)
 
     def to_frame(self) -> pd.DataFrame:
         """Return the rows as a table, with stimulus and way."""
@@ -209,9 +209,9 @@ def mesh_study(
     runs = []
     for network in networks:
         drive, state = plan.on(network) if way == "current" else _led(rig, cue, network, plan.end_s)
-        bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+        bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
         intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
-        runs.append(run_forward(bank, one, one, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
+        runs.append(run_forward(bank, lane, lane, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
     reference, display = runs[-2][:2], runs[-2][2]
     return MeshStudy(
         rig.name,
@@ -271,9 +271,9 @@ def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[D
     assert isinstance(cue, Icon)
     control, base, ends = cue.context.control, baseline_C(cue, rig), periods(rig, end_s)
     state = state_under_current(network, holding_current_A(network, control, base))
-    bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+    bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
     target = target_at(cue, base, ends)[np.newaxis]
     currents, _, _ = run_follow(
-        bank, one, one, 1.0 / rig.driver.update_Hz, target, control == "skin", bank.states([state])
+        bank, lane, lane, 1.0 / rig.driver.update_Hz, target, control == "skin", bank.states([state])
     )
     return Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), state

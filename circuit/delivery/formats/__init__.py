@@ -36,8 +36,8 @@ def load_format(name: str) -> Format:
     """
     if name not in MODULES:
         raise FormatError(f"{name}: no such format; {nearest(name, MODULES, most=2)}")
-    found: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
-    return found
+    form: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
+    return form
 
 
 __all__ = ["Format", "FormatError", "format_names", "load_format"]
