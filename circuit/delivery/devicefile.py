@@ -206,8 +206,8 @@ def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
         return f"unit = {stated!r}: must be {required}; state it in {required}"
     either = " or ".join(f'"{drive}"' for drive in others)
     return (
-        f'unit = {stated!r}: must be {required} for a device with driven_by = "{driven_by}"; state it in {required}, or '
-        f"set driven_by to {either} if {stated} is what it puts out"
+        f'unit = {stated!r}: must be {required} for a device with driven_by = "{driven_by}"; state it in {required}, '
+        f"or set driven_by to {either} if {stated} is what it puts out"
     )
 
 

@@ -143,7 +143,7 @@ class DesignModel:
 
     def _typed(self, text: object) -> None:
         if not isinstance(text, str) or len(text) > MOST_LETTERS:
-            raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it stays as it was")
+            raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it was not changed")
         self.history = self.history.typed(text, time.monotonic())
         self._draw()
 

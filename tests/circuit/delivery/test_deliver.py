@@ -268,7 +268,7 @@ class TestSetpoints:
         text = "cue 1\nset s { control skin\n baseline 32 °C }\nicon a { cool by 30 °C at 9 °C/s\n hold for 2 s }\n"
         outcome = deliver(parse(text)["a"], RIG, self.THERMODE).outcome
         assert outcome is not None
-        assert "held back by the range of the thermode" in str(outcome.reason)
+        assert "limited by the range of the thermode" in str(outcome.reason)
 
     def test_cooling_and_warming_of_equal_shape_take_equal_times(self) -> None:
         text = (

@@ -34,7 +34,7 @@ LAGS_S = (0.12, 0.21, 0.32)
 
 
 @dataclass
-class StatedFigures:
+class Told:
     """What a part counted, what of it was unsafe, and margins (K, or tenths of a rate or dose) of what was refused."""
 
     counts: Counter[str] = field(default_factory=Counter)
@@ -43,7 +43,7 @@ class StatedFigures:
     refused_though_safe: list[str] = field(default_factory=list)
     seconds: Counter[str] = field(default_factory=Counter)
 
-    def add(self, other: StatedFigures) -> None:
+    def add(self, other: Told) -> None:
         """Add another part."""
         self.counts += other.counts
         self.seconds += other.seconds
@@ -89,9 +89,9 @@ def as_shown(rig: Json, course: Course, pauses: list[float], rng: np.random.Gene
     shown(skin, levels, course.step_s / fine, pauses, (), worst, rates=False, held=True)
 
 
-def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: int = LOOKED_AT) -> StatedFigures:
+def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: int = LOOKED_AT) -> Told:
     """Judge the drives of a part, and replay all that is written, and some of what is not."""
-    found, number = StatedFigures(), 0
+    found, number = Told(), 0
     with tempfile.TemporaryDirectory() as folder:
         while found.counts["judged"] < count:
             rng = np.random.default_rng([21, part, number])
@@ -110,9 +110,7 @@ def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: i
     return found
 
 
-def _follow(
-    case: Case, form: Format, found: StatedFigures, rng: np.random.Generator, part: int, look: int, kind: str
-) -> None:
+def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, part: int, look: int, kind: str) -> None:
     safe = [one for one in case.ready if all(each.forcible for each in one.refusals)]
     begun = time.process_time()
     for one in case.ready:

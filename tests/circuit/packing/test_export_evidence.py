@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from tests.circuit.packing.adversarial import some_case
-from tests.circuit.packing.evidence import PER_PART, StatedFigures, run_part
+from tests.circuit.packing.evidence import PER_PART, Told, run_part
 from tests.circuit.packing.exported_files import read_file, sidecar_in
 from tests.circuit.packing.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.packing.spice_replay import by_ngspice
@@ -60,7 +60,7 @@ def test_what_a_weakened_gate_writes_is_found_unsafe() -> None:
 @pytest.mark.slow
 def test_nothing_unsafe_is_written() -> None:
     count = min(DRIVES, PER_PART)
-    told = StatedFigures()
+    told = Told()
     with ProcessPoolExecutor(2) as pool:
         for part in pool.map(partial(run_part, count=count), range(max(1, DRIVES // count))):
             told.add(part)

@@ -26,7 +26,7 @@ def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
     assert lines[:4] == [
         "cooling-step",
         "A  thenar: 8 s, reached (everywhere within 1 mK)",
-        "B  shani2021: 8 s, NOT reached: misses its target by 0.42 K at 2.00 s, held back",
+        "B  shani2021: 8 s, NOT reached: misses its target by 0.42 K at 2.00 s, limited",
         "by the current limit from 0.92 s",
     ]
     assert lines[5].split() == ["B", "−", "A", "largest", "at", "rms", "mean"]

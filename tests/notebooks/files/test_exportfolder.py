@@ -118,9 +118,9 @@ class TestFolders:
     @pytest.mark.parametrize(
         ("prepare", "words"),
         [
-            (lambda at: (at / "sub").mkdir(), r"it holds a folder, sub, .*give a folder of its own, such as -o drives"),
-            (lambda at: (at / "link").symlink_to("a"), "it holds a link, link"),
-            (lambda at: os.mkfifo(at / "pipe"), "it holds a device or pipe, pipe"),
+            (lambda at: (at / "sub").mkdir(), r"it contains a folder, sub, .*give a folder of its own, such as -o"),
+            (lambda at: (at / "link").symlink_to("a"), "it contains a link, link"),
+            (lambda at: os.mkfifo(at / "pipe"), "it contains a device or pipe, pipe"),
         ],
     )
     def test_what_is_no_plain_file_is_told(self, tmp_path: Path, prepare: Callable[[Path], None], words: str) -> None:
@@ -204,7 +204,7 @@ class TestFiles:
     def test_an_older_drive_that_was_edited_does_not_go(self, tmp_path: Path) -> None:
         publish(drive("a", b"1"), tmp_path)
         (tmp_path / "a.csv").write_bytes(b"edited")
-        with pytest.raises(OutputError, match=r"a\.csv is not what its sidecar a\.json says any more"):
+        with pytest.raises(OutputError, match=r"a\.csv no longer matches its sidecar a\.json"):
             publish(drive("a", b"2", ".tdms"), tmp_path, replace=True)
         assert (tmp_path / "a.csv").read_bytes() == b"edited"
 

@@ -112,12 +112,12 @@ def test_a_rig_may_be_a_file_with_blanks_in_its_name(
     path = tmp_path / "my rig.toml"
     path.write_text(resources.files("thermicon.circuit").joinpath("rigs/thenar.toml").read_text(encoding="utf-8"))
     assert shell.run_cell(f'%%cue dips --rig "{path}"\n{GOOD}').success
-    assert "can do what dips asks for" in capsys.readouterr().out
+    assert "can hold every level of dips" in capsys.readouterr().out
 
 
 def test_a_rig_tells_what_it_cannot_do(shell: InteractiveShell, capsys: pytest.CaptureFixture[str]) -> None:
     shell.run_cell("%%cue --rig thenar\n" + GOOD)
-    assert "thenar can do what cues asks for, taken statically" in capsys.readouterr().out
+    assert "thenar can hold every level of cues (static check)" in capsys.readouterr().out
     result = shell.run_cell(
         "%%cue hot --rig thenar\nset { control current }\nicon hot { to 5 A at 1 A/s; return over 1 s }"
     )

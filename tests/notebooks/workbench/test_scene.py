@@ -145,7 +145,7 @@ def test_an_icon_that_is_renamed_is_followed(dip: Scene, rig: Rig) -> None:
     before = scene(two, rig, "rise")
     made = scene(two.replace("rise", "swell"), rig, "rise", before=before)
     assert made.icon == "swell"
-    assert made.notes[0] == "rise is called swell now"
+    assert made.notes[0] == "rise is now called swell"
     gone = scene(DIP, rig, "rise", before=before)
     assert gone.icon == "dip"
     assert gone.notes[0] == "no icon is called rise; dip is shown"
@@ -172,7 +172,7 @@ def test_what_is_not_reached_says_why_and_when(rig: Rig) -> None:
     made = scene("cue 1\nicon deep { cool by 9 °C at 10 °C/s; hold for 4 s; return at 1 °C/s }\n", rig)
     assert made.drawing is not None
     assert made.notes[0].startswith("deep is not reached: it misses its target by ")
-    assert made.notes[0].endswith("held back by the current limit from 0.00 s")
+    assert made.notes[0].endswith("limited by the current limit from 0.00 s")
     (missed,) = made.drawing.missed
     assert missed.label == "unreachable: current limit"
     assert missed.from_s < 0.1
