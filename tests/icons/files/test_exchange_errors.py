@@ -80,7 +80,7 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
         ),
         (
             '{"do": "cool", "by_K": "6 K", "duration_s": 1}',
-            f'{PATH}.by_K: "6 K": a number is needed in K|without quotat',
+            f'{PATH}.by_K: "6 K": a number is needed in K|no quotation',
         ),
         ('{"do": "cool", "by_K": true, "duration_s": 1}', "true: a number is needed in K"),
         ('{"do": "cool", "by_K": -6, "duration_s": 1}', f"4:24  E202|{PATH}.by_K: -6 K: a change has a positive size"),
