@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -174,27 +172,3 @@ def _unreadable(document: dict[str, Any]) -> str | None:
                 f"{clean_line(key[:60])}: a whole number of more than 64 bits; write it as a decimal number, as in 1e20"
             )
     return None
-
-
-def signed(value: float, form: str = "g") -> str:
-    """Return a number as people write it, with a real minus sign.
-
-    >>> signed(-0.25), signed(-2.956, ".2f"), signed(3.0)
-    ('−0.25', '−2.96', '3')
-    """
-    return f"{value:{form}}".replace("-", "−")
-
-
-def nearest(word: str, known: Iterable[str], most: int = 3) -> str:
-    """Return a "did you mean …" sentence with the nearest known words, or one that lists them all.
-
-    >>> nearest("thenr", ["thenar", "shani2021"])
-    'did you mean thenar?'
-    >>> nearest("xyz", ["thenar", "shani2021"])
-    'known: shani2021, thenar'
-    """
-    names = sorted(known)
-    close = difflib.get_close_matches(word, names, n=most, cutoff=0.55)
-    if close:
-        return f"did you mean {' or '.join(close)}?"
-    return f"known: {', '.join(names)}" if len(names) <= 12 else f"known: {', '.join(names[:12])}, …"

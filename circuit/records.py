@@ -6,13 +6,14 @@ quantity, a unit, a source and a value (or an interval), and the conditions unde
 
 from __future__ import annotations
 
-import difflib
 import math
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Protocol
+
+from thermicon.icons.near_words import did_you_mean
 
 Plain = str | float
 USES = ("calibrate", "predict", "assumed", "reference")
@@ -100,7 +101,7 @@ class Record:
         """Value of a further column of this table."""
         known = dict(self.extra)
         if key not in known:
-            raise RecordError(f"{self.quantity}: no column {key!r}{_nearest(key, known)}")
+            raise RecordError(f"{self.quantity}: no column {key!r}; {did_you_mean(key, known)}")
         return known[key]
 
     def __repr__(self) -> str:
@@ -145,7 +146,7 @@ class Table:
         records = [r for r in self.records if r.quantity == quantity]
         if not records:
             known = {r.quantity for r in self.records}
-            raise RecordError(f"{self.name}: no quantity {quantity!r}{_nearest(quantity, known)}")
+            raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, known)}")
         keys = {"channel": channel, "site": site, "method": method, "use": use, **(where or {})}
         for key, value in keys.items():
             if value == "":
@@ -153,8 +154,8 @@ class Table:
             known_values = {str(_field(r, key)) for r in records}
             matching = [r for r in records if _matches(_field(r, key), value, key)]
             if not matching:
-                hint = _nearest(str(value), known_values)
-                raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {value!r}{hint}")
+                hint = did_you_mean(str(value), known_values)
+                raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {value!r}; {hint}")
             records = matching
         return tuple(records)
 
@@ -223,7 +224,7 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
     further: list[tuple[str, Plain]] = []
     for key, value in entry.items():
         if key not in field_names and key not in declared:
-            raise RecordError(f"{place}: unknown key {key!r}{_nearest(key, [*field_names, *declared])}")
+            raise RecordError(f"{place}: unknown key {key!r}; {did_you_mean(key, [*field_names, *declared])}")
         if isinstance(value, bool) or not isinstance(value, str | int | float):
             raise RecordError(f"{place}: {key} must be a number or a text")
         checked: Plain = value if isinstance(value, str) else float(value)
@@ -265,14 +266,6 @@ def _field(record: Record, key: str) -> Plain:
 
 def _matches(stored: Plain, requested: Plain, key: str) -> bool:
     return stored == requested or (key == "channel" and stored == "both")
-
-
-def _nearest(word: str, known: Iterable[str]) -> str:
-    choices = sorted(k for k in known if k)
-    close = difflib.get_close_matches(word, choices, n=1, cutoff=0.5)
-    if close:
-        return f": did you mean {close[0]!r}?"
-    return f": there is {', '.join(map(repr, choices[:12]))}" if choices else ""
 
 
 def _toml(value: Plain) -> str:

@@ -15,7 +15,8 @@ from .language.layout import format_text
 from .files.exchange import from_json, to_json
 from .files.hjif import to_hjif
 from .recordings.recorded import from_csv
-from .papers.cite import bibtex, methods
+from .papers.bibtex import bibtex
+from .papers.methods import methods
 from .model.builders import back, cool, current, hold, play, ramp, repeat, rest, total, warm
 from .model.wave_builders import pulse, sawtooth, sine, square, step, triangle
 

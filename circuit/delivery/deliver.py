@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.number_text import signed
 
 from ..arrays import Array
-from ..inputs import signed
 from ..rig.rig import Rig
 from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive

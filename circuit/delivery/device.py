@@ -9,7 +9,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..inputs import nearest, read_text
+from thermicon.icons.near_words import did_you_mean
+
+from ..inputs import read_text
 from ..records import Record
 from .devicefile import DeviceError, DrivenBy, read_device_table, records_of
 
@@ -89,7 +91,7 @@ class Device:
         if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
             return _build(read_text(path, "device file", 1, DeviceError), str(path))
         if str(source) not in names:
-            raise DeviceError(f"{source}: no such device; {nearest(str(source), names)}")
+            raise DeviceError(f"{source}: no such device; {did_you_mean(str(source), names)}")
         return _shipped(str(source))
 
     def record(self, quantity: str) -> Record | None:

@@ -8,16 +8,17 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
+from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.number_text import signed
+
 from ..inputs import (
     LONGEST_NAME,
     TEXT_FAULT,
     InputError,
-    nearest,
     one_line,
     paragraph,
     quoted,
     read_toml,
-    signed,
 )
 from ..records import Record, RecordError
 
@@ -164,7 +165,7 @@ def _faults(table: DeviceTable) -> list[str]:
     for place, record in enumerate(table.record):
         where = f"record.{place} ({record.quantity})"
         if record.quantity not in UNITS and record.quantity not in UNITS_BY_DRIVE:
-            faults.append(f"{where}: no such quantity; {nearest(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
+            faults.append(f"{where}: no such quantity; {did_you_mean(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
             continue
         if fault := _unit_fault(record, table.driven_by):
             faults.append(f"{where}: {fault}")
@@ -246,7 +247,7 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
         return f"{subject}: {context['fault']}"
     if kind == "extra_forbidden":
         table = RecordTable if error["loc"][0] == "record" else DeviceTable
-        return f"{key}: unknown key; {nearest(str(error['loc'][-1]), table.model_fields)}"
+        return f"{key}: unknown key; {did_you_mean(str(error['loc'][-1]), table.model_fields)}"
     if kind == "missing":
         return f"{key} is missing; add it"
     if kind == "literal_error":

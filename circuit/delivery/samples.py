@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from thermicon.icons.number_text import signed
+
 from ..arrays import Array
-from ..inputs import signed
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.inverse import Design

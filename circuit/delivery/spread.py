@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 from ..arrays import Array
 from ..safety.corners import corners_of
 from ..solver.batch_inputs import Bank, cut, run_forward
@@ -30,7 +32,7 @@ class OpenLoopSpread:
     step_K: tuple[float, float]
 
     def __str__(self) -> str:
-        step = " … ".join(f"{value:+.1f}" for value in self.step_K).replace("-", "−")
+        step = " … ".join(signed(value, "+.1f") for value in self.step_K)
         low, high = self.baseline_C
         return (
             f"open loop: with a module that was not measured the display may rest at {low:.1f} … {high:.1f} °C and "

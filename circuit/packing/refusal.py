@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from thermicon.icons.number_text import signed
+
 from ..delivery.setpoints import Setpoints
-from ..inputs import signed
 from ..rig.rig import Rig
 from ..safety.checks import more_and_cure
 from ..solver.delivery_deviation import DeliveryDeviation, loss_limit

@@ -13,12 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.samples import Samples
 from ..delivery.setpoints import Setpoints
 from ..delivery.temperatures import follow_samples
 from ..delivery.thermode import display_of, lag_of
-from ..inputs import signed
 from ..rig.rigfile import RigError
 from ..safety.checks import Check, worst_of
 from ..safety.corners import corners_of

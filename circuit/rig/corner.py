@@ -7,7 +7,8 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from ..inputs import signed
+from thermicon.icons.number_text import signed
+
 from .module import ZERO_C_IN_K, Peltier
 from .modules import PARAMETERS
 from .parts import HeatSink

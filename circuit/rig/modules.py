@@ -9,7 +9,8 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from ..inputs import nearest
+from thermicon.icons.near_words import did_you_mean
+
 from ..records import Record, RecordError, Table, load_records
 from .datasheet import Datasheet, Extraction, at_mean_C
 from .module import Peltier
@@ -127,7 +128,7 @@ def load_module(name: str) -> tuple[Datasheet, ...]:
 
 def _records(name: str) -> list[Record]:
     if name not in module_names():
-        raise RecordError(f"{name}: no such module; {nearest(name, module_names())}")
+        raise RecordError(f"{name}: no such module; {did_you_mean(name, module_names())}")
     return [record for record in module_table() if record.get("module") == name]
 
 

@@ -10,7 +10,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..inputs import nearest, read_text
+from thermicon.icons.near_words import did_you_mean
+
+from ..inputs import read_text
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import (
@@ -142,7 +144,7 @@ class Rig:
             text = read_text(path, "rig file", 1, RigError)
             return _build(parse_toml(text, str(path)), str(path))
         if str(source) not in names:
-            raise RigError(f"{source}: no such rig; {nearest(str(source), names)}")
+            raise RigError(f"{source}: no such rig; {did_you_mean(str(source), names)}")
         return _shipped(str(source))
 
     def save(self, path: str | Path) -> None:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
+from thermicon.icons.near_words import did_you_mean, nearest_words
+
 from ..inputs import (
     LONGEST_NAME,
     TEXT_FAULT,
     InputError,
-    nearest,
     one_line,
     paragraph,
     quoted,
@@ -350,10 +350,10 @@ def unknown_key(key: str) -> str:
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
-    close = difflib.get_close_matches(name, beside, n=2, cutoff=0.6)
+    close = nearest_words(name, beside, 2)
     if close:
         return f"{key}: unknown key; did you mean {' or '.join(place + dot + other for other in close)}?"
-    return f"{key}: unknown key; {nearest(key, known if dot and place not in known else beside)}"
+    return f"{key}: unknown key; {did_you_mean(key, known if dot and place not in known else beside)}"
 
 
 def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:

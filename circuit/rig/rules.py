@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 
-from ..inputs import signed
+from thermicon.icons.number_text import signed
+
 from ..records import Record, Table, load_records
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4

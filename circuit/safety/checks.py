@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 
-from ..inputs import signed
+from thermicon.icons.number_text import signed
 
 LEVEL = 1e-6
 """Within this distance, in its unit, the extreme counts as reached: a held level has no unique latest row."""

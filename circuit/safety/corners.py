@@ -13,7 +13,8 @@ import itertools
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 
-from ..inputs import signed
+from thermicon.icons.number_text import signed
+
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
 from ..rig.uncertainty import WORDS

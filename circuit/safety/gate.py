@@ -7,7 +7,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
-from ..inputs import signed
+from thermicon.icons.number_text import signed
+
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
-from ..inputs import nearest
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.simulate import simulate_current
@@ -78,7 +78,7 @@ def play_session(
     known = {icon.name: icon for icon in icons if icon.name in planned}
     for name in plan.names:
         if name not in known:
-            raise SessionError(f"the plan names {name}, which is not among the icons; {nearest(name, known)}")
+            raise SessionError(f"the plan names {name}, which is not among the icons; {did_you_mean(name, known)}")
     played = drive_of(plan, known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     rules = rig.limits if limits is None else limits

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 from ..arrays import Array, Index
-from ..inputs import signed
 from ..rig.rules import Limits, Rule
 from ..solver.batch_inputs import Intervals, State, run_on
 from ..solver.drive import Drive

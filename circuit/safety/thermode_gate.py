@@ -7,8 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 from ..arrays import Array
-from ..inputs import signed
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, colour_of, findings_of, worst_of

@@ -103,17 +103,6 @@ class Drive:
         form = "held" if self.held else "linear"
         return f"Drive({len(self.time_s)} rows, {self.time_s[-1]:g} s, {low:g} … {high:g} A, {form})"
 
-    @staticmethod
-    def of_command(
-        time_s: Sequence[float] | Array, command_V: Sequence[float] | Array, gain_A_per_V: float, held: bool = False
-    ) -> Drive:
-        """Return the drive that a command voltage produces through a driver's transconductance.
-
-        >>> Drive.of_command([0, 1], [1.0, 5.0], 0.1).current_A
-        array([0.1, 0.5])
-        """
-        return Drive(time_s, np.asarray(command_V, dtype=np.float64) * gain_A_per_V, held)
-
     def at(self, time_s: Array) -> Array:
         """Current in A at times in s; at a jump, the current after it."""
         if self.held:

@@ -6,6 +6,7 @@ from functools import cache
 from importlib import resources
 
 from ..model.errors import TITLES, CueErrors
+from ..near_words import nearest_words
 
 _HEADINGS = {"E0": "The file as a whole", "E1": "Words, numbers and units", "E2": "Meaning"}
 
@@ -106,11 +107,9 @@ def page() -> str:
 
 
 def _nearest(wanted: str) -> list[str]:
-    from difflib import get_close_matches
-
     titles = {title.upper(): code for code, title in TITLES.items()}
-    by_title = [titles[title] for title in get_close_matches(wanted, list(titles), n=2)]
-    return by_title or get_close_matches(wanted, list(TITLES), n=2, cutoff=0.0)
+    by_title = [titles[title] for title in nearest_words(wanted, titles, 2)]
+    return by_title or nearest_words(wanted, TITLES, 2, cutoff=0.0)
 
 
 def _indented(text: str) -> str:

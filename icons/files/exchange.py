@@ -6,7 +6,6 @@ from dataclasses import fields
 from typing import Any
 
 from ..model.context import Metadata
-from ..model.errors import MOST_ERRORS, CueErrors
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet
@@ -83,39 +82,20 @@ def from_json(text: str | bytes, file: str = "<json>") -> IconSet:
     ------
     CueErrors
         With every error: E011 where the text is not JSON, E012 where it is not a cue set, otherwise the codes of cue
-        files. Positions are lines and columns of the JSON text.
+        files. Positions are paths in the JSON text.
 
     Examples
     --------
+    >>> from thermicon.icons import CueErrors
     >>> try:
     ...     from_json('{"format": "thermicon cue", "version": 1, "icon": []}', "a.json")
     ... except CueErrors as problem:
     ...     print(problem.errors[0].code, problem.errors[0].what)
     E012 the file: "icons" is missing
     """
-    from pydantic import ValidationError
+    from .json_reader import read_json
 
-    from ..language.source import Source
-    from .json_messages import finding
-    from .json_reader import Reader
-    from .json_schema import CueTable
-    from .jsonplaces import decode_json, read_json
-
-    source = Source(file, decode_json(text, file))
-    document, places = read_json(source)
-    try:
-        table = CueTable.model_validate(document)
-    except ValidationError as error:
-        told = error.errors(include_url=False)
-        findings = sorted((finding(each, document, places) for each in told), key=lambda one: one.start)
-    else:
-        reader = Reader(source, places, table)
-        icons = reader.icons()
-        if icons is not None:
-            return icons
-        findings = sorted(reader.findings, key=lambda one: one.start)
-    errors = tuple(source.error(each) for each in findings[:MOST_ERRORS])
-    raise CueErrors(errors, len(findings) - len(errors))
+    return read_json(text, file)
 
 
 def _icon(entry: Icon | Family) -> dict[str, Any]:

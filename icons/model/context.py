@@ -86,7 +86,7 @@ class Metadata:
     licence
         Licence of the file.
     tags
-        Words for finding it.
+        Words for finding it, each once.
 
     Raises
     ------
@@ -108,7 +108,7 @@ class Metadata:
     def __post_init__(self) -> None:
         if isinstance(self.tags, str):
             raise ValueError(f"tags must be a tuple of texts, not the text {self.tags!r}")
-        object.__setattr__(self, "tags", tuple(self.tags))
+        object.__setattr__(self, "tags", tuple(dict.fromkeys(self.tags)))
         for key in ("means", "by", "doi", "licence"):
             value = getattr(self, key)
             if value is not None and (wrong := text_fault(value)):

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from fractions import Fraction
 
+from ..near_words import nearest_words
 from .units import UNITS, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
@@ -172,15 +173,12 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
     >>> nearest("coool", ["warm", "cool"]), nearest("heat", ["warm", "cool"]), nearest("x", ["warm"])
     ('cool', 'warm', None)
     """
-    from difflib import get_close_matches
-
     plain = word[:40].casefold()
     options = list(known)
     alias = WORD_ALIASES.get(plain)
     if alias in options:
         return alias
-    matches = get_close_matches(plain, options, n=1, cutoff=0.6)
-    return matches[0] if matches else None
+    return next(iter(nearest_words(plain, options)), None)
 
 
 def nearest_unit(word: str, kind: Kind) -> str | None:
@@ -189,8 +187,6 @@ def nearest_unit(word: str, kind: Kind) -> str | None:
     >>> nearest_unit("seconds", "time"), nearest_unit("℃", "absolute"), nearest_unit("watt", "time")
     ('s', '°C', None)
     """
-    from difflib import get_close_matches
-
     plain = word[:40].replace("℃", "°C").replace("º", "°").replace("˚", "°")
     head, slash, per = plain.partition("/")
     parts = (_UNIT_ALIASES.get(part.casefold(), part) for part in (head, per))
@@ -201,8 +197,7 @@ def nearest_unit(word: str, kind: Kind) -> str | None:
         return None
     # What begins otherwise, or is per something else, is a unit of another size: µs, mK, °C/ms.
     same = [unit for unit in UNITS[kind] if unit[:1] == plain[:1] and unit.partition("/")[2] in (per, "")]
-    matches = get_close_matches(plain, same, n=1, cutoff=0.6)
-    return matches[0] if matches else None
+    return next(iter(nearest_words(plain, same)), None)
 
 
 def scaled(number: str, unit: str, kind: Kind) -> str | None:

@@ -1,7 +1,6 @@
 """The bibliography that ships with the icon sets, and which of it a set cites."""
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from functools import cache
@@ -9,9 +8,10 @@ from importlib import resources
 
 from ..model.context import Metadata
 from ..model.iconset import IconSet
-from ..model.words import nearest
 
 TYPES = ("article", "inproceedings", "book", "phdthesis", "misc")
+_HEAD = re.compile(r"@([a-z]+)\{([a-z0-9-]+),")
+_FIELD = re.compile(r"([a-z]+) = \{(.*)\},")
 _DOI = re.compile(r"10\.[0-9]{4,9}/\S+")
 _YEAR = re.compile(r"\b(?:19|20)[0-9]{2}\b")
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECASE)
@@ -23,7 +23,7 @@ class BibliographyError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A publication: BibTeX fields as texts, where they were ``seen``, and what of them is ``unverified``.
+    """A publication: BibTeX fields in TeX's spelling, where they were ``seen``, and what of them is ``unverified``.
 
     Raises BibliographyError for an unknown type, an empty text, a year or an invalid DOI.
     """
@@ -32,7 +32,7 @@ class Reference:
     type: str
     author: str
     title: str
-    year: int
+    year: str
     seen: str
     journal: str | None = None
     booktitle: str | None = None
@@ -45,12 +45,10 @@ class Reference:
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.name == "year" or value is None:
-                continue
-            if not isinstance(value, str) or not value.strip():
-                raise BibliographyError(f"{self.key}: {field.name} = {value!r} must be a text that is not empty")
-        if isinstance(self.year, bool) or not isinstance(self.year, int) or not 1800 <= self.year <= 2100:
-            raise BibliographyError(f"{self.key}: year = {self.year!r} must be a whole number from 1800 to 2100")
+            if value is not None and not value.strip():
+                raise BibliographyError(f"{self.key}: {field.name} is an empty text; leave it out")
+        if not re.fullmatch(_YEAR, self.year):
+            raise BibliographyError(f"{self.key}: year = {self.year!r} must be a year such as 2018")
         if self.type not in TYPES:
             raise BibliographyError(f"{self.key}: type = {self.type!r} must be one of {', '.join(TYPES)}")
         if self.doi is not None and not _DOI.fullmatch(self.doi):
@@ -83,36 +81,36 @@ def references() -> tuple[Reference, ...]:
     >>> next(each.doi for each in references() if each.key == "shani-lineykin-2025")
     '10.3390/bioengineering12020209'
     """
-    file = resources.files("thermicon.icons").joinpath("data/references.toml")
-    return read_references(file.read_text(encoding="utf-8"), "references.toml")
+    file = resources.files("thermicon.icons").joinpath("data/references.bib")
+    return read_references(file.read_text(encoding="utf-8"), "references.bib")
 
 
 def read_references(text: str, where: str) -> tuple[Reference, ...]:
-    """Return the publications of a TOML text; BibliographyError names the file, the entry, the key and the cure."""
+    """Return the entries of a BibTeX text with one field a line; BibliographyError names the line and the cure."""
+    entries: list[dict[str, str]] = []
+    names = [field.name for field in fields(Reference)]
+    for number, line in enumerate(map(str.strip, text.splitlines()), start=1):
+        if head := _HEAD.fullmatch(line):
+            entries.append({"type": head[1], "key": head[2]})
+        elif (field := _FIELD.fullmatch(line)) and entries and field[1] in names and field[1] not in entries[-1]:
+            entries[-1][field[1]] = field[2]
+        elif line not in ("", "}") and not line.startswith("%"):
+            raise BibliographyError(
+                f"{where}:{number}: {line[:60]!r} is neither the head of an entry, @article{{key, nor a field,"
+                f" name = {{text}}, that stands once; fields are: {', '.join(names[2:])}"
+            )
+    for name in ("author", "title", "year", "seen"):
+        for entry in entries:
+            if name not in entry:
+                raise BibliographyError(
+                    f"{where}: {entry['key']}: {name} is missing; without it an entry does not load"
+                )
     try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise BibliographyError(f"{where}: not a valid TOML file: {problem}") from None
-    entries = document.pop("reference", None)
-    if document or not isinstance(entries, list):
-        raise BibliographyError(f"{where}: holds [[reference]] tables and nothing else")
-    known = [field.name for field in fields(Reference)]
-    found: dict[str, Reference] = {}
-    for place, entry in enumerate(entries, start=1):
-        name = f"{where}: reference {place}"
-        for key in entry:
-            if key not in known:
-                raise BibliographyError(f"{name}: unknown key {key}; did you mean {nearest(key, known) or known}?")
-        for key in ("key", "type", "author", "title", "year", "seen"):
-            if key not in entry:
-                raise BibliographyError(f"{name}: {key} is missing; without it an entry does not load")
-        try:
-            made = Reference(**entry)
-        except BibliographyError as problem:
-            raise BibliographyError(f"{where}: {problem}") from None
-        if made.key in found:
-            raise BibliographyError(f"{name}: the key {made.key} appears twice")
-        found[made.key] = made
+        found = {entry["key"]: Reference(**entry) for entry in entries}
+    except BibliographyError as problem:
+        raise BibliographyError(f"{where}: {problem}") from None
+    if len(found) < len(entries):
+        raise BibliographyError(f"{where}: two entries have one key; give each a different one")
     return tuple(found.values())
 
 
@@ -166,7 +164,7 @@ def _pairs(listed: Iterable[Reference]) -> set[tuple[str, ...]]:
 
 
 def _names(text: str, each: Reference) -> bool:
-    years = {int(year) for year in _YEAR.findall(text)}
+    years = set(_YEAR.findall(text))
     needed = each.surnames[: 1 if years else 2]
     said = all(re.search(rf"\b{re.escape(name)}\b", text, re.IGNORECASE) for name in needed)
     return said and (not years or each.year in years)

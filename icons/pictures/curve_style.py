@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
+from ..number_text import signed
+
 if TYPE_CHECKING:
     from ..model.corners import Corners
 
@@ -100,7 +102,7 @@ def shown(value: float) -> str:
     >>> shown(32.0), shown(-0.1), shown(5.123456)
     ('32', '−0.1', '5.123')
     """
-    return f"{value:.4g}".replace("-", "−")
+    return signed(value, ".4g")
 
 
 def spread(low: float, high: float, unit: str) -> str:

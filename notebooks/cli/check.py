@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from thermicon.icons.number_text import number, span
+
 from ..text.messages import fail, note
-from ..text.number_text import number, span
 from .cues import MOST_ICONS, warn_of_site
 
 if TYPE_CHECKING:

@@ -47,9 +47,9 @@ def kind_of(text: str, option: str) -> str:
         raise usage(f"{text} is the name of {both}; give the one you mean as a file", option)
     if Path(text).exists():
         raise usage(f"{text}: its name does not show what it is; {HOW}", option)
-    from thermicon.circuit.inputs import nearest
+    from thermicon.icons.near_words import did_you_mean
 
-    raise usage(f"{text} cannot be compared; {nearest(text, (*rig_names(), *library_names()))} ({HOW})", option)
+    raise usage(f"{text} cannot be compared; {did_you_mean(text, (*rig_names(), *library_names()))} ({HOW})", option)
 
 
 def kind_of_both(first: str, second: str) -> str:

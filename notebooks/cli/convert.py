@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermicon.icons.number_text import number
+
 from ..files.outputs import STDOUT, OutputError, check_output, complete_or_absent
 from ..text.messages import fail, note
-from ..text.number_text import number
 from .cues import pick, read_set
 
 if TYPE_CHECKING:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from thermicon.icons.number_text import number
+
 from ..text.messages import note, usage
-from ..text.number_text import number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from thermicon.icons.number_text import number
+
 from ..files.export_folder import check_export_folder
 from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
 from ..text.messages import REFUSED, note, progress_bar
-from ..text.number_text import number
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:

@@ -107,7 +107,8 @@ def search_command(
 
 def show_search(found: SearchResult, title: str, people: int, rig: str) -> None:
     """Print the improved set, its scores next to those of the initial set, and the caveat."""
-    from ..text.number_text import number, percent
+    from thermicon.icons.number_text import number, percent
+
     from ..text.tables import show, table
 
     made = table("", "before", "after", numbers=("before", "after"))

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from thermicon.icons.number_text import percent
+
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import fail, note, progress_bar, usage
-from ..text.number_text import percent
 from ..text.tables import show, table
 from .cues import read_set, warn_of_frames
 from .sweep import write_frame

@@ -185,7 +185,8 @@ def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
 
 def show_session(session: Session) -> None:
     """Print the verdict, a summary of the session, and one row per play."""
-    from ..text.number_text import number, span
+    from thermicon.icons.number_text import number, span
+
     from ..text.tables import show, table
 
     rows = table(
@@ -211,7 +212,7 @@ def show_session(session: Session) -> None:
 
 def summary_lines(session: Session) -> list[str]:
     """The summary of a session, line by line."""
-    from ..text.number_text import number, span
+    from thermicon.icons.number_text import number, span
 
     trace, plan = session.trace, session.plan
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"

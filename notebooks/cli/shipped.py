@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from ..text.number_text import number
+from thermicon.icons.number_text import number
+
 from ..text.tables import show, table
 
 

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from thermicon.icons.number_text import number, span
+
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import note
-from ..text.number_text import number, span
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:

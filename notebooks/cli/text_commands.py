@@ -83,7 +83,7 @@ def cite_command(
 
 def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:
     """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
-    from thermicon.icons.papers.cite import bibtex, methods
+    from thermicon.icons import bibtex, methods
 
     icons = read_set([file])
     if as_bibtex:

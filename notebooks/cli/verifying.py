@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from thermicon.icons.number_text import number, span
+
 from ..files.export_folder import STAGE
 from ..files.outputs import OutputError
 from ..text.messages import BAD_INPUT, note
-from ..text.number_text import number, span
 from ..text.tables import show, table
 
 if TYPE_CHECKING:

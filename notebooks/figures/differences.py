@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.icons.number_text import number, span
+
 from ..files.trace_files import Curves, LogError
-from ..text.number_text import number, span
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,22 +131,14 @@ def set_figure(ranking: Ranking) -> Figure:
     >>> len(set_figure(ranking).axes) >= 2
     True
     """
-    return _maps(ranking, ("distance", "confusion"))
-
-
-def single_map(ranking: Ranking, kind: Literal["distance", "confusion"]) -> Figure:
-    """One of the two heat maps of a set on its own."""
-    return _maps(ranking, (kind,))
-
-
-def _maps(ranking: Ranking, kinds: tuple[Literal["distance", "confusion"], ...]) -> Figure:
     from matplotlib.figure import Figure
 
     from thermicon.perception.plots import draw, draw_heat
 
     longest = max(map(len, map(draw_heat.short, ranking.labels)))
     side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
-    figure = Figure(figsize=(len(kinds) * (side + 0.6), side), layout="constrained")
-    for kind, ax in zip(kinds, figure.subplots(1, len(kinds), squeeze=False)[0], strict=True):
-        {"distance": draw.plot_distance, "confusion": draw.plot_confusion}[kind](ranking, ax=ax)
+    figure = Figure(figsize=(2 * (side + 0.6), side), layout="constrained")
+    distance, confusion = figure.subplots(1, 2)
+    draw.plot_distance(ranking, ax=distance)
+    draw.plot_confusion(ranking, ax=confusion)
     return figure

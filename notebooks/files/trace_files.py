@@ -121,7 +121,7 @@ def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
 
 
 def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
-    from thermicon.circuit.inputs import nearest
+    from thermicon.icons.near_words import did_you_mean
 
     from ..text.messages import usage
 
@@ -133,13 +133,13 @@ def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
     if not names:
         return frame
     if icon not in names:
-        raise LogError(f"{path}: no trace of {icon}; {nearest(icon, names)}")
+        raise LogError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
     return frame[frame["icon"] == icon]
 
 
 def _check_columns(frame: pd.DataFrame, known: list[str], path: str) -> None:
-    from thermicon.circuit.inputs import nearest
     from thermicon.circuit.solver.trace import COLUMNS
+    from thermicon.icons.near_words import did_you_mean
 
     found = ", ".join(str(name) for name in frame.columns[:8])
     if "time_s" not in frame:
@@ -148,7 +148,7 @@ def _check_columns(frame: pd.DataFrame, known: list[str], path: str) -> None:
         other = next((str(name) for name in frame.columns if name not in ("time_s", "icon")), "")
         raise LogError(
             f"{path}: none of its columns is one of a trace, such as display_C or skin_C; found {found}"
-            f"{f'; {other}: {nearest(other, COLUMNS[2:])}' if other else ''}"
+            f"{f'; {other}: {did_you_mean(other, COLUMNS[2:])}' if other else ''}"
         )
 
 

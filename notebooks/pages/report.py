@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.number_text import number, percent, percent_span, seconds
+
 from ..text import rank_notes, rank_text
 from ..text.choices import choice_lines
-from ..text.number_text import number, percent, percent_span, seconds
 from ..text.rank_notes import rules_caveat, rules_lines
 from .blocks import Block, Bullets, Cards, Cell, Facts, Heading, Text, as_html, grid
 from .report_views import icon_parts, view_parts

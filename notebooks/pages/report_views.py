@@ -6,7 +6,8 @@ import io
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from ..text.number_text import number, percent
+from thermicon.icons.number_text import number, percent
+
 from .blocks import Block, Code, Heading, Picture, Row, Text
 
 if TYPE_CHECKING:

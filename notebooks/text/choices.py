@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from thermicon.icons.number_text import number, percent, percent_span
+
 from .messages import usage
-from .number_text import number, percent, percent_span
 
 if TYPE_CHECKING:
     from thermicon.perception.selection.request import Selection

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from .number_text import number
+from thermicon.icons.number_text import number
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared

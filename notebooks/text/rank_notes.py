@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .number_text import number, percent
+from thermicon.icons.number_text import number, percent
+
 from .tables import table
 
 if TYPE_CHECKING:

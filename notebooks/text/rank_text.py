@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from thermicon.icons.number_text import number, percent, percent_span, seconds
+
 from .choices import choice_lines
-from .number_text import number, percent, percent_span, seconds
 from .rank_notes import (
     carried_lines,
     norm_lines,

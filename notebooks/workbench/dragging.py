@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
 from thermicon.icons.model.shapes import Wave
+from thermicon.icons.number_text import number
 
-from ..text.number_text import number
 from .cue_check import read_text
 from .handles import PEAK_AT, RATES, Corner, Grip, corners_of, grip_of, slots_of
 from .number_literals import Amount, Written, keyword_of, kind_of, replaced, written

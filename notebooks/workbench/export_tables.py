@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.inputs import signed
+from thermicon.icons.number_text import number, percent, signed
 
 from ..cli.export import CAUTION, steps_of
 from ..pages.blocks import fragment
 from ..text.gate_words import gate_words, short_scenario
-from ..text.number_text import number, percent
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -167,8 +169,7 @@ def _current(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     series = [curves.take("current", "current (+ cools)", trace.current_A, "ink", width=1.25, step=held)]
     low, high = trace.driver_limits_A
     levels = [
-        {"at": _number(at), "label": f"driver's limit {at:.3g} A".replace("-", "−"), "role": "limit"}
-        for at in (high, low)
+        {"at": _number(at), "label": f"driver's limit {signed(at, '.3g')} A", "role": "limit"} for at in (high, low)
     ]
     return _panel(drawing, "current", "current (A)", 0.9, series, levels=levels)
 

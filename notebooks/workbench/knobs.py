@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from thermicon.circuit import Rig, RigError, rig_names, steady_state
 from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.icons.number_text import number, span
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import YOUNG_YEARS, age_factor
-
-from ..text.number_text import number, span
 
 if TYPE_CHECKING:
     from thermicon.perception.observer.observer import Receptor

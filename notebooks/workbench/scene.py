@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from thermicon.icons import CueErrors
+from thermicon.icons.number_text import number
 
-from ..text.number_text import number
 from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.number_text import number, percent, percent_span, seconds
+
 from ..pages.blocks import fragment
 from ..text.choices import choice_lines
-from ..text.number_text import number, percent, percent_span, seconds
 from ..text.rank_notes import outside_lines, trouble_lines
 from ..text.rank_text import caveat, rival
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.icons.number_text import decimals, fixed, verdict
+
 from ..arrays import Array
 from ..identification.distance import difference_trace, identification_dprime, percept_distance
-from ..number_text import decimals, fixed, verdict
 from ..observer.observer import CHANNELS, Channel, Norm, Observer, check_norm
 from ..sensation.features import (
     STILL_K,

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.number_text import decimals, significant
+
 from ..criteria import DISTINGUISHABLE_DPRIME
-from ..number_text import decimals, significant
 from .rules import OURS, RuleResult, passes
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermicon.circuit.records import Record, Table, load_records
+from thermicon.icons.number_text import significant
 
-from ..number_text import significant
 from ..observer.observer import CHANNELS, DATA, Channel
 from ..sensation.features import (
     direction_words,

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit.records import Record, Table, load_records
+from thermicon.icons.number_text import significant
 
 from ..arrays import Array
-from ..number_text import significant
 from ..observer.observer import DATA
 
 if TYPE_CHECKING:

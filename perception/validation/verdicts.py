@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..number_text import significant
+from thermicon.icons.number_text import significant
+
 from .targets import Published, Row
 
 MINUS = "−"

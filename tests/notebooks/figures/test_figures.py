@@ -11,7 +11,7 @@ from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure
 from thermicon.notebooks.figures import sweep_figure as sweepfigure
-from thermicon.notebooks.figures.overview import COOL, WARM, single_map
+from thermicon.notebooks.figures.overview import COOL, WARM
 from thermicon.notebooks.figures.set_figures import write_figures
 from thermicon.perception import Percept, perceive, rank
 
@@ -63,9 +63,6 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     icons = parse("cue 1\nset s { control display }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }")
     ranking = rank(icons, Rig.load("thenar"), people=1)
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
-    only = single_map(ranking, "distance")
-    only.canvas.draw()
-    assert [ax.get_ylabel() for ax in only.axes] == ["d′ between …"]
 
 
 def test_overviews_of_names_that_differ_in_capitals_do_not_overwrite_each_other(

@@ -84,7 +84,7 @@ def test_messages(tmp_path: Path) -> None:
         write(tmp_path, TARGET.replace('"target"', '"goal"') + ROW)
     with pytest.raises(RecordError, match=r"'q' does not say of which target: add target = its number"):
         write(tmp_path, TARGET + ROW.replace("target = 1\n", "value = 1.0\n"))
-    with pytest.raises(RecordError, match=r"unknown key 'mechanisms': did you mean 'mechanism'"):
+    with pytest.raises(RecordError, match=r"unknown key 'mechanisms'; did you mean mechanism"):
         write(tmp_path, TARGET + 'mechanisms = "x"\n' + ROW)
     many = Row(2, "limits", "cold", "K", "x", "y", "shown", "ours", published="limits threshold")
     with pytest.raises(RecordError, match=r"6 records of 'limits threshold' for 'limits, cold': one is needed"):

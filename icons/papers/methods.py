@@ -1,27 +1,30 @@
-"""What a paper says of a set of icons: a paragraph for its methods, and BibTeX entries for its sources."""
+"""What a paper says of a set of icons: a paragraph for its methods, with the course of every icon in words."""
 
 import re
+from collections.abc import Sequence
 from importlib.metadata import version
 
 from ..model.family import Family
 from ..model.family_check import Summary
+from ..model.format import Holes, Path, Wording
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
-from ..model.units import decimal_text, quantity
-from .course import counted, course, listed
-from .references import Cited, Reference, cited, plain_doi, sources
+from ..model.shapes import Pulse, Step, Wave
+from ..model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from ..model.units import Kind, decimal_text, quantity
+from ..model.value_limits import Control
+from .references import cited, plain_doi, sources
 
-TITLE, AUTHORS, LICENCE = "thermicon: a workbench for thermal icons", "The thermicon authors", "MIT"
 _PRESCRIBED = {
     "skin": "the temperature of the skin surface",
     "display": "the temperature of the display",
     "current": "the drive current",
 }
 _MINUS = re.compile(r"(?<![\w.])-(?=[0-9])")
-_FIELDS = ("author", "title", "journal", "booktitle", "year", "volume", "number", "pages", "doi")
-_ESCAPES = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
-_ESCAPES |= {mark: "\\" + mark for mark in "&%$#_{}"}
+_RAMPS = {"warm": "warming", "cool": "cooling", "change": "a change"}
+_SIDES = {"warm": " up", "cool": " down", "change": ""}
+_COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
 
 
 def methods(icons: IconSet, rig_about: str | None = None) -> str:
@@ -70,41 +73,73 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     return f"{' '.join(said)}content hash {icons.content_hash[:12]}."
 
 
-def bibtex(icons: IconSet) -> str:
-    """Return BibTeX entries for the sources of a set and its icons, and for thermicon itself.
+def course(body: Sequence[Statement], control: Control, holes: Holes | None = None, path: Path = ()) -> str:
+    """Return statements as one phrase; ``holes`` names the parameter that stands in a field, as in ``format``.
 
-    Parameters
-    ----------
-    icons
-        The set.
-
-    Returns
-    -------
-    str
-        Entries in UTF-8, from the shipped bibliography; a note names what is unverified. A source that the bibliography
-        lacks becomes an ``@misc`` entry from the metadata of the set, and is marked.
-
-    Examples
-    --------
-    >>> from thermicon.icons import read_cue
-    >>> [line for line in bibtex(read_cue("six-icons")).splitlines() if line.startswith("@")]
-    ['@inproceedings{singhal-jones-2015,', '@article{singhal-jones-2018,', '@misc{thermicon,']
+    >>> course((Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)), "skin")
+    'cooling by 6 °C at 3 °C/s, a hold of 4 s and a return to baseline at 3 °C/s'
     """
-    found = cited(icons)
-    entries = [_known(each, found) for each in found.references]
-    entries += [_unknown(place, *each) for place, each in enumerate(found.unknown, start=1)]
-    own = f"Computer program, version {version('thermicon')}, {LICENCE} licence"
-    entries.append(_written("misc", "thermicon", {"author": f"{{{AUTHORS}}}", "title": f"{{{TITLE}}}", "note": own}))
-    return "\n".join(entries)
+    return _Course(control, holes or {}).body(body, path)
 
 
-def escaped(text: str) -> str:
-    r"""Return a text in which the characters that mean something to TeX stand for themselves.
+def counted(count: int, noun: str) -> str:
+    """Return a number and a noun, in words up to twelve.
 
-    >>> print(escaped("50 % & more_or_less"))
-    50 \% \& more\_or\_less
+    >>> counted(1, "icon"), counted(6, "icon"), counted(240, "icon")
+    ('one icon', 'six icons', '240 icons')
     """
-    return " ".join("".join(_ESCAPES.get(char, char) for char in text).split())
+    number = _COUNTS[count] if count < len(_COUNTS) else f"{count:,}"
+    return f"{number} {noun}{'' if count == 1 else 's'}"
+
+
+def listed(parts: Sequence[str]) -> str:
+    """Return parts joined as a sentence lists them.
+
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    return " and ".join(filter(None, (", ".join(parts[:-1]), *parts[-1:])))
+
+
+class _Course(Wording):
+    def body(self, body: "Sequence[Statement | Broken]", path: Path) -> str:
+        phrases = (self.phrase(part, (*path, n)) for n, part in enumerate(body))
+        return listed([phrase for phrase in phrases if phrase])
+
+    def phrase(self, part: Statement | Broken, path: Path) -> str:
+        match part:
+            case Ramp(direction=word):
+                return f"{_RAMPS[word]} {self.goal(part, path)} {self.pace(part, path)}"
+            case Current():
+                return f"a ramp {self.goal(part, path)} {self.pace(part, path)}"
+            case Hold():
+                return f"a hold of {self.value(part, path, 'duration_s', 'time')}"
+            case Rest():
+                return f"a rest of {self.value(part, path, 'duration_s', 'time')} at baseline"
+            case Return():
+                return f"a return to baseline {self.pace(part, path)}"
+            case Step(direction=word):
+                return f"a step{_SIDES[word]} {self.goal(part, path)}"
+            case Pulse(direction=word):
+                time = self.value(part, path, "duration_s", "time")
+                return f"a pulse{_SIDES[word]} {self.goal(part, path)} for {time}"
+            case Wave():
+                size = self.goal(part, path).removeprefix("by ")
+                period, time = (self.value(part, path, name, "time") for name in ("period_s", "duration_s"))
+                shape = "sawtooth wave" if part.shape == "sawtooth" else f"{part.shape} wave"
+                first = "upwards" if part.sign > 0 else "downwards"
+                return f"a {shape} of ±{size} and a period of {period} for {time}, {first} first"
+            case Play():
+                return f"the course of {part.icon.name}"
+            case Repeat():
+                count = self.holes.get((path, "count"), f"{part.count:,}")
+                return f"{count} times ({self.body(part.body, path)})"
+            case Total() | Broken():
+                return ""
+
+    def value(self, part: object, path: Path, name: str, kind: Kind) -> str:
+        text = super().value(part, path, name, kind)
+        return text if (path, name) in self.holes else text.replace("-", "−", 1)
 
 
 def _entry(entry: Icon | Family) -> str:
@@ -165,30 +200,3 @@ def _one_line(about: str) -> str:
     for row in rows:  # a row that is indented further goes on with the one before
         out += (" " if row.startswith(" " * 8) else "; ") + " ".join(row.split())
     return out.rstrip(".")
-
-
-def _known(each: Reference, found: Cited) -> str:
-    values = {name: str(value) for name in _FIELDS if (value := getattr(each, name)) is not None}
-    marks = [f"details unverified: {each.unverified}"] if each.unverified else []
-    marks += ["the cue set does not state the year"] if each.key in found.undated else []
-    made = {name: value if name == "doi" else escaped(value) for name, value in values.items()}
-    made["title"] = f"{{{made['title']}}}"
-    if "pages" in made:
-        made["pages"] = made["pages"].replace("-", "--")
-    return _written(each.type, each.key, {**made, **({"note": escaped("; ".join(marks))} if marks else {})})
-
-
-def _unknown(place: int, by: str, doi: str | None) -> str:
-    note = "As the cue set names it; not in the bibliography of thermicon, details unverified"
-    values = {"howpublished": escaped(by)} if by.strip() else {}
-    if doi:
-        values["doi"] = escaped(plain_doi(doi)).replace(r"\_", "_")
-    year = re.search(r"\b(?:19|20)[0-9]{2}\b", by)
-    if year:
-        values["year"] = year[0]
-    return _written("misc", f"source-{place}", {**values, "note": note})
-
-
-def _written(kind: str, key: str, values: dict[str, str]) -> str:
-    rows = [f"  {name} = {{{value}}}," for name, value in values.items()]
-    return "\n".join([f"@{kind}{{{key},", *rows, "}"]) + "\n"

@@ -1,0 +1,253 @@
+"""Every conditioning experiment, played as it was done and asked as it was asked: predictions of its statistics.
+
+A prediction has the key of its row (see `rows`): experiment, statistic and channel. Numbers on a log scale are
+logarithms. Each function takes a laboratory's view of the constants and nothing else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import CHANNELS, Channel, sign_of
+from .laboratory import DT_S, Laboratory
+
+Key = tuple[str, str, str]
+"""Experiment, statistic, channel."""
+
+Predictions = dict[Key, float]
+LN10 = math.log(10.0)
+
+STRIP_CM2 = 1.96
+TWO_STRIPS_CM2 = 3.58
+RAMPS: dict[Channel, tuple[float, float]] = {"cold": (-5.0, -26.0), "warm": (4.81, 14.0)}
+"""Rate in K/s as it really ran, and how far the reaction-time ramps went, K."""
+YOUNG_YEARS = {"E1": 28.0, "E3": 24.5, "E4": 30.0, "E5": 27.0}
+"""Mean age of the people whose rows are used; that of E1 and E5 is the middle of the range."""
+ANTICIPATION_K = 0.2
+LIMIT_K = 12.0
+
+
+def predict(laboratory: Laboratory) -> Predictions:
+    """Predictions of all conditioning experiments."""
+    predictions: Predictions = {}
+    for experiment in EXPERIMENTS:
+        predictions.update(experiment(laboratory))
+    return predictions
+
+
+def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """E1: warm or cold, as fast as possible, by area."""
+    log_medians: dict[tuple[Channel, int], Array] = {}
+    for channel, (rate, size) in RAMPS.items():
+        drive = laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], 6.0)
+        for strips in (1, 5):
+            gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"])
+            times = laboratory.answers_s(drive, channel, gain, site="forearm", choice=True)
+            times = np.minimum(times, 7.0)
+            log_medians[channel, strips] = np.log(np.median(times, axis=1))
+        five = log_medians[channel, 5]
+        yield ("E1", "rt_gm_5strip_onset_clock", channel), float(five.mean())
+        yield ("E1", "rt_between_sd_ln_5strip_onset_clock", channel), float(five.std())
+        yield (
+            ("E1", "rt_within_sd_ln_5strip_onset_clock", channel),
+            float(np.median(np.log(times).std(axis=1))),
+        )
+        exponent = float((five - log_medians[channel, 1]).mean()) / math.log(5.0)
+        yield ("E1", "rt_area_exponent_onset_clock", channel), exponent
+    both = _correlation(log_medians["cold", 5], log_medians["warm", 5])
+    yield ("E1", "rt_cold_warm_correlation_5strip_onset_clock", "both"), both
+
+
+def _correlation(first: Array, second: Array) -> float:
+    return float(np.corrcoef(first, second)[0, 1])
+
+
+def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """E3: limits at 1 K/s on the forearm, repeated."""
+    means = []
+    for channel in CHANNELS:
+        drive = laboratory.drive("forearm", channel, 32.0, [(LIMIT_K, sign_of(channel) * LIMIT_K)], LIMIT_K)
+        gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", YOUNG_YEARS["E3"])
+        pressed_K = np.minimum(laboratory.answers_s(drive, channel, gain, site="forearm"), LIMIT_K + 1.0)
+        logs = np.log(np.where(pressed_K > ANTICIPATION_K, pressed_K, np.nan))
+        person = np.nanmean(logs, axis=1)
+        means.append(person)
+        yield ("E3", "threshold_gm", channel), float(person.mean())
+        yield ("E3", "between_sd_log10_noise_removed", channel), float(person.std()) / LN10
+        yield ("E3", "within_sd_log10_median_person", channel), float(np.median(np.nanstd(logs, axis=1))) / LN10
+    yield ("E3", "cold_warm_correlation_log", "both"), _correlation(*means)
+
+
+SIZES_K: dict[Channel, Array] = {"cold": np.geomspace(0.05, 25.0, 9), "warm": np.geomspace(0.3, 20.0, 9)}
+DETECTION_K_PER_S, PLATEAU_S = 2.5, 1.5
+
+
+def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """E4: was it cold (warm)? The size at one half and the width of each person's psychometric function."""
+    thresholds = []
+    for channel in CHANNELS:
+        gain = laboratory.gain(channel, TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E4"])
+        reported = []
+        for size in SIZES_K[channel].tolist():
+            top_s = size / DETECTION_K_PER_S
+            corners = [(top_s, sign_of(channel) * size)]
+            drive = laboratory.drive("forearm", channel, 30.0, corners, top_s + PLATEAU_S)
+            criterion = laboratory.values["criterion of yes and no"]
+            reported.append(laboratory.passages(drive, channel, gain, criterion)[1].mean(axis=1))
+        log_half, log_width = _psychometric(np.stack(reported, axis=1), np.log(SIZES_K[channel]))
+        thresholds.append(log_half)
+        yield ("E4", "threshold50_gm_age30", channel), float(log_half.mean())
+        yield ("E4", "threshold_between_sd_log10_noise_removed", channel), float(log_half.std()) / LN10
+        yield ("E4", "sigma_gm_age30", channel), float(log_width.mean())
+        yield ("E4", "sigma_between_sd_log10_noise_removed", channel), float(log_width.std()) / LN10
+        # Age acts on sensitivity alone; people show how a threshold follows sensitivity.
+        log_sensitivity = np.log(laboratory.sensitivity[channel])
+        slope = -float(np.cov(log_sensitivity, log_half)[0, 1]) / max(float(log_sensitivity.var(ddof=1)), 1e-9)
+        lost = laboratory.values[f"{channel} sensitivity lost per decade"]
+        yield ("E4", "threshold50_ln_per_decade", channel), slope * lost
+    yield ("E4", "cold_warm_threshold_correlation_person_fits", "both"), _correlation(*thresholds)
+
+
+HALVES = (0.16, 0.5, 0.84)
+"""Shares one SD below, at and above the middle of a cumulative normal."""
+
+
+def _psychometric(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
+    """Logs (people,) of the size at one half and of the SD, guesses taken out; reports are (people, sizes)."""
+    guesses = 0.999 * reported[:, :1]
+    corrected = np.maximum.accumulate((reported - guesses) / (1.0 - guesses), axis=1)
+    corrected += 1e-9 * np.arange(log_sizes.size)
+    logs = np.empty((reported.shape[0], 3))
+    for person, shares in enumerate(corrected):
+        logs[person] = np.interp(HALVES, shares, log_sizes)
+        # A person who does not reach a share by the largest size has it beyond that, as far as the rest is missing.
+        missing = np.maximum(np.array(HALVES) - shares[-1], 0.0)
+        logs[person] += missing
+    sizes = np.exp(logs)
+    return logs[:, 1], np.log(np.maximum(0.5 * (sizes[:, 2] - sizes[:, 0]), 1e-3))
+
+
+PEAKS_C = (34.9, 38.0, 45.4, 47.2)
+"""Mean peaks of the four levels of the young group of E5."""
+PREPULSE_K_PER_S, HELD_S, FOREPERIOD_S, COOLED_K = 2.5, 0.75, 0.25, 14.0
+
+
+def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """E5: cooling at 1 K/s after a warm pulse; press at the first change, then say which it was."""
+    values = laboratory.values
+    gain = laboratory.gain("cold", TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E5"])
+    warm_gain = laboratory.gain("warm", TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E5"])
+    lowest = 0.0
+    for level, peak in enumerate(PEAKS_C, start=1):
+        rise_s = (peak - 32.0) / PREPULSE_K_PER_S
+        start_s = round((2.0 * rise_s + HELD_S + FOREPERIOD_S) / DT_S) * DT_S
+        pulse = [(rise_s, peak - 32.0), (rise_s + HELD_S, peak - 32.0), (2.0 * rise_s + HELD_S, 0.0), (start_s, 0.0)]
+        corners = [*pulse, (start_s + COOLED_K, -COOLED_K)]
+        drive = laboratory.drive("forearm", "cold", 32.0, corners, start_s + COOLED_K)
+        cooled = np.ascontiguousarray(drive[round(start_s / DT_S) :])
+        caution = values["caution after a pre-pulse"]
+        answers = laboratory.answers_s(cooled, "cold", gain, site="forearm", caution=caution)
+        logs = np.log(np.minimum(answers, COOLED_K + 1.0))
+        mean = float(logs.mean())
+        if level == 1:
+            lowest = mean
+            yield ("E5", "cold_change_at_report_peak1_age_lt36", "cold"), mean
+            yield ("E5", "between_people_sd_peak1_age_lt36", "cold"), float(logs.mean(axis=1).std())
+            yield ("E5", "within_sd_ln_peak1", "cold"), float(np.median(logs.std(axis=1)))
+        else:
+            yield ("E5", f"ratio_to_lowest_peak{level}_age_lt36", "cold"), mean - lowest
+        warmth = laboratory.drive("forearm", "warm", 32.0, pulse, start_s).max() * warm_gain
+        lingering = values["warmth that lingers"] * float(laboratory.transducer.psi(warmth))
+        wrong = values["wrong labels"]
+        share = wrong + (0.5 - wrong) * -math.expm1(-lingering)
+        yield ("E5", f"share_called_warm_peak{level}_age_lt36", "cold"), share
+
+
+FORCED_CHOICE: tuple[tuple[str, str, str, dict[Channel, float]], ...] = (
+    ("thenar", "hand", "thenar", {"cold": 0.11, "warm": 0.20}),
+    ("wrist", "forearm", "forearm", {"cold": 0.15, "warm": 0.23}),
+)
+"""Laboratory, site, rig whose skin it is, and the published thresholds in K, each played at 1 K/s and held for 3 s."""
+
+
+def forced_choice(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """How many times threshold the published forced-choice thresholds are: 1 would be right (log 0)."""
+    for place, site, rig, sizes in FORCED_CHOICE:
+        for channel, size in sizes.items():
+            drive = laboratory.drive(rig, channel, 32.0, [(size, sign_of(channel) * size)], size + 3.0)
+            gain = laboratory.gain(channel, 9.0, place, site, 25.0)
+            yield (place, "detection threshold", channel), -math.log(max(float(drive.max()) * gain, 1e-6))
+    for channel in CHANNELS:
+        spread = laboratory.values[f"{channel} sensitivity between people"]
+        yield ("wrist", "spread of detection thresholds", channel), spread
+
+
+PEDESTALS = np.geomspace(1.5, 4.5, 3)
+"""Smaller of two pulses in multiples of threshold; assumed, since amplitudes are not stated where found."""
+
+
+def differences(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """Amplitude differences of two pulses felt, and steps from threshold to pain."""
+    for channel, size in FORCED_CHOICE[0][3].items():
+        steps = size * laboratory.transducer.difference_threshold(PEDESTALS)
+        yield ("amplitudes", "amplitude difference threshold", channel), float(np.log(steps).mean())
+    drive = laboratory.drive("forearm", "warm", 34.0, [(20.0, 10.0)], 20.0).max()
+    multiple = float(drive) / laboratory.values["warm threshold drive"]
+    yield (
+        ("steps", "steps from threshold to pain", "warm"),
+        math.log(max(float(laboratory.transducer.psi(multiple)), 0.01)),
+    )
+
+
+RATED: dict[Channel, tuple[float, float]] = {"cold": (-5.0, -11.0), "warm": (4.81, 11.0)}
+E6_SIZES: dict[Channel, tuple[float, float]] = {"cold": (15.8, 3.75), "warm": (10.05, 5.6)}
+"""Median change in K and area in cm² of E6."""
+E6_K_PER_S = 40.0
+"""Between the two rates that were used, 20 and 100 K/s; the size of a held change hardly depends on it."""
+
+
+def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
+    """E2 and E6: ratings by area and by size; a rating is a power of the largest drive in multiples of threshold."""
+    values = laboratory.values
+    for channel, (rate, size) in RATED.items():
+        end_s = size / rate + 0.7
+        peak = float(laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], end_s).max())
+        one, five = (peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"]) for n in (1, 5))
+        exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
+        yield ("E2", "rating_mean_5strip", channel), math.log(unit) + exponent * math.log(max(five, 1e-6))
+        yield ("E2", "rating_area_exponent_group", channel), exponent * math.log(five / one) / math.log(5.0)
+        middle = unit * math.sqrt(one * five) ** exponent
+        scatter = math.hypot(values["scatter of ratings"], exponent * middle * values["gain noise"])
+        yield ("E2", "rating_within_sd_pooled", channel), math.log(scatter)
+        change, _ = E6_SIZES[channel]
+        low, high = (
+            float(
+                laboratory.drive(
+                    "forearm",
+                    channel,
+                    30.0,
+                    [(times * change / E6_K_PER_S, sign_of(channel) * times * change)],
+                    times * change / E6_K_PER_S + 2.0,
+                ).max()
+            )
+            for times in (0.8, 1.25)
+        )
+        yield (
+            ("E6", "rating_local_exponent_mean", channel),
+            exponent * math.log(max(high, 1e-6) / max(low, 1e-6)) / math.log(1.25 / 0.8),
+        )
+
+
+EXPERIMENTS: tuple[Callable[[Laboratory], Iterator[tuple[Key, float]]], ...] = (
+    reaction_times,
+    limits,
+    yes_no,
+    after_warmth,
+    forced_choice,
+    differences,
+    ratings,
+)

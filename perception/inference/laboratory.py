@@ -1,0 +1,190 @@
+"""One laboratory's view of a set of constants: drives of its stimuli, sensitivities of its people, answers.
+
+Everything that a published experiment needs is asked of `Laboratory`: what receptors do under its thermode, how
+sensitive its people are at its site, area and age, and when or whether they answer.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from ..arrays import Array
+from ..kernels import passage as first_passage
+from ..kernels.adapted_drive import adapted_drive
+from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.variants import Model, Variable
+from ..sensation.delays import Conduction
+from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
+from ..sensation.transducer import Transducer
+from .crowd import SHARES, TRIALS, Crowd, draw_crowd
+from .mechanisms import Without
+from .skin_modes import Corner, SkinModes, skin_modes
+
+DT_S = 0.025
+"""Step of drives: times of answers are interpolated within it."""
+REFERENCE_CM2 = 9.0
+REFERENCE_AGE = 25.0
+NEUTRAL_C = (30.0, 36.0)
+"""Complete adaptation on the hand (Shani & Lineykin 2021)."""
+PATH_M = {"hand": 0.7, "forearm": 0.55}
+"""To the cord, adult; assumed, 0.6 to 0.8 and 0.45 to 0.65 m."""
+FEEBLE = 1e-9
+FIRST_CONDUCTION: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
+"""Conduction at the leg (Fowler et al. 1988), which the first model took for the arm."""
+SURFACE_DEPTH_M: dict[Channel, float] = {"cold": 0.15e-3, "warm": 0.30e-3}
+
+
+@dataclass(frozen=True)
+class Laboratory:
+    """Constants by name, as `priors.toml` names them, for one sensory variable and receptor model.
+
+    `without` names mechanisms that are turned off.
+    """
+
+    values: Mapping[str, float]
+    variable: Variable = "temperature"
+    model: Model = "adapting"
+    without: Without = frozenset()
+
+    @property
+    def crowd(self) -> Crowd:
+        """The people that take part in every experiment."""
+        return draw_crowd()
+
+    @cached_property
+    def sensitivity(self) -> dict[Channel, Array]:
+        """Sensitivity of each person (people,) over the median person's, by channel."""
+        normal = self._correlated(0)
+        return {c: np.exp(self.values[f"{c} sensitivity between people"] * normal[c]) for c in CHANNELS}
+
+    @cached_property
+    def caution(self) -> dict[Channel, Array]:
+        """Criterion of each person (people,) over the median person's, by channel."""
+        normal = self._correlated(2)
+        return {c: np.exp(self.values["criterion between people"] * normal[c]) for c in CHANNELS}
+
+    def _correlated(self, column: int) -> dict[Channel, Array]:
+        """Standard normal numbers of both channels, correlated as people's sensitivities and criteria are."""
+        shared, z = self.values["correlation of cold and warm"], self.crowd.people
+        warm: Array = shared * z[:, column] + math.sqrt(1.0 - shared**2) * z[:, column + 1]
+        return {"cold": z[:, column], "warm": warm}
+
+    @cached_property
+    def transducer(self) -> Transducer:
+        """How drive becomes sensation."""
+        return Transducer(self.values["slope of sensation"], self.values["transducer exponent"])
+
+    @cached_property
+    def _psi_table(self) -> Array:
+        logs = first_passage.LOG_U_FROM + first_passage.LOG_U_STEP * np.arange(first_passage.LOG_U_POINTS)
+        return self.transducer.psi(np.exp(logs))
+
+    def drive(
+        self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
+    ) -> Array:
+        """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
+        values = self.values
+        skin = _skin(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
+        depth = skin.corneum_m + 1e-3 * values[f"{channel} receptor depth"]
+        if "depth" in self.without:
+            depth = SURFACE_DEPTH_M[channel]
+        rows = round(end_s / DT_S) + 1
+        received = skin.course(depth, baseline_C, corners, DT_S, rows, self.variable)
+        if self.model == "ring-de-dear":
+            return _impulses(received, channel)
+        neutral = NEUTRAL_C
+        if self.variable == "heat flow":
+            flows = sorted(skin.baseline(level, depth, "heat flow") for level in NEUTRAL_C)
+            neutral = flows[0], flows[1]
+        drive = np.empty((1, rows))
+        adapted_drive(
+            received[None],
+            DT_S,
+            sign_of(channel),
+            self._limit(channel),
+            values["softness of the limits"],
+            *neutral,
+            values["integration time"],
+            values["slow adaptation time"],
+            drive,
+        )
+        row: Array = drive[0]
+        return row
+
+    def _limit(self, channel: Channel) -> float:
+        """Limit of quality in °C; so far away that it does nothing where it is off, and for heat flow."""
+        if self.variable == "heat flow" or f"{channel} limit" in self.without:
+            return -1e6 * sign_of(channel)
+        return self.values[f"{channel} limit"]
+
+    def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
+        """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
+        values = self.values
+        ends = (0.0, math.inf) if "ends of summation" in self.without else (FIELD_CM2, END_CM2)
+        gain = area_factor(area_cm2, REFERENCE_CM2, values[f"{channel} area exponent"], *ends)
+        gain /= values[f"{channel} threshold drive"]
+        if site == "forearm":
+            gain /= values[f"{channel} threshold on the forearm"]
+        if "laboratories" not in self.without:
+            gain *= math.exp(values["sensitivity between laboratories"] * values[f"{laboratory} {channel}"])
+        decades = (age_years - REFERENCE_AGE) / 10.0
+        return gain * math.exp(-values[f"{channel} sensitivity lost per decade"] * decades)
+
+    def delay_s(self, channel: Channel, site: str) -> float:
+        """Conduction from a site to the brain, s."""
+        if "delays" in self.without:
+            return PATH_M[site] / FIRST_CONDUCTION[channel]
+        return Conduction(channel, self.values[f"{channel} conduction velocity"], PATH_M[site]).delay_s
+
+    def passages(self, drive: Array, channel: Channel, gain: float, criterion: float) -> tuple[Array, Array]:
+        """Times (people, TRIALS) at which sensation passes the criterion; probabilities (people, 4) that it does."""
+        noise = self.values["gain noise"]
+        logs = np.log(gain * self.sensitivity[channel])[:, None] + noise * self.crowd.gains
+        criteria = np.repeat(criterion * self.caution[channel], self.crowd.gains.size)
+        times = np.empty((logs.size, SHARES.size))
+        passed = first_passage.passage(
+            np.log(np.maximum(drive, FEEBLE)),
+            DT_S,
+            logs.ravel(),
+            criteria,
+            self.values["noise correlation time"],
+            self._psi_table,
+            SHARES,
+            times,
+        )
+        return times.reshape(-1, TRIALS), passed.reshape(logs.shape)
+
+    def decision_s(self, *, choice: bool) -> Array:
+        """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""
+        middle = self.values["decision time"] + (self.values["choice time"] if choice else 0.0)
+        between = self.values["decision time between people"] * self.crowd.people[:, 4]
+        within = self.values["decision time between trials"] * self.crowd.decisions
+        times: Array = middle * np.exp(between[:, None] + within)
+        return times
+
+    def answers_s(
+        self, drive: Array, channel: Channel, gain: float, *, site: str, choice: bool = False, caution: float = 1.0
+    ) -> Array:
+        """Times (people, TRIALS) in s from the first sample of a drive to the answer; inf where there is none."""
+        criterion = caution * self.values["criterion of speeded answers"]
+        crossed, _ = self.passages(drive, channel, gain, criterion)
+        return crossed + self.delay_s(channel, site) + self.decision_s(choice=choice)
+
+
+@lru_cache(maxsize=64)
+def _skin(site_rig: str, contact_m2K_per_W: float, effusivity: float) -> SkinModes:
+    return skin_modes(site_rig, contact_m2K_per_W, effusivity)
+
+
+def _impulses(temperature_C: Array, channel: Channel) -> Array:
+    from ..observer.observer import Observer
+    from ..sensation.impulses import counted_impulses
+
+    observer = Observer.load(model="ring-de-dear")
+    counted: Array = counted_impulses(temperature_C[None], DT_S, channel, observer)[0]
+    return counted

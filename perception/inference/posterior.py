@@ -1,0 +1,108 @@
+"""Log posterior of the constants: rows and priors as residuals, for one variant with some mechanisms off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import CHANNELS
+from ..observer.variants import Model, Variable
+from .experiments import Predictions, predict
+from .laboratory import Laboratory
+from .mechanisms import Without, find_mechanism
+from .prior_file import load_priors
+from .priors import Prior, Priors
+from .rows import Row, load_rows
+
+LABORATORIES = ("E1", "E3", "E4", "thenar", "wrist")
+"""Laboratories with an offset of their own in each channel; E2 is E1's, E5 is E4's, and ratings have their own unit."""
+
+DRIVE_SCALE: dict[tuple[Variable, Model], float] = {
+    ("temperature", "adapting"): 1.0,
+    ("heat flow", "adapting"): 600.0,
+    ("temperature", "ring-de-dear"): 60.0,
+}
+"""What the prior of a threshold drive is multiplied by: W/m² or impulses for each K, roughly; the prior is wide."""
+FARTHEST = 30.0
+"""A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What is inferred, from which rows: vectors are in SDs of the prior, 0 at its middle.
+
+    >>> posterior = Posterior()
+    >>> len(posterior.priors), len(posterior.rows)
+    (52, 54)
+    """
+
+    variable: Variable = "temperature"
+    model: Model = "adapting"
+    without: Without = frozenset()
+    left_out: frozenset[str] = frozenset()
+
+    def __post_init__(self) -> None:
+        for name in self.without:
+            find_mechanism(name)
+        known = {row.experiment for row in load_rows()}
+        if unknown := sorted(self.left_out - known):
+            raise ValueError(
+                f"there is no experiment {unknown[0]!r} to leave out: choose of {', '.join(sorted(known))}"
+            )
+
+    @cached_property
+    def fixed(self) -> Mapping[str, float]:
+        """Parameters that are not inferred here, with their values."""
+        fixed: dict[str, float] = {}
+        for name in sorted(self.without):
+            fixed.update(find_mechanism(name).fixed)
+        if self.variable == "heat flow":
+            middle = load_priors().values(load_priors().middle)
+            fixed.update({name: middle[name] for name in ("cold limit", "warm limit", "softness of the limits")})
+        return fixed
+
+    @cached_property
+    def priors(self) -> Priors:
+        """Priors of what is inferred: the constants and an offset for each laboratory and channel."""
+        scale = math.log(DRIVE_SCALE[self.variable, self.model])
+        shipped = tuple(_moved(prior, scale) for prior in load_priors().each)
+        offsets = tuple(
+            Prior.normal(f"{place} {channel}", "SD", 0.0, 1.0, "laboratories", "the spread between laboratories")
+            for place in LABORATORIES
+            for channel in CHANNELS
+        )
+        off = set(self.fixed)
+        if "laboratories" in self.without:
+            off |= {prior.name for prior in offsets}
+        return Priors((*shipped, *offsets)).without(tuple(off))
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The rows that count."""
+        return tuple(row for row in load_rows() if row.experiment not in self.left_out)
+
+    def values(self, vector: Array) -> dict[str, float]:
+        """Constants by name from a vector in SDs of the prior."""
+        return {**self.fixed, **self.priors.values(self.priors.middle + self.priors.sd * vector)}
+
+    def predictions(self, vector: Array) -> Predictions:
+        """Predictions of every row, left out or not."""
+        return predict(Laboratory(self.values(vector), self.variable, self.model, self.without))
+
+    def residuals(self, vector: Array) -> Array:
+        """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""
+        predictions = self.predictions(vector)
+        missed = np.array([(predictions[row.key] - row.value) / row.sd for row in self.rows])
+        missed = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
+        return np.concatenate([missed, vector])
+
+
+def _moved(prior: Prior, log_scale: float) -> Prior:
+    if not prior.name.endswith("threshold drive") or log_scale == 0.0:
+        return prior
+    return Prior(prior.name, "own", prior.scale, prior.middle + log_scale, prior.sd, prior.mechanism, prior.source)

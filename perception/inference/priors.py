@@ -1,0 +1,115 @@
+"""Parameters of the second observer: what each one is, its prior distribution, and where the prior comes from.
+
+Every parameter is inferred on a scale where its prior is normal: the logarithm for positive numbers, the
+logit for shares. `to_value` goes from there to the parameter's own unit.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..arrays import Array
+
+Scale = Literal["linear", "log", "logit"]
+WIDTH_95 = 2.0 * 1.959964
+
+
+@dataclass(frozen=True, slots=True)
+class Prior:
+    """One parameter: `middle` and `sd` on its scale, `mechanism` that it belongs to, and the source of the interval.
+
+    >>> Prior.normal("cold limit", "degC", 33.0, 1.0, "quality", "Campero et al. 2001").interval[0].__round__(2)
+    31.04
+    """
+
+    name: str
+    unit: str
+    scale: Scale
+    middle: float
+    sd: float
+    mechanism: str
+    source: str
+
+    def __post_init__(self) -> None:
+        if not self.sd > 0.0 or not math.isfinite(self.middle):
+            raise ValueError(f"{self.name}: a prior needs a finite middle and an SD above 0, not {self.sd:g}")
+
+    @classmethod
+    def log(cls, name: str, unit: str, median: float, low: float, high: float, mechanism: str, source: str) -> Prior:
+        """A lognormal prior by its median and the ratio of the ends of its 95 % interval."""
+        return cls(name, unit, "log", math.log(median), math.log(high / low) / WIDTH_95, mechanism, source)
+
+    @classmethod
+    def normal(cls, name: str, unit: str, mean: float, sd: float, mechanism: str, source: str) -> Prior:
+        """A normal prior."""
+        return cls(name, unit, "linear", mean, sd, mechanism, source)
+
+    @classmethod
+    def share(cls, name: str, median: float, sd_logit: float, mechanism: str, source: str) -> Prior:
+        """A logit-normal prior of a number between 0 and 1."""
+        return cls(name, "1", "logit", math.log(median / (1.0 - median)), sd_logit, mechanism, source)
+
+    def to_value(self, place: float) -> float:
+        """The parameter in its own unit, from its place on the scale."""
+        if self.scale == "log":
+            return math.exp(place)
+        return place if self.scale == "linear" else 1.0 / (1.0 + math.exp(-place))
+
+    def to_place(self, value: float) -> float:
+        """The place on the scale of a value in the parameter's own unit."""
+        if self.scale == "log":
+            return math.log(value)
+        return value if self.scale == "linear" else math.log(value / (1.0 - value))
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The central 95 % interval in the parameter's own unit."""
+        half = 0.5 * WIDTH_95 * self.sd
+        return self.to_value(self.middle - half), self.to_value(self.middle + half)
+
+
+@dataclass(frozen=True, slots=True)
+class Priors:
+    """All parameters in order; vectors of the inference have one place for each."""
+
+    each: tuple[Prior, ...]
+
+    def __post_init__(self) -> None:
+        names = [prior.name for prior in self.each]
+        if len(set(names)) < len(names):
+            raise ValueError("two parameters have one name")
+
+    def __len__(self) -> int:
+        return len(self.each)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names in order."""
+        return tuple(prior.name for prior in self.each)
+
+    @property
+    def middle(self) -> Array:
+        """Places (n,) of the medians."""
+        return np.array([prior.middle for prior in self.each])
+
+    @property
+    def sd(self) -> Array:
+        """SD (n,) on the parameters' scales."""
+        return np.array([prior.sd for prior in self.each])
+
+    def values(self, places: Sequence[float] | Array) -> dict[str, float]:
+        """Values by name, from places (n,)."""
+        return {prior.name: prior.to_value(float(place)) for prior, place in zip(self.each, places, strict=True)}
+
+    def places(self, values: Mapping[str, float]) -> Array:
+        """Places (n,) from values by name."""
+        return np.array([prior.to_place(values[prior.name]) for prior in self.each])
+
+    def without(self, names: Sequence[str]) -> Priors:
+        """The parameters but for some."""
+        return Priors(tuple(prior for prior in self.each if prior.name not in names))

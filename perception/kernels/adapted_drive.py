@@ -1,0 +1,64 @@
+"""Compiled receptor stage: limits of quality, integration, adaptation.
+
+For a channel with sign s (−1 cold, +1 warm), receptor temperature T, limit L and softness δ:
+
+    q = L + s·δ·ln(1 + e^(s·(T − L)/δ))                      quality: no cold above L, no warmth below it
+    dq_i/dt = (q − q_i)/τ_i,   dA/dt = (clip(q) − A)/τ_s      integration; adaptation inside the neutral zone
+    y = max(0, s·(q_i − A))                                  receptor drive in K
+
+Integration and adaptation are exact for q that is linear between samples.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from thermicon.circuit.compiled import kernel
+
+FAR = 30.0
+"""Softnesses beyond its limit at which a soft limit is none."""
+
+
+def _limited(temperature: float, limit: float, softness: float, sign: float) -> float:
+    x = sign * (temperature - limit) / softness
+    return temperature if x > FAR else limit + sign * softness * math.log1p(math.exp(x))
+
+
+def _adapted_drive(
+    temperature: Any,
+    dt: float,
+    sign: float,
+    limit: float,
+    softness: float,
+    low: float,
+    high: float,
+    integration_s: float,
+    adaptation_s: float,
+    drive: Any,
+) -> None:
+    """Receptor drive (rows, n_time) in K; the receptor is adapted at the first sample, as far as the neutral zone."""
+    # Weights of the old state, the old and the new input over one step.
+    decay_i, decay_a = math.exp(-dt / integration_s), math.exp(-dt / adaptation_s)
+    mean_i, mean_a = (
+        -math.expm1(-dt / integration_s) * integration_s / dt,
+        -math.expm1(-dt / adaptation_s) * adaptation_s / dt,
+    )
+    for row in range(temperature.shape[0]):
+        q = limited(temperature[row, 0], limit, softness, sign)
+        clipped = min(max(q, low), high)
+        integrated, level = q, clipped
+        for t in range(temperature.shape[1]):
+            if t > 0:
+                last_q, last_clipped = q, clipped
+                q = limited(temperature[row, t], limit, softness, sign)
+                clipped = min(max(q, low), high)
+                integrated = decay_i * integrated + (mean_i - decay_i) * last_q + (1.0 - mean_i) * q
+                level = decay_a * level + (mean_a - decay_a) * last_clipped + (1.0 - mean_a) * clipped
+            y = sign * (integrated - level)
+            drive[row, t] = y if y > 0.0 else 0.0
+
+
+_compile: Any = kernel(nogil=True)
+limited: Any = _compile(_limited)
+adapted_drive: Any = _compile(_adapted_drive)
