@@ -171,7 +171,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
     text = (
         f"{device.name} plays {signed(narrow_driver.current_min_A)} … {signed(narrow_driver.current_max_A)} A{through}"
-        f", the design asks for up to {signed(peak, '.3g')} A; {cure}"
+        f", the design needs up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)
 

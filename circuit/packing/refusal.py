@@ -147,7 +147,7 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
     if delivery.narrowed:
         narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
     return (
-        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: ask for a "
+        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a "
         f"slower or smaller change, or raise the limit if driver and module can"
     )
 

@@ -78,7 +78,7 @@ def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be()
     step, weak = load_library("six-icons")["cooling-step"], RIG.with_(**{"driver.transconductance_A_per_V": 0.1})
     found = deliver(step, weak, Device.load("dac-16"))
     assert found.device_warnings == (
-        "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design asks for up to "
+        "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design needs up to "
         "1.11 A; raise that to 0.12 if the current source can, or use a device of more volts",
     )
     assert found.delivered.current_A.max() <= 1.0

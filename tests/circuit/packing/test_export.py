@@ -88,7 +88,7 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
     (refusal,) = one.refusals
     assert re.match(
         r"NOT reached: dac-16 plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
-        r"design asks for up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
+        r"design needs up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
         str(refusal),
     )
     assert one.warnings == ()
