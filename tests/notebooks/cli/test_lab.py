@@ -137,7 +137,7 @@ def test_without_voila_the_cure_is_told_and_nothing_written(
 
 @pytest.mark.parametrize(
     ("words", "told"),
-    [(("--page", "--files-only"), "there is no page to serve"), (("--port", "70000"), "70000 is outside 1 to 65535")],
+    [(("--page", "--files-only"), "no page can be served"), (("--port", "70000"), "70000 is outside 1 to 65535")],
 )
 def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple[str, ...], told: str) -> None:
     said = cli("lab", tmp_path / "mine", *words)
