@@ -51,9 +51,9 @@ def kernel(**options: Any) -> Callable[[Kernel], Any]:
     """
 
     def decorate(function: Kernel) -> Any:
-        made = numba.njit(**options)(function)
-        made._cache = _KernelCache(function, repr(sorted(options.items(), key=str)))
-        return made
+        dispatcher = numba.njit(**options)(function)
+        dispatcher._cache = _KernelCache(function, repr(sorted(options.items(), key=str)))
+        return dispatcher
 
     return decorate
 
@@ -141,7 +141,7 @@ def kept_in() -> Path | None:
     except NotPrivate as problem:
         if multiprocessing.parent_process() is None:
             logging.getLogger("thermicon").warning(
-                "compiled code is not kept, so that every run compiles it anew: %s", problem
+                "compiled code cannot be stored, so that every run compiles it again: %s", problem
             )
         return None
     _forget_stale(folder.parent)
@@ -159,7 +159,7 @@ def source_digest(function: Kernel) -> str:
     """Hash of everything a function is compiled from: its file, those of what it calls, and the constants used."""
     files: dict[str, bytes] = {}
     constants: list[str] = []
-    open_, seen = [function], {function}
+    open_, visited = [function], {function}
     while open_:
         current = open_.pop()
         path = current.__code__.co_filename
@@ -168,8 +168,8 @@ def source_digest(function: Kernel) -> str:
         for name, value in _used(current):
             called = value.py_func if isinstance(value, Dispatcher) else value
             if isinstance(called, FunctionType):
-                if called not in seen:
-                    seen.add(called)
+                if called not in visited:
+                    visited.add(called)
                     open_.append(called)
             elif isinstance(value, np.ndarray):
                 constants.append(f"{name}={value.dtype}{value.shape}{value.tobytes()!r}")

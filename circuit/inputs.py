@@ -24,7 +24,13 @@ TEXT_FAULT = "text"
 
 
 class InputError(Exception):
-    """Bad input, reported in plain words (what, where, value, limit, unit, cure); safe to show on a terminal."""
+    """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
+
+    Examples
+    --------
+    >>> str(InputError("hand.toml: contact.area_cm2 = 0; it must be above 0 cm²"))
+    'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
+    """
 
     def __init__(self, *texts: object) -> None:
         super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
@@ -94,7 +100,7 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] =
     except NotRegular as found:
         if found.kind == "folder":
             raise error(f"{path}: this is a directory, not a {what}") from None
-        raise error(f"{path}: {found}; save what it gives as a {what}, and name that") from None
+        raise error(f"{path}: {found}; save its output as a {what}, and give that file") from None
     except TooLarge as found:
         raise error(
             f"{path}: {found.size / 1e6:.0f} MB is too large for a {what}; the limit is {limit_MB:g} MB"

@@ -143,21 +143,21 @@ class Table:
         where: Mapping[str, Plain] | None = None,
     ) -> tuple[Record, ...]:
         """All records that match every key given; a channel also matches records for both channels."""
-        found = [r for r in self.records if r.quantity == quantity]
-        if not found:
+        records = [r for r in self.records if r.quantity == quantity]
+        if not records:
             known = {r.quantity for r in self.records}
             raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, known)}")
         keys = {"channel": channel, "site": site, "method": method, "use": use, **(where or {})}
-        for key, wanted in keys.items():
-            if wanted == "":
+        for key, value in keys.items():
+            if value == "":
                 continue
-            known_values = {str(_field(r, key)) for r in found}
-            matching = [r for r in found if _matches(_field(r, key), wanted, key)]
+            known_values = {str(_field(r, key)) for r in records}
+            matching = [r for r in records if _matches(_field(r, key), value, key)]
             if not matching:
-                hint = did_you_mean(str(wanted), known_values)
-                raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {wanted!r}; {hint}")
-            found = matching
-        return tuple(found)
+                hint = did_you_mean(str(value), known_values)
+                raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {value!r}; {hint}")
+            records = matching
+        return tuple(records)
 
     def one(
         self,
@@ -170,16 +170,16 @@ class Table:
         where: Mapping[str, Plain] | None = None,
     ) -> Record:
         """The only record that matches the keys; an error when there are several or none."""
-        found = self.select(quantity, channel=channel, site=site, method=method, use=use, where=where)
-        if len(found) > 1:
-            exact = [r for r in found if r.channel == channel]
+        records = self.select(quantity, channel=channel, site=site, method=method, use=use, where=where)
+        if len(records) > 1:
+            exact = [r for r in records if r.channel == channel]
             if channel and len(exact) == 1:
                 return exact[0]
-            choices = "; ".join(f"{r.channel or '-'}, {r.site or '-'}, {r.method or '-'}" for r in found)
+            choices = "; ".join(f"{r.channel or '-'}, {r.site or '-'}, {r.method or '-'}" for r in records)
             raise RecordError(
-                f"{self.name}: {len(found)} records match {quantity!r}: say which channel, site or method ({choices})"
+                f"{self.name}: {len(records)} records match {quantity!r}: say which channel, site or method ({choices})"
             )
-        return found[0]
+        return records[0]
 
 
 def load_records(path: Readable | str, *, extra: Iterable[str] = ()) -> Table:
@@ -207,10 +207,10 @@ def dump_records(table: Table, *, comment: str = "") -> str:
     for record in table:
         lines += ["", "[[record]]"]
         for field in fields(record):
-            held = getattr(record, field.name)
-            if field.name != "extra" and held not in (None, ""):
-                lines.append(f"{field.name} = {_toml(held)}")
-        lines += [f"{key} = {_toml(held)}" for key, held in record.extra]
+            value = getattr(record, field.name)
+            if field.name != "extra" and value not in (None, ""):
+                lines.append(f"{field.name} = {_toml(value)}")
+        lines += [f"{key} = {_toml(value)}" for key, value in record.extra]
     return "\n".join(lines).lstrip("\n") + "\n"
 
 
@@ -218,21 +218,21 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
     if not isinstance(entry, dict):
         raise RecordError(f"{file}: record {index} is not a block of key = value lines")
     place = f"{file}, record {index} ({entry.get('quantity', 'no quantity')})"
-    own = [f.name for f in fields(Record) if f.name != "extra"]
+    field_names = [f.name for f in fields(Record) if f.name != "extra"]
     plain: dict[str, str] = {}
     numbers: dict[str, float] = {}
     further: list[tuple[str, Plain]] = []
-    for key, held in entry.items():
-        if key not in own and key not in declared:
-            raise RecordError(f"{place}: unknown key {key!r}; {did_you_mean(key, [*own, *declared])}")
-        if isinstance(held, bool) or not isinstance(held, str | int | float):
+    for key, value in entry.items():
+        if key not in field_names and key not in declared:
+            raise RecordError(f"{place}: unknown key {key!r}; {did_you_mean(key, [*field_names, *declared])}")
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
             raise RecordError(f"{place}: {key} must be a number or a text")
-        checked: Plain = held if isinstance(held, str) else float(held)
+        checked: Plain = value if isinstance(value, str) else float(value)
         if key in _NUMBERS:
             if isinstance(checked, str):
                 raise RecordError(f"{place}: {key} = {checked!r} must be a number without quotes or unit")
             numbers[key] = checked
-        elif key in own:
+        elif key in field_names:
             if not isinstance(checked, str):
                 raise RecordError(f"{place}: {key} = {checked!r} must be a text in quotes")
             plain[key] = checked
@@ -264,15 +264,15 @@ def _field(record: Record, key: str) -> Plain:
     return dict(record.extra).get(key, "")
 
 
-def _matches(held: Plain, wanted: Plain, key: str) -> bool:
-    return held == wanted or (key == "channel" and held == "both")
+def _matches(stored: Plain, requested: Plain, key: str) -> bool:
+    return stored == requested or (key == "channel" and stored == "both")
 
 
-def _toml(held: Plain) -> str:
-    if isinstance(held, str):
-        escaped = held.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+def _toml(value: Plain) -> str:
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
         return f'"{escaped}"'
-    return repr(held)
+    return repr(value)
 
 
 def _short(number: float | None) -> str:

@@ -12,8 +12,8 @@ WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 def cache_folder() -> Path:
     """The user's cache folder for this program: THERMICON_CACHE, or where the system keeps such things."""
-    if own := os.environ.get("THERMICON_CACHE"):
-        return Path(own)
+    if chosen := os.environ.get("THERMICON_CACHE"):
+        return Path(chosen)
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "thermicon"
     if sys.platform == "darwin":
@@ -42,26 +42,26 @@ def private_folder(path: Path) -> Path:
         for folder in reversed(missing):
             folder.mkdir(mode=0o700, exist_ok=True)
     except OSError as problem:
-        raise NotPrivate(f"{path} cannot be made ({problem.strerror or problem})") from None
+        raise NotPrivate(f"{path} cannot be created ({problem.strerror or problem})") from None
     if sys.platform != "win32":
         real = path.resolve()
         for folder in (real, *real.parents):
             if fault := _fault(folder, folder == real):
                 raise NotPrivate(f"{folder} {fault}; set THERMICON_CACHE to a folder that only you can write to")
     if not os.access(path, os.W_OK | os.X_OK):
-        raise NotPrivate(f"{path} is not writable for you")
+        raise NotPrivate(f"{path} is not writable")
     return path
 
 
 def _fault(folder: Path, is_last: bool) -> str | None:
-    found = folder.stat()
+    status = folder.stat()
     user = os.geteuid()
-    if found.st_uid != user and (is_last or found.st_uid != 0):
+    if status.st_uid != user and (is_last or status.st_uid != 0):
         return "belongs to another user"
-    writable = stat.S_IMODE(found.st_mode) & WRITABLE_BY_OTHERS
-    if writable == stat.S_IWGRP and found.st_gid == user:
+    writable = stat.S_IMODE(status.st_mode) & WRITABLE_BY_OTHERS
+    if writable == stat.S_IWGRP and status.st_gid == user:
         return None  # a group of the user's own, as many systems give everybody
-    if writable and (is_last or not found.st_mode & stat.S_ISVTX):
+    if writable and (is_last or not status.st_mode & stat.S_ISVTX):
         return "can be written by others"
     return None
 
@@ -73,8 +73,8 @@ def read_private(path: Path) -> bytes | None:
             return None
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0))
         with os.fdopen(handle, "rb") as file:
-            found = os.fstat(file.fileno())
-            if sys.platform != "win32" and (found.st_uid != os.geteuid() or found.st_mode & WRITABLE_BY_OTHERS):
+            status = os.fstat(file.fileno())
+            if sys.platform != "win32" and (status.st_uid != os.geteuid() or status.st_mode & WRITABLE_BY_OTHERS):
                 return None
             return file.read()
     except OSError:

@@ -17,8 +17,8 @@ from .files.hjif import to_hjif
 from .recordings.recorded import from_csv
 from .papers.bibtex import bibtex
 from .papers.methods import methods
-from .model.builders import back, cool, current, hold, play, pulse, ramp, repeat, rest, sawtooth, sine, square, step
-from .model.builders import total, triangle, warm
+from .model.builders import back, cool, current, hold, play, ramp, repeat, rest, total, warm
+from .model.wave_builders import pulse, sawtooth, sine, square, step, triangle
 
 # In the order of the flow, not of the alphabet.
 __all__ = [

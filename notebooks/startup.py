@@ -23,7 +23,7 @@ def guard() -> None:
 
 
 def hidden_by(imported: str, known: Iterable[str]) -> str | None:
-    """Return a sentence when the imported folder of this package is none of the installed ones.
+    """Return a sentence when the imported folder of this package is not one of the installed ones.
 
     >>> hidden_by("/home/a/thermicon/notebooks", ["/usr/lib/thermicon/notebooks"])
     'warning: this runs /home/a/thermicon/notebooks, which hides the installed /usr/lib/thermicon/notebooks; \

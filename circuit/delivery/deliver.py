@@ -48,6 +48,11 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     rate_Hz
         Rows of the traces per second.
 
+    Returns
+    -------
+    DeliveredDrive
+        Design and delivery, each with its simulation.
+
     Raises
     ------
     RigError
@@ -60,7 +65,6 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> from thermicon.icons import load_library
     >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
-
     """
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
@@ -132,21 +136,25 @@ def _cut(drive: Drive, end_s: float) -> Drive:
     """A held drive cut at a time in s: its last sample may end slightly later than what it is compared with."""
     if drive.time_s[-1] <= end_s + 1e-9:
         return drive
-    kept = drive.time_s < end_s - 1e-9
-    return Drive(np.append(drive.time_s[kept], end_s), np.append(drive.current_A[kept], drive.current_A[-1]), held=True)
+    before_end = drive.time_s < end_s - 1e-9
+    return Drive(
+        np.append(drive.time_s[before_end], end_s),
+        np.append(drive.current_A[before_end], drive.current_A[-1]),
+        held=True,
+    )
 
 
 def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
     """How a device's range is too small for a design, with a cure; None where it is wide enough."""
-    asked, held = plan.drive.current_A, narrow.driver
-    if asked.min() >= held.current_min_A - 1e-9 and asked.max() <= held.current_max_A + 1e-9:
+    wanted_A, narrow_driver = plan.drive.current_A, narrow.driver
+    if wanted_A.min() >= narrow_driver.current_min_A - 1e-9 and wanted_A.max() <= narrow_driver.current_max_A + 1e-9:
         return None
-    most = max(held.current_max_A, -held.current_min_A)
-    peak = float(asked[np.argmax(np.abs(asked))])
+    most = max(narrow_driver.current_max_A, -narrow_driver.current_min_A)
+    peak = float(wanted_A[np.argmax(np.abs(wanted_A))])
     if abs(peak) > (rig.driver.current_max_A if peak > 0 else -rig.driver.current_min_A) + 1e-9:
         text = (
             f"the rig's driver gives {signed(rig.driver.current_min_A)} … {signed(rig.driver.current_max_A)} A "
-            f"(driver.current_limit_A), the cue asks for {signed(peak, '.3g')} A; ask for less current, or raise the "
+            f"(driver.current_limit_A), the cue needs {signed(peak, '.3g')} A; use less current, or raise the "
             f"limit if driver and module can"
         )
         return Narrowed(text, most, best.outcome)
@@ -155,13 +163,15 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
     cure = f"use a device of {abs(peak):.3g} A or more"
     if device.driven_by == "volts":
         gain = rig.driver.transconductance_A_per_V
-        least = gain * max(asked.max() / held.current_max_A, asked.min() / (held.current_min_A or -np.inf))
+        least = gain * max(
+            wanted_A.max() / narrow_driver.current_max_A, wanted_A.min() / (narrow_driver.current_min_A or -np.inf)
+        )
         through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
         least = np.ceil(100 * least - 1e-6) / 100
         cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
     text = (
-        f"{device.name} plays {signed(held.current_min_A)} … {signed(held.current_max_A)} A{through}, the design asks "
-        f"for up to {signed(peak, '.3g')} A; {cure}"
+        f"{device.name} plays {signed(narrow_driver.current_min_A)} … {signed(narrow_driver.current_max_A)} A{through}"
+        f", the design needs up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)
 
@@ -169,9 +179,9 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
 def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
     """Return the current by which the display follows set-points from `lead_s` on; RigError without a steady state."""
     rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
-    bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = int(np.ceil(end_s / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
     target = setpoints.at(times[1:] - lead_s)
-    currents, _, _ = run_follow(bank, one, one, period, target[np.newaxis], False, bank.states([state]))
+    currents, _, _ = run_follow(bank, lane, lane, period, target[np.newaxis], False, bank.states([state]))
     return Drive(times, [rest, *currents[0][1:], rest], held=True)

@@ -30,13 +30,38 @@ class Narrowed:
 
 @dataclass(frozen=True, slots=True)
 class DeliveredDrive:
-    """A cue as designed and as a device delivers it, on one clock, in which the cue begins at `lead_s`.
+    """A cue as designed and as a device delivers it, on one clock.
 
-    The device receives the best design within its range. `played` is what goes into files, `drives` the currents
-    designed and delivered (None for a thermode, which has none), `trace` the simulated delivery and `designed_trace`
-    the same without the device. `prompt_trace` is the delivery of a thermode without its lag: a constant lag is a delay
-    and not a loss. `outcome` is that of the design; `narrowed` is set where the range of the device is too small for
-    it.
+    Attributes
+    ----------
+    icon, rig, device
+        The cue, the rig that it is designed for, and the device that plays it.
+    requested_Hz, rate_Hz
+        Requested and actual rows of the traces per second.
+    lead_s
+        Time in s at which the cue begins.
+    played
+        What goes into files: the best design within the range of the device.
+    drives
+        The currents designed and delivered; None for a thermode.
+    designed_trace, trace
+        The simulation without the device, and with it.
+    outcome
+        Whether the design reaches the target.
+    device_warnings
+        Sentences about limits of the device.
+    prompt_trace
+        The delivery of a thermode without its lag: a constant lag is a delay and not a loss.
+    narrowed
+        What was changed where the range of the device is too small; None where it is not.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Device, deliver
+    >>> from thermicon.icons import load_library
+    >>> delivery = deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
+    >>> delivery.delivered
+    Drive(802 rows, ...)
     """
 
     icon: Icon
@@ -73,7 +98,7 @@ class DeliveredDrive:
     @property
     def _drives(self) -> tuple[Drive, Drive]:
         if self.drives is None:
-            raise DeviceError(f"{self.device.name} is a thermode: it shows temperatures, and no current of it is known")
+            raise DeviceError(f"{self.device.name} is a thermode: its current is not known")
         return self.drives
 
     @property

@@ -32,12 +32,34 @@ class Scale:
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """The hardware that plays a drive; all numbers come from `records`, each with its source.
+    """The hardware that plays a drive.
 
-    `driven_by` is what it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, segments
-    of temperature set-points that a thermode follows on its own, or temperatures against time, which a controller
-    around the rig's own module follows. `played`: whether thermicon has driven one.
+    Attributes
+    ----------
+    name, title
+        Name of the device, and one line for people.
+    driven_by
+        What it puts out: volts (through the rig's transconductance), amperes, the duty of a bridge, segments of
+        temperature set-points that a thermode follows, or temperatures against time for a controller around the module.
+    codes
+        How its codes are spaced.
+    levels
+        Whether its levels are fixed, or set to the peak of the waveform.
+    duty_rule
+        How a bridge realises a duty.
+    streams
+        Whether it plays while it receives, so that its memory does not limit a drive.
+    dc_coupled
+        Whether it puts out a constant voltage.
+    played
+        Whether thermicon has driven one.
+    note
+        What else to know.
+    records
+        All numbers, each with its source.
 
+    Examples
+    --------
     >>> Device.load("dac-16")
     Device('dac-16', volts, never played)
     >>> Device.load("dac-16").scale(7.0).step
@@ -123,8 +145,15 @@ class Device:
 
 
 def device_names() -> tuple[str, ...]:
-    """Names of the shipped devices.
+    """Return the names of the shipped devices.
 
+    Returns
+    -------
+    tuple of str
+        Names that `Device.load` accepts.
+
+    Examples
+    --------
     >>> "qst-tcs2" in device_names()
     True
     """

@@ -24,7 +24,17 @@ from ..records import Record, RecordError
 
 
 class DeviceError(InputError):
-    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure."""
+    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Device
+    >>> try:
+    ...     Device.load("dac-15")
+    ... except DeviceError as problem:
+    ...     print(problem)
+    dac-15: no such device; ...
+    """
 
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
@@ -151,32 +161,32 @@ def records_of(table: DeviceTable) -> tuple[Record, ...]:
 
 
 def _faults(table: DeviceTable) -> list[str]:
-    found, stated = [], {record.quantity: record for record in reversed(table.record)}
+    faults, stated = [], {record.quantity: record for record in reversed(table.record)}
     for place, record in enumerate(table.record):
         where = f"record.{place} ({record.quantity})"
         if record.quantity not in UNITS and record.quantity not in UNITS_BY_DRIVE:
-            found.append(f"{where}: no such quantity; {did_you_mean(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
+            faults.append(f"{where}: no such quantity; {did_you_mean(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
             continue
         if fault := _unit_fault(record, table.driven_by):
-            found.append(f"{where}: {fault}")
+            faults.append(f"{where}: {fault}")
         if stated[record.quantity] is not record:
-            found.append(f"{where}: is there twice; keep one")
+            faults.append(f"{where}: appears twice; keep one")
         if record.quantity in INTERVALS and (fault := _interval_fault(record)):
-            found.append(f"{where}: {fault}")
+            faults.append(f"{where}: {fault}")
             continue
         try:
             records_of(table.model_copy(update={"record": [record]}))
         except RecordError as problem:
-            found.append(f"{where}: {problem}")
+            faults.append(f"{where}: {problem}")
             continue
-        found += [f"{where}: {fault}" for fault in _limit_faults(record)]
+        faults += [f"{where}: {fault}" for fault in _limit_faults(record)]
     missing = [quantity for quantity in NEEDED[table.driven_by] if quantity not in stated]
-    found += [
+    faults += [
         f"a device driven by {table.driven_by} needs a record of its {quantity}, in "
         f"{_unit_of(quantity, table.driven_by)}"
         for quantity in missing
     ]
-    return found
+    return faults
 
 
 def _unit_of(quantity: str, driven_by: str) -> str | None:
@@ -186,19 +196,19 @@ def _unit_of(quantity: str, driven_by: str) -> str | None:
 
 def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
     """What is wrong with the unit of a record, in a sentence with the cure."""
-    wanted, found = _unit_of(record.quantity, driven_by), record.unit
-    if wanted is None:
+    required, stated = _unit_of(record.quantity, driven_by), record.unit
+    if required is None:
         takers = " or ".join(UNITS_BY_DRIVE[record.quantity])
-        return f"says nothing of a device driven by {driven_by}, only of one driven by {takers}; remove it"
-    if found == wanted:
+        return f"does not apply to a device driven by {driven_by}, only to one driven by {takers}; remove it"
+    if stated == required:
         return None
-    others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == found]
+    others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == stated]
     if not others:
-        return f"unit = {found!r}: must be {wanted}; state it in {wanted}"
+        return f"unit = {stated!r}: must be {required}; state it in {required}"
     either = " or ".join(f'"{drive}"' for drive in others)
     return (
-        f'unit = {found!r}: must be {wanted} for a device with driven_by = "{driven_by}"; state it in {wanted}, or set '
-        f"driven_by to {either} if {found} is what it puts out"
+        f'unit = {stated!r}: must be {required} for a device with driven_by = "{driven_by}"; state it in {required}, '
+        f"or set driven_by to {either} if {stated} is what it puts out"
     )
 
 
@@ -206,14 +216,14 @@ def _limit_faults(record: RecordTable) -> list[str]:
     """What numbers of a record no device has, a sentence each with the limit."""
     least, most = LIMITS[record.quantity]
     numbers = {"value": record.value, "low": record.low, "high": record.high}
-    found = [
+    faults = [
         f"{name} = {signed(number)} {record.unit}: must be {signed(least)} to {signed(most)} {record.unit}"
         for name, number in numbers.items()
         if number is not None and not least <= number <= most
     ]
-    if record.quantity == "resolution" and not found and any(n is not None and n != int(n) for n in numbers.values()):
-        found.append("must be a whole number of bits")
-    return found
+    if record.quantity == "resolution" and not faults and any(n is not None and n != int(n) for n in numbers.values()):
+        faults.append("must be a whole number of bits")
+    return faults
 
 
 def _interval_fault(record: RecordTable) -> str | None:
@@ -232,18 +242,18 @@ def _interval_fault(record: RecordTable) -> str | None:
 def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
     key = ".".join(str(part) for part in error["loc"])
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    said = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
+    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
     if kind == TEXT_FAULT:
-        return f"{said}: {context['fault']}"
+        return f"{subject}: {context['fault']}"
     if kind == "extra_forbidden":
         table = RecordTable if error["loc"][0] == "record" else DeviceTable
         return f"{key}: unknown key; {did_you_mean(str(error['loc'][-1]), table.model_fields)}"
     if kind == "missing":
         return f"{key} is missing; add it"
     if kind == "literal_error":
-        return f"{said}: must be {context.get('expected')}"
+        return f"{subject}: must be {context.get('expected')}"
     if kind in ("float_type", "finite_number"):
-        return f"{said}: must be a finite number without quotes or unit"
+        return f"{subject}: must be a finite number without quotes or unit"
     if kind == "bool_type":
-        return f"{said}: must be true or false"
-    return f"{said}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+        return f"{subject}: must be true or false"
+    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"

@@ -31,15 +31,15 @@ def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
     points = list(zip(corners.time_s, corners.value, strict=True))
     rest = corners.value[0]
     steps = [(_direction(a, b), a, b) for a, b in pairwise(points)]
-    found: list[Event] = []
+    events: list[Event] = []
     for direction, stretch in groupby(steps, key=lambda step: step[0]):
         pieces = list(stretch)
         (begin, from_), (end, to) = pieces[0][1], pieces[-1][2]
         if direction:
             back = abs(to - rest) < 1e-9
-            found.append(Event("return start" if back else "ramp start", lead_s + begin, from_))
-            found.append(Event("baseline reached" if back else "target reached", lead_s + end, to))
-    return (*found, Event("end", lead_s + corners.duration_s, corners.value[-1]))
+            events.append(Event("return start" if back else "ramp start", lead_s + begin, from_))
+            events.append(Event("baseline reached" if back else "target reached", lead_s + end, to))
+    return (*events, Event("end", lead_s + corners.duration_s, corners.value[-1]))
 
 
 def _direction(a: tuple[float, float], b: tuple[float, float]) -> int:

@@ -49,21 +49,30 @@ def netlist(
     rest_A
         Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
         later. None: the drive's first current.
-    out_file
-        Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
-    rows_Hz
-        Rows per second of that file.
     title
         First line of the netlist.
+    rows_Hz
+        Rows per second of `out_file`.
+    out_file
+        Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
     reltol
         Relative tolerance of the solver.
+
+    Returns
+    -------
+    str
+        The netlist.
+
+    Raises
+    ------
+    RigError
+        For a thermode, and where there is no steady state to start from.
 
     Examples
     --------
     >>> text = netlist(Rig.load("shani2021"), Drive([0, 1], [0.1, 0.1]))
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
-
     """
     net = network_of(rig)
     names, skin = _skin(rig, net)
@@ -155,21 +164,21 @@ def _module(rig: Rig) -> Iterator[str]:
 
 def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
     """The heat sink: ideal, or a body under its own PI control, whose power at rest balances `start_A`."""
-    sink, own = rig.heat_sink, rig.heat_sink.controller
+    sink, controller = rig.heat_sink, rig.heat_sink.controller
     yield from _section("heat sink")
     yield f"Rsink sink hot {sink.resistance_K_per_W!r}"
-    if own is None:
+    if controller is None:
         yield f"Vsink sink 0 {sink.temperature_C!r}"
         return
     rest_W = (sink.temperature_C - float(state_under_current(net, start_A)[HOT])) / sink.resistance_K_per_W
-    yield f"Csink sink 0 {own.capacity_J_per_K!r}"
+    yield f"Csink sink 0 {controller.capacity_J_per_K!r}"
     yield f"Bmiss miss 0 V={sink.temperature_C!r}-V(sink)"
-    integral = f"+{own.ki_W_per_Ks!r}*V(integral)" if own.ki_W_per_Ks else ""
-    yield f"Bwanted wanted 0 V={rest_W!r}+{own.kp_W_per_K!r}*V(miss){integral}"
-    yield f"Bsink 0 sink I=min(max(V(wanted),-{own.power_limit_W!r}),{own.power_limit_W!r})"
+    integral = f"+{controller.ki_W_per_Ks!r}*V(integral)" if controller.ki_W_per_Ks else ""
+    yield f"Bwanted wanted 0 V={rest_W!r}+{controller.kp_W_per_K!r}*V(miss){integral}"
+    yield f"Bsink 0 sink I=min(max(V(wanted),-{controller.power_limit_W!r}),{controller.power_limit_W!r})"
     if integral:
         yield "* the integral waits while the power is at its limit"
-        yield f"Bintegral 0 integral I=V(miss)*(1-u(V(wanted)*V(miss))*u(abs(V(wanted))-{own.power_limit_W!r}))"
+        yield f"Bintegral 0 integral I=V(miss)*(1-u(V(wanted)*V(miss))*u(abs(V(wanted))-{controller.power_limit_W!r}))"
         yield "Cintegral integral 0 1"
 
 

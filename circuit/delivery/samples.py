@@ -49,9 +49,9 @@ class Samples:
         """Indices of the samples that get a row in a drive: all, or at a dense rate those that change and the last."""
         if self.rate_Hz <= DENSEST_HZ:
             return np.arange(len(self.codes))
-        kept = np.append(True, np.diff(self.codes) != 0)
-        kept[-1] = True
-        return np.flatnonzero(kept)
+        changes = np.append(True, np.diff(self.codes) != 0)
+        changes[-1] = True
+        return np.flatnonzero(changes)
 
     def until(self, end_s: float) -> Samples:
         """A copy with the last code held until a time in s."""
@@ -110,16 +110,16 @@ def sample(
     """
     buffer = device.record("buffer length")
     least = 0 if buffer is None or buffer.low is None else round(buffer.low) - 1
-    _check_count(device, "the fewest that it plays", least)
+    _check_count(device, "the minimum that it plays", least)
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
-    wanted = _command(device, rig, current, edges, plates)
+    command = _command(device, rig, current, edges, plates)
     warnings = []
     limit = device.most("slew rate")
-    limited = _slewed(wanted, limit / rate_Hz)
-    if np.abs(limited - wanted).max() > 1e-12:
-        warnings.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s holds the command back")
+    limited = _slewed(command, limit / rate_Hz)
+    if np.abs(limited - command).max() > 1e-12:
+        warnings.append(f"{device.name}: its slew rate of {limit:g} {device.unit}/s limits the command")
     scale = device.scale(float(np.abs(limited).max()))
     codes = np.rint((limited - scale.offset) / scale.step).astype(np.int64)
     clipped = np.clip(codes, scale.lowest, scale.highest)
@@ -159,8 +159,8 @@ def led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
     """The design preceded by one update of rest and followed by rest."""
     lead, drive = 1.0 / rate_Hz, plan.drive
     if drive.held:
-        kept = drive.time_s[:-1] < end_s - 1e-9
-        times, currents = drive.time_s[:-1][kept], drive.current_A[:-1][kept]
+        before_end = drive.time_s[:-1] < end_s - 1e-9
+        times, currents = drive.time_s[:-1][before_end], drive.current_A[:-1][before_end]
         return Drive([0.0, *(times + lead), end_s + lead], [plan.rest_A, *currents, plan.rest_A], held=True)
     times, currents = drive.time_s + lead, drive.current_A
     return Drive([0.0, *times], [plan.rest_A, *currents])
@@ -187,10 +187,10 @@ def _command(device: Device, rig: Rig, current: Array, times: Array, plates: tup
     return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
 
 
-def _slewed(wanted: Array, most: float) -> Array:
-    if np.abs(np.diff(wanted)).max() <= most:
-        return wanted
-    reached = wanted.tolist()
+def _slewed(command: Array, most: float) -> Array:
+    if np.abs(np.diff(command)).max() <= most:
+        return command
+    reached = command.tolist()
     for k in range(1, len(reached)):
         reached[k] = min(max(reached[k], reached[k - 1] - most), reached[k - 1] + most)
     return np.array(reached)

@@ -74,7 +74,7 @@ def closed(device: Device, setpoints: Setpoints) -> Setpoints:
     most = int(device.most("segments"))
     if added and len(setpoints.segments) + count > most:
         raise DeviceError(
-            f"{device.name}: {len(setpoints.segments) + count} segments are needed with the way back to the baseline, "
+            f"{device.name}: {len(setpoints.segments) + count} segments are needed with the return to baseline; "
             f"it takes {most}; shorten the icon, or let it return by itself"
         )
     return replace(setpoints, segments=(*setpoints.segments, *added), closing=len(added))
@@ -92,8 +92,8 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
         _check("set-point", level, device.interval("set-point range"), device)
     most, tolerance = int(device.most("segments")), 0.5 * step
     while True:
-        kept = _thinned(time_s, level_C, tolerance) if curve else range(len(time_s))
-        segments = _segments(device, [float(time_s[k]) for k in kept], [float(level_C[k]) for k in kept])
+        rows = _thinned(time_s, level_C, tolerance) if curve else range(len(time_s))
+        segments = _segments(device, [float(time_s[k]) for k in rows], [float(level_C[k]) for k in rows])
         if len(segments) <= most:
             return Setpoints(tick, step, round(float(level_C[0]) / step), segments)
         if not curve:
@@ -108,13 +108,13 @@ def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[
     step, tick = device.most("set-point step"), device.most("tick")
     fastest, longest = device.most("ramp rate"), int(device.most("segment length"))
     begin, before = 0, round(levels[0] / step)
-    found: list[tuple[int, int]] = []
+    segments: list[tuple[int, int]] = []
     for (_, _), (time, level) in pairwise(zip(times, levels, strict=True)):
         goal = round(level / step)
         least = max(1, math.ceil(abs(goal - before) * step / fastest / tick - 1e-9))
         until = max(round(time / tick), begin + least)  # what a ramp is late, the next segment makes up for
         count = -(-(until - begin) // longest)
-        if len(found) + count > MOST_SEGMENTS:
+        if len(segments) + count > MOST_SEGMENTS:
             raise DeviceError(
                 f"{device.name}: more than {MOST_SEGMENTS:,} segments of at most {longest} ticks of {tick:g} s are "
                 f"needed; shorten the icon, or use another device"
@@ -122,10 +122,10 @@ def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[
         ends = [begin + (until - begin) * (k + 1) // count for k in range(count)]
         for end in ends:
             share = (end - begin) / (until - begin)
-            found.append((end, round(before + (goal - before) * share)))
+            segments.append((end, round(before + (goal - before) * share)))
         begin, before = until, goal
-    ticks = [end - start for start, end in pairwise([0, *(end for end, _ in found)])]
-    return tuple((length, level) for length, (_, level) in zip(ticks, found, strict=True))
+    ticks = [end - start for start, end in pairwise([0, *(end for end, _ in segments)])]
+    return tuple((length, level) for length, (_, level) in zip(ticks, segments, strict=True))
 
 
 def _check(what: str, level: float, limits: tuple[float, float], device: Device) -> None:
@@ -138,7 +138,7 @@ def _check(what: str, level: float, limits: tuple[float, float], device: Device)
 
 def _thinned(time_s: Array, level_C: Array, tolerance: float) -> Sequence[int]:
     """Corners that keep a line within a tolerance in K of all points: Ramer–Douglas–Peucker without recursion."""
-    kept, open_ = {0, len(time_s) - 1}, [(0, len(time_s) - 1)]
+    corners, open_ = {0, len(time_s) - 1}, [(0, len(time_s) - 1)]
     while open_:
         first, last = open_.pop()
         if last - first < 2:
@@ -148,6 +148,6 @@ def _thinned(time_s: Array, level_C: Array, tolerance: float) -> Sequence[int]:
         apart = np.abs(level_C[inner] - chord)
         worst = first + 1 + int(np.argmax(apart))
         if apart.max() > tolerance:
-            kept.add(worst)
+            corners.add(worst)
             open_ += [(first, worst), (worst, last)]
-    return sorted(kept)
+    return sorted(corners)

@@ -57,16 +57,16 @@ def follow_samples(rig: Rig, samples: Samples) -> Drive:
     """
     levels = samples.command
     rest, state = steady_state(rig, "display", float(levels[0]))
-    bank, one, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
     place = np.floor(times[:-1] * samples.rate_Hz + 1e-6).astype(np.int64)
     setpoint = levels[np.minimum(place, len(levels) - 1)][np.newaxis]
     if rig.controller is None:
-        currents, _, _ = run_follow(bank, one, one, period, setpoint, False, bank.states([state]))
+        currents, _, _ = run_follow(bank, lane, lane, period, setpoint, False, bank.states([state]))
     else:
         gains = np.array([gains_of(rig)])
-        currents, _, _ = run_regulate(bank, one, one, period, setpoint, gains, np.array([rest]), bank.states([state]))
+        currents, _, _ = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([rest]), bank.states([state]))
     return Drive(times, [*currents[0], rest], held=True)
 
 

@@ -30,12 +30,12 @@ def claims_of(content: bytes) -> Claims | None:
     >>> claims_of(b"[1, 2]") is None
     True
     """
-    held = table_of(content)
-    if held is None or not isinstance(held.get("file"), str) or "thermicon" not in held:
+    document = table_of(content)
+    if document is None or not isinstance(document.get("file"), str) or "thermicon" not in document:
         return None
-    shared = held.get("set_files")
-    named = {str(name): str(one) for name, one in shared.items()} if isinstance(shared, dict) else {}
-    return Claims(held["file"], {held["file"]: str(held.get("drive_sha256") or ""), **named})
+    shared = document.get("set_files")
+    named = {str(name): str(digest) for name, digest in shared.items()} if isinstance(shared, dict) else {}
+    return Claims(document["file"], {document["file"]: str(document.get("drive_sha256") or ""), **named})
 
 
 def table_of(content: bytes) -> dict[str, Any] | None:
@@ -43,8 +43,8 @@ def table_of(content: bytes) -> dict[str, Any] | None:
     if len(content) > LONGEST:
         return None
     try:
-        held = json.loads(content)
-        json.dumps(held, ensure_ascii=False).encode("utf-8")  # half characters and endless nesting are no text
+        document = json.loads(content)
+        json.dumps(document, ensure_ascii=False).encode("utf-8")  # half characters and endless nesting are no text
     except (ValueError, RecursionError):
         return None
-    return held if isinstance(held, dict) else None
+    return document if isinstance(document, dict) else None

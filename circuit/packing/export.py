@@ -20,15 +20,42 @@ from .refusal import Refusal
 
 
 class ExportError(InputError):
-    """An export that was refused, or a folder that cannot take one; the text says why and what to change."""
+    """An export that was refused, or a folder that cannot take one; the text says why and what to change.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "notes.txt").write_text("mine")
+    ...     try:
+    ...         export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini", folder=folder)
+    ...     except ExportError as problem:
+    ...         print("refused:", problem)
+    refused: ... is not an empty folder; ...
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """The result of `export`: bytes by file name, or none where any icon was refused.
+    """The result of `export`.
 
-    `refused` has every cause against writing, with the name of its icon; a forced export has causes and files.
-    `prepared` holds what the device delivers of each icon, with its verdict.
+    Attributes
+    ----------
+    rig_name, device_name, format_name
+        Names of the rig, the device and the file format.
+    prepared
+        What the device delivers of each icon, with its verdict.
+    refused
+        Every reason against writing, with the name of its icon; a forced export has reasons and files.
+    files
+        Bytes by file name; empty where an icon was refused.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> result = export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini")
+    >>> result.refused, sorted(result.files)
+    ((), ['warming-step.json', 'warming-step.protocol.ini'])
     """
 
     rig_name: str
@@ -41,13 +68,17 @@ class Export:
     def __repr__(self) -> str:
         count = f"{len(self.prepared)} icon{'s' * (len(self.prepared) != 1)}"
         size = sum(len(content) for content in self.files.values())
-        said = f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
-        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {said})"
+        summary = (
+            f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
+        )
+        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {summary})"
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to know of the drives before they are played, each with the name of its icon."""
-        return tuple(f"{one.delivery.icon.name}: {text}" for one in self.prepared for text in one.warnings)
+        return tuple(
+            f"{prepared.delivery.icon.name}: {text}" for prepared in self.prepared for text in prepared.warnings
+        )
 
 
 def export(
@@ -111,7 +142,7 @@ def export(
         raise ExportError("there is no icon to export; give at least one")
     goal = None if folder is None else _free(Path(folder))
     ready = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s)
-    refused = tuple((one.delivery.icon.name, refusal) for one in ready for refusal in one.refusals)
+    refused = tuple((cue.delivery.icon.name, refusal) for cue in ready for refusal in cue.refusals)
     barred = [(name, refusal) for name, refusal in refused if not (force and refusal.forcible)]
     files = {} if barred else pack(ready, form)
     if goal is not None:

@@ -44,55 +44,82 @@ def pack(
     felt: Mapping[str, Mapping[str, object]] | None = None,
     losses: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, bytes]:
-    """Return file names and their bytes: a sidecar and a drive for each cue, then what belongs to the set.
+    """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set.
 
-    `felt` and `losses` are the reports of perception by the names of cues; a cue with refusals is marked as forced.
-    Raises FormatError where two cues would get the same name, or one is unsafe.
+    Parameters
+    ----------
+    ready
+        The prepared cues; one with refusals is marked as forced.
+    form
+        The file format.
+    felt
+        For each cue, by its name, the report of perception on the delivered drive.
+    losses
+        For each cue, by its name, sentences on what is lost in delivery.
+
+    Returns
+    -------
+    dict
+        Bytes by file name; nothing is written.
+
+    Raises
+    ------
+    FormatError
+        Where two cues would get the same name, or one is unsafe.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Device, Rig, prepare
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
+    >>> list(pack([prepare(icon, Rig.load("tcs2"), Device.load("qst-tcs2"), form)], form))
+    ['warming-step.json', 'warming-step.protocol.ini']
     """
-    check_names([one.delivery.icon.name for one in ready], form)
+    check_names([cue.delivery.icon.name for cue in ready], form)
     drives = {}
-    for one in ready:
-        name = one.delivery.icon.name
-        if unsafe := [str(refusal) for refusal in one.refusals if not refusal.forcible]:
+    for cue in ready:
+        name = cue.delivery.icon.name
+        if unsafe := [str(refusal) for refusal in cue.refusals if not refusal.forcible]:
             raise FormatError(f"{name}: {unsafe[0]}")
-        drive = form.file_name(one.delivery)
+        drive = form.file_name(cue.delivery)
         if drive.casefold() in form.set_files:
             raise FormatError(
                 f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
             )
         try:
-            drives[name] = drive, form.write(one.delivery)
+            drives[name] = drive, form.write(cue.delivery)
         except FormatError as problem:
             raise FormatError(f"{name}: {problem}") from None
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
-        names = [one.delivery.icon.name for one in ready]
-        played = [_played(one, drives[name][0], form) for one, name in zip(ready, names, strict=True)]
-        shared = form.player(played, must_prevent([{"hardware_must_prevent": one.verdict.demanded} for one in ready]))
+        names = [cue.delivery.icon.name for cue in ready]
+        played = [_played(cue, drives[name][0], form) for cue, name in zip(ready, names, strict=True)]
+        shared = form.player(played, must_prevent([{"hardware_must_prevent": cue.verdict.demanded} for cue in ready]))
     files: dict[str, bytes] = {}
-    for one in ready:
-        name = one.delivery.icon.name
+    for cue in ready:
+        name = cue.delivery.icon.name
         drive, content = drives[name]
-        over = [str(refusal) for refusal in one.refusals]
+        over = [str(refusal) for refusal in cue.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
         about = sidecar(
-            one.delivery, form, one.deviation, one.verdict.to_dict(), (felt or {}).get(name), over,
-            demanded=one.verdict.demanded, drive=content, set_files=shared, spread=one.spread,
+            cue.delivery, form, cue.deviation, cue.verdict.to_dict(), (felt or {}).get(name), over,
+            demanded=cue.verdict.demanded, drive=content, set_files=shared, spread=cue.spread,
         )  # fmt: skip
         files[sidecar_name(name, form)] = sidecar_text(sealed(about))
         files[drive] = content
     return {**files, **shared}
 
 
-def _played(one: Prepared, file: str, form: Format) -> Played:
+def _played(cue: Prepared, file: str, form: Format) -> Played:
     """A drive with its verdict, for the player of a set."""
-    known = one.verdict.to_dict()
+    known = cue.verdict.to_dict()
     recovery, shortest = (
         float(value) if isinstance(value := known.get(key), (int, float)) else None
         for key in ("recovery_s", "shortest_pause_s")
     )
     return Played(
-        one.delivery, file, sidecar_name(one.delivery.icon.name, form), one.verdict.colour, recovery, shortest
+        cue.delivery, file, sidecar_name(cue.delivery.icon.name, form), cue.verdict.colour, recovery, shortest
     )
 
 

@@ -58,7 +58,29 @@ Gate = Callable[[DeliveredDrive], Verdict]
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """One cue that is ready to be written, or to be refused."""
+    """One cue that is ready to be written, or to be refused.
+
+    Attributes
+    ----------
+    delivery
+        What the device delivers.
+    verdict
+        Whether that is safe.
+    deviation
+        How far it deviates from the design.
+    refusals
+        Why it is not written; empty where it is.
+    spread
+        How far an open-loop delivery varies with the uncertainty of the rig; None where it was not calculated.
+
+    Examples
+    --------
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> from thermicon.icons import load_library
+    >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
+    >>> prepare(icon, Rig.load("tcs2"), Device.load("qst-tcs2"), form)
+    Prepared('warming-step' for qst-tcs2, 8 s, safety green)
+    """
 
     delivery: DeliveredDrive
     verdict: Verdict
@@ -109,6 +131,11 @@ def prepare(
     pause_s
         Pause in s between plays; None: the recovery time.
 
+    Returns
+    -------
+    Prepared
+        The delivery with its verdict, and the reasons against writing it.
+
     Raises
     ------
     PauseError, FormatError, DeviceError, RigError
@@ -123,7 +150,6 @@ def prepare(
     >>> ready = prepare(icon, rig, Device.load("dac-16"), load_format("csv"))
     >>> ready.verdict.colour, ready.refusals
     ('green', ())
-
     """
     form.check(device)
     delivery = deliver(icon, rig, device, tail_s=tail_s)
@@ -159,7 +185,7 @@ def prepare_set(
         if step is not None:
             step(done, len(icons))
     verdicts = worst_cases(deliveries, pause_s) if deliveries else ()
-    return tuple(_judged(one, verdict) for one, verdict in zip(deliveries, verdicts, strict=True))
+    return tuple(_judged(delivery, verdict) for delivery, verdict in zip(deliveries, verdicts, strict=True))
 
 
 def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:

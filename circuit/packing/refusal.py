@@ -33,7 +33,21 @@ FREE_V = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why a cue is not exported. What is unsafe cannot be forced."""
+    """Why a cue is not exported.
+
+    Parameters
+    ----------
+    kind
+        `unsafe`, `unreachable` or `lossy`; an export that is unsafe cannot be forced.
+    text
+        The reason, with its cure.
+
+    Examples
+    --------
+    >>> refusal = Refusal("lossy", "the device is too coarse")
+    >>> str(refusal), refusal.forcible
+    ('loses too much: the device is too coarse', True)
+    """
 
     kind: Literal["unsafe", "unreachable", "lossy"]
     text: str
@@ -53,21 +67,21 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
     A consequence is not listed besides its cause: what a device with too small a range misses or loses is reported with
     the range, and losses are not reported where the drive is unsafe.
     """
-    found, narrowed = [], delivery.narrowed
+    refusals, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
         reason = verdict.reason or "the gate says red"
         mended_by_pause = "--pause" in reason
-        found.append(Refusal("unsafe", reason if mended_by_pause else reason + more_and_cure(verdict.findings)))
+        refusals.append(Refusal("unsafe", reason if mended_by_pause else reason + more_and_cure(verdict.findings)))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
-        found.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
+        refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
         lost = "" if narrowed else lost
     elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
-        found.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
+        refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
         lost = ""
     if lost and verdict.colour != "red":
-        found.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(delivery, lost)))
-    return tuple(found)
+        refusals.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(delivery, lost)))
+    return tuple(refusals)
 
 
 def needed_A(icon: Icon, rig: Rig) -> float | None:
@@ -107,11 +121,11 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
 def lost_text(deviation: DeliveryDeviation) -> str:
     """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
     limit = loss_limit("receptor difference")
-    lost = [one for one in deviation.places if "receptor" in one.place and one.rms_K > limit]
+    lost = [place for place in deviation.places if "receptor" in place.place and place.rms_K > limit]
     if not lost:
         return ""
-    first, *others = sorted(lost, key=lambda one: -one.rms_K)
-    also = "".join(f" (the {one.place} by {one.rms_K:.3f} K)" for one in others)
+    first, *others = sorted(lost, key=lambda place: -place.rms_K)
+    also = "".join(f" (the {place.place} by {place.rms_K:.3f} K)" for place in others)
     return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
 
 
@@ -119,21 +133,21 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
     """The rig's own shortfall, with what it would take."""
     text = outcome.reason or "the target is missed"
     if delivery.drives is None:  # a thermode, which has neither driver nor module
-        return f"{text}; ask for a slower or smaller change, or use a thermode that can"
+        return f"{text}; use a slower or smaller change, or use a thermode that can"
     rig, driver = delivery.rig, delivery.rig.driver
-    held = [name for name, _ in outcome.limits]
-    if not held or rig.controller is not None:
-        return f"{text}; ask for a slower or smaller change"
-    if held == ["compliance voltage"]:
-        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or ask for a slower change"
+    limits_met = [name for name, _ in outcome.limits]
+    if not limits_met or rig.controller is not None:
+        return f"{text}; use a slower or smaller change"
+    if limits_met == ["compliance voltage"]:
+        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"
     needed = needed_A(delivery.icon, rig)
     if needed is None:
-        return f"{text}; no current of this module reaches it: ask for a slower or smaller change"
+        return f"{text}; no current of this module reaches it: use a slower or smaller change"
     narrow = ""
     if delivery.narrowed:
         narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
     return (
-        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: ask for a "
+        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a "
         f"slower or smaller change, or raise the limit if driver and module can"
     )
 

@@ -77,7 +77,7 @@ def sidecar(
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(delivery),
-        "delivered_minus_designed": {one.place: _without(asdict(one), "place") for one in deviation.places},
+        "delivered_minus_designed": {place.place: _without(asdict(place), "place") for place in deviation.places},
         "open_loop_spread": None if spread is None else spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
@@ -137,10 +137,10 @@ def _played(delivery: DeliveredDrive) -> dict[str, object]:
 
 
 def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
-    found: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    predicted: dict[str, object] = dict(summarise(delivery.trace).to_dict())
     if not isinstance(delivery.played, Setpoints):
-        return found
-    return {**found, "duration_s": delivery.file_s}
+        return predicted
+    return {**predicted, "duration_s": delivery.file_s}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:

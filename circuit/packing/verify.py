@@ -9,7 +9,7 @@ from typing import Any, Literal
 from ..program import code_digest, own_version
 from .claims import Claims, claims_of, table_of
 from .digests import digest, digest_of_content
-from .readback import Figures, Told, differences, read_back
+from .readback import Figures, StatedFigures, differences, read_back
 from .sidecar import sealed, sidecar_text
 
 AGAIN = "export the icon again"
@@ -73,10 +73,10 @@ def verify(files: Mapping[str, bytes]) -> Verification:
         about = table_of(files[name]) or {}
         findings += [*_own(name, files[name], about), *_names(name, each, claims), *_parts(name, about)]
         findings += _bound(name, each, files)
-        found, unit, problems = _figures(each.drive, files, about)
+        actual, unit, problems = _figures(each.drive, files, about)
         findings += problems
         icon = about.get("icon")
-        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", found, unit))
+        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", actual, unit))
     findings += _extra(files, claims)
     return Verification(tuple(pairs), tuple(dict.fromkeys(findings)))
 
@@ -88,11 +88,11 @@ def _claims(name: str, content: bytes) -> Claims | None:
 def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Finding]:
     """The sidecar against its own digest, byte for byte."""
     if "sidecar_sha256" not in about:
-        yield Finding(name, "wrong", "holds no digest of itself (sidecar_sha256)", AGAIN)
+        yield Finding(name, "wrong", "contains no digest of itself (sidecar_sha256)", AGAIN)
     elif sealed(about)["sidecar_sha256"] != about["sidecar_sha256"]:
         yield Finding(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
     elif sidecar_text(about) != content:
-        yield Finding(name, "wrong", "says the same but is laid out differently than it was exported", RESTORE)
+        yield Finding(name, "wrong", "has the same content, but not the layout in which it was exported", RESTORE)
 
 
 def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[Finding]:
@@ -101,7 +101,7 @@ def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[
         yield Finding(
             name,
             "wrong",
-            f"describes {claims.drive}, which this name does not go with",
+            f"describes {claims.drive}, which does not match this name",
             "rename it back, or export again",
         )
     if twice := sorted(each for each, other in others.items() if other.drive == claims.drive and each != name):
@@ -113,7 +113,7 @@ def _bound(name: str, claims: Claims, files: Mapping[str, bytes]) -> Iterator[Fi
     for file, known in claims.digests.items():
         kind = "drive" if file == claims.drive else "set's file"
         if not known:
-            yield Finding(name, "wrong", f"holds no digest of {file}", AGAIN)
+            yield Finding(name, "wrong", f"contains no digest of {file}", AGAIN)
         elif file not in files:
             yield Finding(file, "wrong", f"is missing; {name} belongs to it", RESTORE)
         elif digest(files[file]) != known:
@@ -126,20 +126,22 @@ def _parts(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
     document = rig.get("document") if isinstance(rig, dict) else None
     known = about.get("rig_sha256")
     if not isinstance(rig, dict) or not digest_of_content(document) == rig.get("content_hash") == known:
-        yield Finding(name, "wrong", "holds another rig than the one of its digest (rig_sha256)", RESTORE)
+        yield Finding(name, "wrong", "contains another rig than the one of its digest (rig_sha256)", RESTORE)
     elif text := _other_shipped(rig, str(known)):
         yield Finding(name, "told", text)
     if digest_of_content(device) != about.get("device_sha256"):
-        yield Finding(name, "wrong", "holds another device than the one of its digest (device_sha256)", RESTORE)
+        yield Finding(name, "wrong", "contains another device than the one of its digest (device_sha256)", RESTORE)
     yield from _icon(name, about.get("icon"))
-    made = about.get("program")
-    made = made if isinstance(made, dict) else {}
-    if made.get("version") != own_version() or about.get("thermicon") != made.get("version"):
+    program = about.get("program")
+    program = program if isinstance(program, dict) else {}
+    if program.get("version") != own_version() or about.get("thermicon") != program.get("version"):
         other = f"thermicon {about.get('thermicon')}, this is {own_version()}"
-        yield Finding(name, "told", f"was exported by {other}; exported anew, the drive may differ")
-    elif made.get("code_sha256") != code_digest():
+        yield Finding(name, "told", f"was exported by {other}; if it is exported again, the drive may differ")
+    elif program.get("code_sha256") != code_digest():
         yield Finding(
-            name, "told", f"was exported by other code of version {own_version()}; anew, the drive may differ"
+            name,
+            "told",
+            f"was exported by other code of version {own_version()}; if it is exported again, the drive may differ",
         )
 
 
@@ -151,7 +153,7 @@ def _other_shipped(rig: Mapping[str, Any], known: str) -> str:
     if name not in rig_names() or rig.get("changes"):
         return ""
     now = digest(Rig.load(str(name)).document.encode("utf-8"))
-    return "" if now == known else f"was exported for a rig called {name} that is not the shipped one of today"
+    return "" if now == known else f"was exported for a rig called {name} that differs from the rig that is shipped now"
 
 
 def _icon(name: str, icon: object) -> Iterator[Finding]:
@@ -162,12 +164,12 @@ def _icon(name: str, icon: object) -> Iterator[Finding]:
         yield Finding(name, "wrong", "holds no icon", RESTORE)
         return
     try:
-        found = parse(str(icon.get("text"))).find(str(icon.get("name")))
+        icon_now = parse(str(icon.get("text"))).find(str(icon.get("name")))
     except ValueError:
-        yield Finding(name, "told", "holds an icon that this version cannot read")
+        yield Finding(name, "told", "contains an icon that this version cannot read")
         return
-    if found is None or found.content_hash != icon.get("content_hash"):
-        yield Finding(name, "wrong", "holds another icon than the one of its content_hash", RESTORE)
+    if icon_now is None or icon_now.content_hash != icon.get("content_hash"):
+        yield Finding(name, "wrong", "contains another icon than the one of its content_hash", RESTORE)
 
 
 def _figures(
@@ -177,15 +179,19 @@ def _figures(
     if drive not in files:
         return None, "", ()
     try:
-        told = Told.of(about)
+        stated = StatedFigures.of(about)
     except (LookupError, TypeError, ArithmeticError, ValueError, StopIteration, AttributeError):
         return None, "", (Finding(drive, "told", "is not compared in length and extremes: its sidecar has no figures"),)
     try:
-        found = read_back(files[drive], about)
+        actual = read_back(files[drive], about)
     except ValueError as problem:
-        return None, told.unit, (Finding(drive, "wrong", f"cannot be read as its format ({problem})", RESTORE),)
-    apart = () if found is None else differences(found, told)
-    return found, told.unit, tuple(Finding(drive, "wrong", f"{text}, as its sidecar says", RESTORE) for text in apart)
+        return None, stated.unit, (Finding(drive, "wrong", f"cannot be read as its format ({problem})", RESTORE),)
+    apart = () if actual is None else differences(actual, stated)
+    return (
+        actual,
+        stated.unit,
+        tuple(Finding(drive, "wrong", f"{text}, as its sidecar says", RESTORE) for text in apart),
+    )
 
 
 def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator[Finding]:
@@ -195,15 +201,15 @@ def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator
     for name in sorted(set(files) - known):
         if name.endswith(".json"):
             if table_of(files[name]) is None:
-                yield Finding(name, "wrong", "cannot be read as JSON, so it is a sidecar of nothing", RESTORE)
+                yield Finding(name, "wrong", "cannot be read as JSON, so it describes no drive", RESTORE)
             else:
-                yield Finding(name, "told", "is not a sidecar and is not looked into")
+                yield Finding(name, "told", "is not a sidecar and was not checked")
         elif name.lower().endswith(ends):
             yield Finding(
-                name, "wrong", "has no sidecar, so nothing says what it is", "remove it, or export its icon again"
+                name, "wrong", "has no sidecar, so its content is unknown", "remove it, or export its icon again"
             )
         else:
-            yield Finding(name, "told", "does not belong to an export and is not looked into")
+            yield Finding(name, "told", "does not belong to an export and was not checked")
 
 
 def _suffixes() -> tuple[str, ...]:

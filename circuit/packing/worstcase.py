@@ -29,7 +29,7 @@ from ..safety.gate import Gate, gate_set
 from ..safety.single import Single
 from ..safety.single_faults import BEYOND_K, Faulty
 from ..safety.tally import WATCHED
-from ..safety.thermode import Shown, Under
+from ..safety.thermode import DisplayCourse, Under
 from ..safety.thermode_gate import gate_shown
 from ..solver.drive import Drive
 
@@ -63,13 +63,13 @@ def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = No
     device, rig = deliveries[0].device, deliveries[0].rig
     if device.driven_by == "set-points":
         stuck = device.interval("set-point range")
-        return gate_shown([ways_of(one) for one in deliveries], rig, stuck_C=stuck, pause_s=pause_s)
+        return gate_shown([ways_of(delivery) for delivery in deliveries], rig, stuck_C=stuck, pause_s=pause_s)
     if device.driven_by == "temperatures":
         return _controlled(deliveries, pause_s)
     if device.driven_by == "duty":
         return _bridged(deliveries, pause_s)
     assert device.driven_by in ("volts", "amperes"), f"no gate for a device driven by {device.driven_by}"
-    drives = [(one.delivered, float(one.delivered.current_A[0])) for one in deliveries]
+    drives = [(delivery.delivered, float(delivery.delivered.current_A[0])) for delivery in deliveries]
     return gate_set(drives, rig, pause_s=pause_s)
 
 
@@ -79,24 +79,24 @@ def _bridged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tup
     low, high = device.interval("output range")
     peak, averaged = min(-low, high), device.most("carrier frequency") >= RIPPLES_BELOW_HZ
     drives = []
-    for one in deliveries:
-        samples = samples_of(one)
+    for delivery in deliveries:
+        samples = samples_of(delivery)
         means = Drive(samples.time_s, samples.command * peak, held=True)
-        drives.append((means if averaged else one.delivered, float(samples.command[0]) * peak))
+        drives.append((means if averaged else delivery.delivered, float(samples.command[0]) * peak))
     return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
 
 
-def ways_of(delivery: DeliveredDrive) -> tuple[Shown, ...]:
+def ways_of(delivery: DeliveredDrive) -> tuple[DisplayCourse, ...]:
     """The display of a thermode in each way in which it may follow its set-points, at its own tick."""
     played, device = delivery.played, delivery.device
     assert isinstance(played, Setpoints)
-    found = [Shown(AT_ONCE, *display_of(played, device, lagged=False))]
+    ways = [DisplayCourse(AT_ONCE, *display_of(played, device, lagged=False))]
     if lag_of(device) > 0:
         settling = SETTLED_LAGS * lag_of(device)
         step, display = display_of(played, device, lagged=True, end_s=float(played.time_s[-1]) + settling)
         display = np.append(display[:-1], played.level_C[-1])
-        found.append(Shown(LAGGED, step, display, step * (len(display) - 1) - float(played.time_s[-1])))
-    return tuple(found)
+        ways.append(DisplayCourse(LAGGED, step, display, step * (len(display) - 1) - float(played.time_s[-1])))
+    return tuple(ways)
 
 
 def samples_of(delivery: DeliveredDrive) -> Samples:
@@ -111,34 +111,34 @@ def _controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> 
     No module jumps as a set-point does, so rates are those of the module; a display that is exactly at its set-points
     bounds the temperatures of repetition.
     """
-    rig, shows = deliveries[0].rig, [(_held(one),) for one in deliveries]
+    rig, shows = deliveries[0].rig, [(_held(delivery),) for delivery in deliveries]
     stuck = (_stuck_C(deliveries[0], False), _stuck_C(deliveries[0], True))
     verdicts = gate_shown(shows, rig, stuck_C=stuck, pause_s=pause_s, rates=False, module=True)
-    found, under = [], Under.of(rig)
-    for one, verdict in zip(deliveries, verdicts, strict=True):
-        checks, faulty, unpowered_C = _followed(one)
-        found.append(
+    judged, under = [], Under.of(rig)
+    for delivery, verdict in zip(deliveries, verdicts, strict=True):
+        checks, faulty, unpowered_C = _followed(delivery)
+        judged.append(
             replace(
                 verdict,
                 scenarios=verdict.scenarios + len(corners_of(rig)),
                 checks=worst_of([checks, verdict.checks]),
                 once=worst_of([checks, verdict.once]),
-                demands=_demands(verdict, faulty, unpowered_C, _rest_s(under, one, unpowered_C)),
+                demands=_demands(verdict, faulty, unpowered_C, _rest_s(under, delivery, unpowered_C)),
             )
         )
-    return tuple(found)
+    return tuple(judged)
 
 
-def _held(delivery: DeliveredDrive) -> Shown:
+def _held(delivery: DeliveredDrive) -> DisplayCourse:
     """A display that is exactly at its set-points, from one update to the next."""
     samples = samples_of(delivery)
-    return Shown(HELD, 1.0 / samples.rate_Hz, samples.command)
+    return DisplayCourse(HELD, 1.0 / samples.rate_Hz, samples.command)
 
 
 def _rest_s(under: Under, delivery: DeliveredDrive, unpowered_C: tuple[float, float]) -> float | None:
     """How long the loop must hold the baseline after a start without power until the skin is there, in every corner."""
     base = _held(delivery)
-    rest = Shown(HELD, base.step_s, np.full(2, base.display_C[0]))
+    rest = DisplayCourse(HELD, base.step_s, np.full(2, base.display_C[0]))
     times = [under.recovery_s(rest, under.steady(level)) for level in unpowered_C]
     known = [time for time in times if time is not None]
     return max(known) if len(known) == len(times) else None
@@ -150,12 +150,12 @@ def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty, tupl
     """
     samples, rig, judged, unpowered = samples_of(delivery), delivery.rig, [], []
     for corner in corners_of(rig):
-        own = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
-        ensemble = Ensemble.on(rig, (own,), None)
+        loop_corner = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
+        ensemble = Ensemble.on(rig, (loop_corner,), None)
         values, _ = ensemble.hold(0.0, ensemble.at_rest(0.0), np.array([0.0, 1.0]))
         unpowered.append(float(values[WATCHED.index("display_C"), 0, -1]))
         try:
-            drive = follow_samples(own.rig, samples)
+            drive = follow_samples(loop_corner.rig, samples)
             judged.append(Single.of(ensemble, drive, float(drive.current_A[0]), rig.limits))
         except RigError:  # a corner whose module cannot hold the baseline shows less than is asked of it
             continue
@@ -172,12 +172,12 @@ def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], re
     cut = verdict.demands.cut_off_display_C
     reach = (min(cut.low + BEYOND_K, unpowered_C[0]), max(cut.high - BEYOND_K, unpowered_C[1]))
     cut_off, stuck = faulty.cut_off(reach)
-    held = "10 min or more" if rest_s is None else f"{rest_s:g} s"
+    duration = "10 min or more" if rest_s is None else f"{rest_s:g} s"
     start = SingleFault(
         "first play on a display that was without power",
         "green",
-        f"the display stands between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
-        f"holding the baseline for {held} before the first play",
+        f"the display is between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
+        f"holding the baseline for {duration} before the first play",
     )
     polarity, _ = faulty.polarity()
     lost = replace(stuck, fault="sensor lost or poles swapped: the loop runs to the driver's limit")

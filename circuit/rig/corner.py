@@ -93,14 +93,14 @@ def _deep_C(rig: Rig, ambient_C: float) -> float:
 
 
 def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Peltier:
-    given = rig.module
+    nominal = rig.module
     try:
         return Peltier(
-            given.seebeck_V_per_K * (1.0 + seebeck),
-            given.resistance_ohm,
-            given.thermal_resistance_K_per_W / (1.0 + conductance),
-            given.hot_plate_J_per_K * (1.0 + plates),
-            given.cold_plate_J_per_K * (1.0 + plates),
+            nominal.seebeck_V_per_K * (1.0 + seebeck),
+            nominal.resistance_ohm,
+            nominal.thermal_resistance_K_per_W / (1.0 + conductance),
+            nominal.hot_plate_J_per_K * (1.0 + plates),
+            nominal.cold_plate_J_per_K * (1.0 + plates),
         )
     except ValueError as problem:  # a share so large that nothing finite is left
         raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
@@ -116,10 +116,10 @@ def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, fl
     for name, share in shares.items():
         if not (math.isfinite(share) and share > -1.0):
             faults.append(f"{name} {signed(100 * share)} %: must be finite and leave more than nothing, above −100 %")
-    for name, (shift, given) in shifts.items():
-        if not (math.isfinite(shift) and given + shift > -ZERO_C_IN_K):
+    for name, (shift, nominal) in shifts.items():
+        if not (math.isfinite(shift) and nominal + shift > -ZERO_C_IN_K):
             faults.append(
-                f"{name} {signed(shift)} K from {signed(given)} °C: must be finite and stay above absolute zero, "
+                f"{name} {signed(shift)} K from {signed(nominal)} °C: must be finite and stay above absolute zero, "
                 f"{signed(-ZERO_C_IN_K)} °C"
             )
     if not faults and (deep := _deep_C(rig, sum(shifts["ambient"]))) <= -ZERO_C_IN_K:

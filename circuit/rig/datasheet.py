@@ -52,11 +52,21 @@ class Extraction:
 
 @dataclass(frozen=True, slots=True)
 class Datasheet:
-    """The figures a maker prints for one hot-side temperature `t_hot_C`.
+    """The figures that a maker prints for a Peltier module at one hot-side temperature.
 
-    `i_max_A` and `v_max_V` belong to the greatest temperature difference `dt_max_K`; `q_max_W` is the heat absorbed at
-    `i_max_A` and ΔT = 0, None where it is not printed.
+    Parameters
+    ----------
+    i_max_A, v_max_V
+        Current in A and voltage in V at the greatest temperature difference.
+    dt_max_K
+        Greatest temperature difference in K.
+    t_hot_C
+        Hot-side temperature in °C for which the figures hold.
+    q_max_W
+        Heat in W absorbed at `i_max_A` and ΔT = 0; None where it is not printed.
 
+    Examples
+    --------
     >>> sheet = Datasheet(6.4, 14.4, 66, 25, q_max_W=50)
     >>> sheet.three_figures()
     Extraction(three figures: 0.0483 V/K, 1.752 Ω, 1.839 K/W at 8.5 °C, Qmax +12.6 %)
@@ -127,7 +137,7 @@ class Datasheet:
         return Extraction(method, seebeck, ohm, theta, self.mean_C, miss, relative)
 
 
-def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
+def at_mean_C(extractions: Sequence[Extraction], mean_C: float) -> tuple[float, float, float]:
     """α V/K, R Ω and Θ K/W at a mean module temperature, linear between two extractions; one is taken as it is.
 
     Outside the two, the nearer one is used, since no sheet supports an extrapolation; callers report it.
@@ -136,7 +146,7 @@ def at_mean_C(found: Sequence[Extraction], mean_C: float) -> tuple[float, float,
     >>> [round(value, 4) for value in at_mean_C((cool, warm), (cool.mean_C + warm.mean_C) / 2)]
     [0.0495, 1.8598, 1.8503]
     """
-    first, last = min(found, key=lambda one: one.mean_C), max(found, key=lambda one: one.mean_C)
+    first, last = min(extractions, key=lambda one: one.mean_C), max(extractions, key=lambda one: one.mean_C)
     span = last.mean_C - first.mean_C
     share = min(max((mean_C - first.mean_C) / span, 0.0), 1.0) if span > 0 else 0.0
     return (

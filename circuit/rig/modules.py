@@ -88,30 +88,30 @@ def unlike_before(
 
     `area_cm2` in contact, `limit_A` of the driver, `plates` (hot, cold) in J/K; `stated` keys were set along with it.
     """
-    build, found = build_of(name), []
+    build, sentences = build_of(name), []
     keys = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
     if build.plate_J_per_K is None and not set(keys) <= set(stated):
-        found.append(
-            f"module {name}: its plates are not on record, so those of the rig stay, {plates[0]:g} (hot) and "
+        sentences.append(
+            f"module {name}: its plates are unknown, so the rig keeps its own, {plates[0]:g} (hot) and "
             f"{plates[1]:g} J/K (cold); set {' and '.join(keys)}"
         )
     if build.face_cm2 is not None and area_cm2 > 1.01 * build.face_cm2:
-        found.append(
+        sentences.append(
             f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {build.face_cm2:g} cm²; set "
             f"contact.area_cm2 to at most that"
         )
     elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < 0.99 * build.face_cm2):
         face = "not on record" if build.face_cm2 is None else f"{build.face_cm2:g} cm²"
-        found.append(
+        sentences.append(
             f"module {name}: its face is {face}, and contact.area_cm2 stays the {area_cm2:g} cm² of the rig; set it to "
             f"what touches"
         )
     if limit_A > build.i_max_A:
-        found.append(
+        sentences.append(
             f"module {name}: driver.current_limit_A = {limit_A:g} A is above its Imax of {build.i_max_A:g} A, past "
             f"which more current cools less; set it to at most that"
         )
-    return found
+    return sentences
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
@@ -141,18 +141,18 @@ def _sheet(record: Record) -> Datasheet:
 
 def module_faults(table: ModuleTable) -> str:
     """Return the faults in how a rig file gives its module, one per line; empty where there are none."""
-    given = [key for key in PARAMETERS if getattr(table, key) is not None]
-    ways = [*given[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
+    stated = [key for key in PARAMETERS if getattr(table, key) is not None]
+    ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
     sheets = table.datasheet
     if not ways:
         return (
-            f"module: nothing says which module; give {', '.join(PARAMETERS)}, "
+            f"module: no module is stated; give {', '.join(PARAMETERS)}, "
             f"or one or two [[module.datasheet]], or the name of a shipped module"
         )
     if len(ways) > 1:
         return f"module: {' and '.join(ways)} are two ways of giving it; keep one and remove the other"
-    if given:
-        missing = [f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in PARAMETERS if key not in given]
+    if stated:
+        missing = [f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in PARAMETERS if key not in stated]
         if table.extraction is not None:
             missing.append("module.extraction: only for a data sheet or a name; remove the key")
         return "\n".join(missing)
@@ -185,13 +185,14 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
             warnings.append(f"module {table.name}: its figures are {origin.source}; expect them within 10 %")
     else:
         sheets = tuple(
-            Datasheet(one.i_max_A, one.v_max_V, one.dt_max_K, one.t_hot_C, one.q_max_W) for one in table.datasheet or ()
+            Datasheet(sheet.i_max_A, sheet.v_max_V, sheet.dt_max_K, sheet.t_hot_C, sheet.q_max_W)
+            for sheet in table.datasheet or ()
         )
-    found = _extract(sheets, table.extraction)
-    warnings += _misses(found)
-    sentence = f"{what}: {_figures(found, sheets)}"
-    if len(found) == 2:
-        low, high = sorted(one.mean_C for one in found)
+    extractions = _extract(sheets, table.extraction)
+    warnings += _misses(extractions)
+    sentence = f"{what}: {_figures(extractions, sheets)}"
+    if len(extractions) == 2:
+        low, high = sorted(sheet.mean_C for sheet in extractions)
         sentence += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
         if not low <= mean_C <= high:
             side, end = ("below", low) if mean_C < low else ("above", high)
@@ -199,48 +200,48 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
                 f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … "
                 f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used"
             )
-    return Peltier(*at_mean_C(found, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
+    return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
 
 
 def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:
     """Four figures where every sheet prints Qmax, else three, unless the rig says which."""
     if method is None:
         method = "three" if any(sheet.q_max_W is None for sheet in sheets) else "four"
-    found = []
+    extractions = []
     for place, sheet in enumerate(sheets):
         try:
-            found.append(sheet.four_figures() if method == "four" else sheet.three_figures())
+            extractions.append(sheet.four_figures() if method == "four" else sheet.three_figures())
         except ValueError as problem:
             raise ValueError(f"module.datasheet.{place}.{problem}") from None
-    if len(found) == 2 and abs(found[1].mean_C - found[0].mean_C) < LEAST_APART_K:
+    if len(extractions) == 2 and abs(extractions[1].mean_C - extractions[0].mean_C) < LEAST_APART_K:
         raise ValueError(
-            f"module.datasheet: both stand for {found[0].mean_C:.1f} °C (t_hot_C less a quarter of dt_max_K); "
+            f"module.datasheet: both stand for {extractions[0].mean_C:.1f} °C (t_hot_C less a quarter of dt_max_K); "
             f"two must differ by at least {LEAST_APART_K:g} K, so leave one out"
         )
-    return tuple(found)
+    return tuple(extractions)
 
 
-def _figures(found: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
+def _figures(extractions: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
     """Which figures, at which hot sides, and how far they miss the printed Qmax, in words."""
     hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
-    misses = [one for one in found if one.residual_relative is not None]
-    if found[0].method == "four":
+    misses = [extraction for extraction in extractions if extraction.residual_relative is not None]
+    if extractions[0].method == "four":
         missed = "Qmax reproduced"
     elif misses:
-        missed = "Qmax missed by " + " and ".join(_miss(one) for one in misses)
+        missed = "Qmax missed by " + " and ".join(_miss(extraction) for extraction in misses)
     else:
         missed = "no Qmax to check them against"
-    return f"{found[0].method} figures with the hot side at {hot} °C, {missed}"
+    return f"{extractions[0].method} figures with the hot side at {hot} °C, {missed}"
 
 
-def _miss(one: Extraction) -> str:
-    return f"{100 * (one.residual_relative or 0):+.1f} % ({one.residual_W or 0:+.3g} W)"
+def _miss(extraction: Extraction) -> str:
+    return f"{100 * (extraction.residual_relative or 0):+.1f} % ({extraction.residual_W or 0:+.3g} W)"
 
 
-def _misses(found: Sequence[Extraction]) -> list[str]:
+def _misses(extractions: Sequence[Extraction]) -> list[str]:
     return [
-        f"module: three figures of its data sheet miss the printed Qmax by {_miss(one)}, more than "
+        f"module: three figures of its data sheet miss the printed Qmax by {_miss(extraction)}, more than "
         f'{100 * MOST_RESIDUAL:g} %; extraction = "four" reproduces it'
-        for one in found
-        if one.residual_relative is not None and abs(one.residual_relative) > MOST_RESIDUAL
+        for extraction in extractions
+        if extraction.residual_relative is not None and abs(extraction.residual_relative) > MOST_RESIDUAL
     ]

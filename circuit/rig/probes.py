@@ -32,10 +32,10 @@ def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, 
 
 
 def _probe(table: ProbeTable) -> Probe:
-    given = (table.lateral_mm, table.width_mm, table.insulation_m2K_per_W)
-    lateral, width, insulation = given
+    lateral_keys = (table.lateral_mm, table.width_mm, table.insulation_m2K_per_W)
+    lateral, width, insulation = lateral_keys
     if table.place != "insulated skin":
-        if any(value is not None for value in given):
+        if any(value is not None for value in lateral_keys):
             raise ValueError(
                 f"probe {table.name}: lateral_mm, width_mm and insulation_m2K_per_W belong to insulated skin, "
                 f"not to place = {table.place!r}; remove them"

@@ -14,7 +14,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
 from .module import Peltier
-from .modules import ModuleOrigin, module_names, module_of, unlike_before
+from .modules import ModuleOrigin, module_of
 from .parts import (
     Ambient,
     Contact,
@@ -29,17 +29,12 @@ from .parts import (
 from .probes import probes_of
 from .rig_summary import rig_summary
 from .rig_text import toml_text
+from .rig_warnings import rig_warnings
 from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
 from .rules import Limits
 from .settings import flattened, put_all, read_settings
 from .skin import STRATUM_CORNEUM, Column, Layer, ReceptorDepths, Skin, column_of
-from .uncertainty import tightened, uncertainty_of
-
-LIVING_C = (28.0, 38.5)
-"""Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
-
-HIGH_RESTING_FLUX_W_PER_M2 = 150.0
-"""Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
+from .uncertainty import uncertainty_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +51,39 @@ class HeatPump:
 class Rig:
     """Everything between the drive current, or the set-points of a thermode, and the receptors.
 
-    A rig has a `pump` (module, heat sink, driver) or a `thermode`, never both; `module`, `heat_sink` and `driver` of
-    one with a thermode raise RigError.
+    A rig has a `pump` or a `thermode`, never both; `module`, `heat_sink` and `driver` belong to the pump.
 
+    Attributes
+    ----------
+    name, title
+        Name of the rig, and one line for people.
+    notes
+        What its author says about it.
+    pump
+        Module, heat sink and driver; None for a thermode.
+    contact, ambient
+        Contact between display and skin; air around the skin.
+    skin, column
+        Layers and receptors; the same skin divided into lumps.
+    deep_C
+        Temperature of deep tissue and blood in °C.
+    document
+        The rig file as JSON; rigs are equal if their documents are.
+    uncertainty
+        How far the parameters may be off, for the worst case of safety.
+    limits
+        Limits of safety.
+    probes
+        Sensors that the rig simulates.
+    controller
+        Temperature controller around the module, if any.
+    thermode
+        Limits of a thermode, which takes temperatures in place of a current.
+    changes
+        What differs from the file, as `key=value`.
+
+    Examples
+    --------
     >>> rig = Rig.load("thenar")
     >>> rig
     Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.58 °C, driver -1.5 … 1.5 A)
@@ -86,14 +111,14 @@ class Rig:
     changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
-        shown = (
+        source = (
             f"driver {self.driver.current_min_A:g} … {self.driver.current_max_A:g} A"
             if self.thermode is None
             else f"thermode {self.thermode.lowest_C:g} … {self.thermode.highest_C:g} °C"
         )
         return (
             f"Rig({self.name!r}, {self.skin.site}, {self.contact.area_m2 * 1e4:g} cm², "
-            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {shown})"
+            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {source})"
         )
 
     def __hash__(self) -> int:
@@ -142,7 +167,7 @@ class Rig:
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         text = toml_text(json.loads(self.document))
         if _build(parse_toml(text, str(where)), str(where)) != self:
-            raise RigError(f"{where}: rig {self.name} does not read back as it is; it was not saved")
+            raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
             where.write_text(text, encoding="utf-8")
         except OSError as problem:
@@ -188,7 +213,7 @@ class Rig:
 
     @property
     def blood_C(self) -> float:
-        """Temperature of deep tissue and blood in °C, solved from the resting skin unless the rig fixes it."""
+        """Temperature of deep tissue and blood in °C, from the heat balanceing skin unless the rig fixes it."""
         return self.deep_C
 
     @property
@@ -199,38 +224,7 @@ class Rig:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what is unusual about this rig."""
-        found = []
-        flux = -self.resting_flux_W_per_m2
-        if flux > HIGH_RESTING_FLUX_W_PER_M2:
-            found.append(
-                f"skin at rest loses {flux:.0f} W/m², over the {HIGH_RESTING_FLUX_W_PER_M2:g} W/m² "
-                f"that bare skin in room air can lose"
-            )
-        if self.deep_C < self.skin.rest_C:
-            found.append(f"blood at {self.deep_C:.2f} °C is colder than the resting surface at {self.skin.rest_C:g} °C")
-        if not LIVING_C[0] <= self.deep_C <= LIVING_C[1]:
-            found.append(
-                f"blood at {self.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
-                f"check skin.rest_C and the ambient"
-            )
-        if loosened := self.limits.loosened:
-            found.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {self.limits.reason}")
-        if claims := tightened(self.uncertainty):
-            found.append(
-                f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {self.uncertainty.reason}"
-            )
-        found += self.limits.hidden
-        if resting := self.limits.passed_at_rest(self.skin.rest_C):
-            found.append(resting)
-        origin = () if self.pump is None else self.pump.origin.warnings
-        return (*found, *origin, *self._left_from_another_module())
-
-    def _left_from_another_module(self) -> list[str]:
-        stated = dict(text.split("=", 1) for text in self.changes)
-        if (name := stated.get("module.name")) not in module_names():
-            return []
-        plates = (self.module.hot_plate_J_per_K, self.module.cold_plate_J_per_K)
-        return unlike_before(str(name), 1e4 * self.contact.area_m2, self.driver.current_max_A, plates, [*stated])
+        return rig_warnings(self)
 
     @property
     def module_source(self) -> str:
@@ -249,7 +243,7 @@ class Rig:
         """What to know about this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
 
         >>> print(Rig.load("thenar").about().splitlines()[2])
-          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (solved from the rest), 80 W/m² lost by bare skin
+          rest       skin 32.0 °C, blood and deep tissue 34.58 °C (from the heat balance), 80 W/m² lost by bare skin
         """
         return rig_summary(self)
 
@@ -276,9 +270,9 @@ class Rig:
         """
         document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)
-        said = {text.partition("=")[0]: text for text in self.changes}
-        said.update({key: f"{key}={value}" for key, value in changes.items()})
-        return replace(_build(document, f"rig {self.name}"), changes=tuple(said.values()))
+        texts = {text.partition("=")[0]: text for text in self.changes}
+        texts.update({key: f"{key}={value}" for key, value in changes.items()})
+        return replace(_build(document, f"rig {self.name}"), changes=tuple(texts.values()))
 
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig with changes given as `key=value` texts, as on the command line."""
@@ -292,7 +286,18 @@ def _resting_flux(rig: Rig) -> float:
 
 
 def rig_names() -> tuple[str, ...]:
-    """Names of the shipped rigs, the default first."""
+    """Return the names of the shipped rigs, the default first.
+
+    Returns
+    -------
+    tuple of str
+        Names that `Rig.load` accepts.
+
+    Examples
+    --------
+    >>> rig_names()[0]
+    'thenar'
+    """
     names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
     return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
 
@@ -315,13 +320,14 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
 
 
 def _heat_sink(sink: HeatSinkTable) -> HeatSink:
-    own = {name: getattr(sink, name) for name in ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")}
-    missing = [name for name, value in own.items() if value is None]
+    names = ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")
+    settings = {name: getattr(sink, name) for name in names}
+    missing = [name for name, value in settings.items() if value is None]
     if not missing:
-        return HeatSink(sink.temperature_C, sink.resistance_K_per_W, SinkController(**own))
-    if len(missing) < len(own):
+        return HeatSink(sink.temperature_C, sink.resistance_K_per_W, SinkController(**settings))
+    if len(missing) < len(names):
         raise ValueError(
-            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(own)}; "
+            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(names)}; "
             f"without all four it is ideal"
         )
     return HeatSink(sink.temperature_C, sink.resistance_K_per_W)

@@ -16,7 +16,7 @@ WIDTH = 118
 def rig_summary(rig: Rig) -> str:
     """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text."""
     flux = -rig.resting_flux_W_per_m2
-    how = "solved from the rest" if rig.skin.deep_C is None else "given"
+    how = "from the heat balance" if rig.skin.deep_C is None else "given"
     rows = [
         ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
         (

@@ -26,7 +26,17 @@ from .uncertainty import uncertainty_faults
 
 
 class RigError(InputError):
-    """An impossible rig: one line per fault, with key, value, limit, unit and cure."""
+    """An impossible rig: one line per fault, with key, value, limit, unit and cure.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> try:
+    ...     Rig.load("thenar").with_(**{"contact.area_cm2": -9})
+    ... except RigError as problem:
+    ...     print(problem)
+    rig thenar: contact.area_cm2 = -9...
+    """
 
 
 Celsius = Annotated[float, Field(ge=-20, le=120)]
@@ -204,8 +214,8 @@ class UncertaintyTable(_Table):
     @property
     def given(self) -> dict[str, float]:
         """The uncertainties that are given, by key."""
-        given = self.model_dump(exclude={"reason"})
-        return {key: float(value) for key, value in given.items() if value is not None}
+        stated = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in stated.items() if value is not None}
 
     @model_validator(mode="after")
     def _reasoned(self) -> UncertaintyTable:
@@ -238,8 +248,8 @@ class SafetyTable(_Table):
     @property
     def changes(self) -> dict[str, float]:
         """The limits that are given, by key."""
-        given = self.model_dump(exclude={"reason"})
-        return {key: float(value) for key, value in given.items() if value is not None}
+        stated = self.model_dump(exclude={"reason"})
+        return {key: float(value) for key, value in stated.items() if value is not None}
 
     @model_validator(mode="after")
     def _reasoned(self) -> SafetyTable:
@@ -272,12 +282,12 @@ class RigTable(_Table):
     @model_validator(mode="after")
     def _one_display(self) -> RigTable:
         pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
-        given = [key for key, table in pumped.items() if table is not None]
+        stated = [key for key, table in pumped.items() if table is not None]
         missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
-        if self.thermode is not None and given:
+        if self.thermode is not None and stated:
             raise ValueError(
-                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(given)}; remove "
-                f"{', '.join(f'[{key}]' for key in given)} or [thermode]"
+                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(stated)}; remove "
+                f"{', '.join(f'[{key}]' for key in stated)} or [thermode]"
             )
         if self.thermode is None and missing:
             lines = [f"{key} is missing; add it" for key in missing]
@@ -350,12 +360,12 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
     key = ".".join(str(part) for part in error["loc"])
     unit = unit_of(key)
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    said = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
+    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
     if kind == "extra_forbidden":
         plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
         return unknown_key(plain).replace(plain + ":", key + ":", 1)
     if kind == TEXT_FAULT:
-        return f"{said}: {context['fault']}"
+        return f"{subject}: {context['fault']}"
     if kind == "value_error":  # a sentence from a table's own validator
         return str(context["error"])
     if kind == "missing":
@@ -365,11 +375,11 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
         if kind == "greater_than_equal" and 0 < limit < 0.01 and value <= 0:
             kind, limit = "greater_than", 0
         words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
-        return f"{said}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
+        return f"{subject}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
     if kind == "finite_number":
-        return f"{said}: must be a finite number{f' in {unit}' if unit else ''}"
+        return f"{subject}: must be a finite number{f' in {unit}' if unit else ''}"
     if kind in ("float_type", "int_type", "float_parsing"):
-        return f"{said}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
+        return f"{subject}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
     if kind == "literal_error":
-        return f"{said}: must be {context.get('expected')}"
-    return f"{said}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+        return f"{subject}: must be {context.get('expected')}"
+    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"

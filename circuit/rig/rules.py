@@ -61,6 +61,17 @@ class Rule:
 class Limits:
     """All rules that a run is checked against, and the reason for those that are loosened.
 
+    Parameters
+    ----------
+    rules
+        The rules, each with quantity, limit, unit and source.
+    reason
+        Why rules are looser than the shipped ones; empty where none is.
+    session_s
+        Length in s of a session, over which doses add up.
+
+    Examples
+    --------
     >>> Limits.shipped()
     Limits(22 rules, as shipped)
     >>> Limits.of({"skin_highest_C": 39.0})
@@ -108,21 +119,21 @@ class Limits:
     @property
     def hidden(self) -> tuple[str, ...]:
         """A sentence for each soft limit that a hard one makes void, since nothing is amber before it is red."""
-        found = []
+        sentences = []
         for hard, soft in _pairs(self.rules):
             if hard.limit < soft.limit if hard.upper else hard.limit > soft.limit:
                 side = "below" if hard.upper else "above"
-                found.append(
+                sentences.append(
                     f"safety.{hard.key} = {signed(hard.limit)} {hard.unit} is hard and lies {side} the soft limit of "
                     f"{signed(soft.limit)} {soft.unit}, so that nothing is amber before it is red; set "
                     f"safety.{soft.key} {side} {signed(hard.limit)} {hard.unit} too"
                 )
-        return tuple(found)
+        return tuple(sentences)
 
     def passed_at_rest(self, rest_C: float) -> str | None:
         """A sentence where skin at its rest in °C is outside a limit already, a hard one first; otherwise None."""
-        own = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]
-        for rule in sorted(own, key=lambda one: one.severity != "hard"):
+        skin_rules = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]
+        for rule in sorted(skin_rules, key=lambda one: one.severity != "hard"):
             if rest_C > rule.limit if rule.upper else rest_C < rule.limit:
                 side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
                 return (
@@ -158,23 +169,23 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
     unknown = [key for key in changes if key not in safety_keys()]
     faults = [] if timing is None else [timing]
     faults += [f"safety.{key}: no such limit; there is {', '.join(safety_keys())}" for key in unknown]
-    told = {key for key in changes if key in unknown}
+    reported = {key for key in changes if key in unknown}
     for rule in _changed(changes, reason).rules:
-        if rule.key not in changes or rule.key in told:
+        if rule.key not in changes or rule.key in reported:
             continue
         value, unit = changes[rule.key], f" {rule.unit}" if rule.unit != "1" else ""
-        said = f"safety.{rule.key} = {value:g}{unit}"
+        subject = f"safety.{rule.key} = {value:g}{unit}"
         if beyond(rule):
-            told.add(rule.key)
+            reported.add(rule.key)
             bound, why = (rule.shipped, "no published figure allows more") if rule.bound is None else (rule.bound, "")
             faults.append(
-                f"{said}: cannot be loosened beyond {abs(bound):g}{unit} ({why or rule.bound_source}); use "
+                f"{subject}: cannot be loosened beyond {abs(bound):g}{unit} ({why or rule.bound_source}); use "
                 f"{'at most' if rule.upper or bound < 0 else 'at least'} {abs(bound):g}{unit}"
             )
         elif rule.loosened and not is_reason(reason):
-            told.add(rule.key)
+            reported.add(rule.key)
             faults.append(
-                f"{said}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, a "
+                f"{subject}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, a "
                 f"sentence of at least {SHORTEST_REASON} characters and {FEWEST_WORDS} different words on why this is "
                 f"justified, or use {abs(rule.shipped):g}{unit}"
             )
@@ -212,17 +223,17 @@ def session_fault(minutes: float, reason: str) -> str | None:
 
 def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
     """Sentences for changed limits that leave no room between them."""
-    rules, found = _changed(changes, reason).rules, []
+    rules, faults = _changed(changes, reason).rules, []
     for low in rules:
         for high in rules:
             pair = not low.upper and high.upper and low.key != high.key
             same = (low.quantity, low.severity, low.relative) == (high.quantity, high.severity, high.relative)
             if pair and same and low.limit >= high.limit:
-                found.append(
+                faults.append(
                     f"safety.{low.key} = {low.limit:g} {low.unit}: is not below safety.{high.key} = {high.limit:g} "
                     f"{high.unit}; leave some room between them"
                 )
-    return found
+    return faults
 
 
 def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
@@ -238,11 +249,11 @@ def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
 
 
 def _in_words(rules: Iterable[Rule]) -> tuple[str, ...]:
-    said = {}
+    texts = {}
     for rule in rules:
         unit = f" {rule.unit}" if rule.unit != "1" else ""
-        said[rule.key] = f"{rule.key} {abs(rule.limit):g}{unit} instead of {abs(rule.shipped):g}{unit}"
-    return tuple(said.values())
+        texts[rule.key] = f"{rule.key} {abs(rule.limit):g}{unit} instead of {abs(rule.shipped):g}{unit}"
+    return tuple(texts.values())
 
 
 @cache

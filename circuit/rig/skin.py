@@ -47,14 +47,14 @@ class ReceptorDepths:
         return ReceptorDepths(cold, warm, round(cold - corneum_mm, 9), round(warm - corneum_mm, 9))
 
     def __str__(self) -> str:
-        said = f"cold {self.cold_mm:.3g} mm, warm {self.warm_mm:.3g} mm below the surface"
+        text = f"cold {self.cold_mm:.3g} mm, warm {self.warm_mm:.3g} mm below the surface"
         if self.cold_below_corneum_mm is None or self.warm_below_corneum_mm is None:
-            return said
+            return text
         cold, warm = (
             f"{name} {abs(depth):.3g} mm {'above' if depth < 0 else 'below'}"
             for name, depth in (("cold", self.cold_below_corneum_mm), ("warm", self.warm_below_corneum_mm))
         )
-        return f"{said}; {cold}, {warm} the base of the {STRATUM_CORNEUM}"
+        return f"{text}; {cold}, {warm} the base of the {STRATUM_CORNEUM}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ class Layer:
 class Skin:
     """Layers, surface first, with the depths of the receptors and what determines the deep temperature.
 
-    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: they are solved from the rest.
+    `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: solved from the heat balance.
     `elements` gives a fixed number of elements per layer (T-sections) instead of the graded mesh.
     The depths of the receptors count from the surface here; `depth_from` is how the rig file counts them.
     """

@@ -32,17 +32,17 @@ def uncertainty_table() -> Table:
     return load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
 
 
-def uncertainty_of(given: Mapping[str, float], reason: str = "") -> Uncertainty:
+def uncertainty_of(stated_values: Mapping[str, float], reason: str = "") -> Uncertainty:
     """Return the uncertainty of a rig, with the shipped value of what is not given.
 
     >>> uncertainty_of({"ambient_K": 5.0})
     Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, heat_sink_K=1.0,
                 seebeck_relative=0.05, conductance_relative=0.1, plates_relative=0.2, reason='')
     """
-    return Uncertainty(**{**_shipped(), **given}, reason=reason.strip())
+    return Uncertainty(**{**_shipped(), **stated_values}, reason=reason.strip())
 
 
-def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str]:
+def uncertainty_faults(stated_values: Mapping[str, float], reason: str = "") -> list[str]:
     """Return one sentence for each uncertainty that is smaller than the shipped one without a reason.
 
     >>> uncertainty_faults({"gain_relative": 0.02}, "gain measured against a shunt, 2026-05-12")
@@ -50,39 +50,41 @@ def uncertainty_faults(given: Mapping[str, float], reason: str = "") -> list[str
     """
     if is_reason(reason):
         return []
-    found = []
+    faults = []
     for key, shipped in _shipped().items():
-        value, unit = given.get(key, shipped), " K" if key.endswith("_K") else ""
+        value, unit = stated_values.get(key, shipped), " K" if key.endswith("_K") else ""
         if value < shipped:
-            found.append(
+            faults.append(
                 f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
                 f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters and "
                 f"{FEWEST_WORDS} different words on how this is known "
                 f"(--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
             )
-    return found
+    return faults
 
 
-def tightened(one: Uncertainty) -> tuple[str, ...]:
+def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
     """A few words for each uncertainty that is smaller than shipped.
 
     >>> tightened(uncertainty_of({"gain_relative": 0.02}))
     ('gain ±2 % instead of ±10 %',)
     """
     return tuple(
-        f"{words} ±{scale * getattr(one, key):g} {unit} instead of ±{scale * _shipped()[key]:g} {unit}"
+        f"{words} ±{scale * getattr(uncertainty, key):g} {unit} instead of ±{scale * _shipped()[key]:g} {unit}"
         for key, (words, _, scale, unit) in WORDS.items()
-        if getattr(one, key) < _shipped()[key]
+        if getattr(uncertainty, key) < _shipped()[key]
     )
 
 
-def stated(one: Uncertainty) -> str:
+def stated(uncertainty: Uncertainty) -> str:
     """All uncertainties in words, for the heading of a verdict.
 
     >>> stated(uncertainty_of({}))[:60]
     'contact resistance ±30 %, ambient ±3 K, gain ±10 %, heat sin'
     """
-    return ", ".join(f"{words} ±{scale * getattr(one, key):g} {unit}" for key, (words, _, scale, unit) in WORDS.items())
+    return ", ".join(
+        f"{words} ±{scale * getattr(uncertainty, key):g} {unit}" for key, (words, _, scale, unit) in WORDS.items()
+    )
 
 
 @cache

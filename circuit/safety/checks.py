@@ -90,13 +90,13 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     """
     hard = [finding for finding in findings if finding.severity == "hard"]
     others = [
-        f"{one.quantity} {signed(one.value, '.4g')}{'' if one.unit == '1' else ' ' + one.unit} "
-        f"(limit {signed(one.limit, '.4g')})"
-        for one in hard[1:]
+        f"{check.quantity} {signed(check.value, '.4g')}{'' if check.unit == '1' else ' ' + check.unit} "
+        f"(limit {signed(check.limit, '.4g')})"
+        for check in hard[1:]
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
-    cures = [cure for names, cure in CURES if any(one.quantity.startswith(names) for one in hard)]
-    return f"{more}; ask for {', '.join(cures)}" if cures else more
+    cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
+    return f"{more}; use {', '.join(cures)}" if cures else more
 
 
 def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 Contact, gain, Seebeck coefficient, thermal conductance and plates are at either end of their uncertainty, in all
 combinations. Heat sink and ambient move together: every temperature rises with those of the heat sink and of deep
-tissue, so the extremes are where both are warm or both are cold. Where deep tissue is solved from the resting
+tissue, so the extremes are where both are warm or both are cold. Where deep tissue is from the heat balance at resting
 temperature of bare skin, a warmer room means cooler blood. A Peltier module cools most at one current, since its Joule
 heat grows with the square: where the driver can pass that current, gains in between are corners too.
 """
@@ -74,14 +74,14 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
     ]
     if unsure.gain_relative and passes_most_cooling(rig):
         spans[1] = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
-    found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
     for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
         surroundings(rig), itertools.product(*spans)
     ):
         corner = Corner(contact, around[0], gain, around[1], seebeck, conductance, plates, rig)
         if not corner.nominal:
-            found.append(replace(corner, rig=_there(corner)))
-    return tuple(found)
+            corners.append(replace(corner, rig=_there(corner)))
+    return tuple(corners)
 
 
 def passes_most_cooling(rig: Rig) -> bool:

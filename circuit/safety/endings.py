@@ -57,11 +57,11 @@ def follow_endings(
 
 def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
-    found = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
+    steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
     for lane, network in enumerate(ensemble.networks):
         state = state_under_current(network, 0.0)
-        found[:, lane] = [network.read(state, name) for name in WATCHED]
-    return found
+        steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
+    return steady_C
 
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:

@@ -122,11 +122,11 @@ class Ensemble:
 
     def _cut(self, rows_s: Array, drive: Drive) -> Intervals:
         """A drive cut into intervals, scaled in each corner; where it has means, with the heat of what switches."""
-        found = cut(rows_s, drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
+        intervals = cut(rows_s, drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
         if self.bridge_A is None or not self.averaged:
-            return found
-        start, end = switching(found.start_A, self.bridge_A * self.gain)
-        return Intervals(found.edges_s, found.row_of, start, end)
+            return intervals
+        start, end = switching(intervals.start_A, self.bridge_A * self.gain)
+        return Intervals(intervals.edges_s, intervals.row_of, start, end)
 
     def hold(self, current_A: float, state: State, times_s: Array, rigs: Index | None = None) -> tuple[Array, State]:
         """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.

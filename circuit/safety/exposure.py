@@ -30,11 +30,32 @@ def _constants() -> dict[str, float]:
 
 
 def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the cumulative dose in equivalent minutes at 43 °C, for times (rows,) and temperatures (…, rows).
+    """Return the cumulative thermal dose in equivalent minutes at 43 °C.
 
-    A minute at T counts R^(43 − T), with R 0.5 from 43 °C on, 0.25 from 37 to 43 °C, and nothing below.
-    Raises ValueError where times and temperatures do not match.
+    Parameters
+    ----------
+    time_s
+        Times (rows,) in s, increasing.
+    temperature_C
+        Temperatures (…, rows) in °C.
 
+    Returns
+    -------
+    Array
+        Dose (…, rows) in min, from 0 at the first row.
+
+    Raises
+    ------
+    ValueError
+        Where times and temperatures do not match, times do not increase, or temperatures are not finite.
+
+    Notes
+    -----
+    CEM43 = ∫ R^(43 − T) dt with R = 0.5 from 43 °C on, 0.25 from 37 to 43 °C, and 0 below; source: Sapareto and
+    Dewey 1984, in `circuit/data/exposure.toml`.
+
+    Examples
+    --------
     >>> cem43_min([0, 60, 120], [43, 43, 43]).tolist()
     [0.0, 1.0, 2.0]
     >>> round(float(cem43_min([0, 60], [42, 42])[-1]), 9)
@@ -54,11 +75,32 @@ def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
 
 
 def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the cumulative burn integral Ω, for times (rows,) and temperatures (…, rows).
+    """Return the cumulative burn integral Ω.
 
-    dΩ/dt = A·exp(−Ea/(R·T)), T absolute; 0.53 is where a burn of the first degree begins.
-    Raises ValueError where times and temperatures do not match.
+    Parameters
+    ----------
+    time_s
+        Times (rows,) in s, increasing.
+    temperature_C
+        Temperatures (…, rows) in °C.
 
+    Returns
+    -------
+    Array
+        Ω (…, rows), from 0 at the first row; a first-degree burn begins at 0.53.
+
+    Raises
+    ------
+    ValueError
+        Where times and temperatures do not match, times do not increase, or temperatures are not finite.
+
+    Notes
+    -----
+    Ω = ∫ A·exp(−Ea/(R·T)) dt with the absolute temperature T (Henriques and Moritz 1947), see
+    `circuit/data/exposure.toml`.
+
+    Examples
+    --------
     >>> round(float(henriques([0, 600], [44, 44])[-1]), 3)
     0.007
     """

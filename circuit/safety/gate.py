@@ -40,10 +40,32 @@ WHAT_IT_IS_NOT = (
 class Gate:
     """The verdict on one drive.
 
-    `checks` has every rule in its worst scenario, `once` the same for a single play and what follows it; times count
-    from the first row of that play. `after_C` is the skin of the rig as given 60 s after the last sample, for each
-    ending; `drift_C` is its steady state under zero current, None for a device without a current. `repeated` is the
-    verdict on repeated plays, which `checks` include; `demands` is what the hardware must prevent.
+    Attributes
+    ----------
+    rig_name
+        Name of the rig.
+    duration_s
+        Duration of the drive in s.
+    uncertainty, limits
+        The uncertainty of the rig and the limits that were applied.
+    scenarios
+        Number of combinations of corner and ending.
+    checks
+        Every rule in its worst scenario; times count from the first row of the play.
+    once
+        The same for a single play and what follows it.
+    after_C
+        Skin of the rig as given in °C, 60 s after the last sample, for each ending.
+    drift_C
+        Its steady state in °C under zero current; None for a device without a current.
+    repeated
+        The verdict on repeated plays, which `checks` include.
+    demands
+        What the hardware must prevent.
+
+    See Also
+    --------
+    gate : The function that returns it.
     """
 
     rig_name: str
@@ -144,11 +166,16 @@ def gate(
     rest_A
         Current in A held before the drive and in the pauses; None: the drive's first current.
     bridge_A
-        The current that a bridge switches; `rest_A` and the last current of the drive are then means.
+        The current in A that a bridge switches; `rest_A` and the last current of the drive are then means.
     limits
         Limits in place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the recovery time.
+
+    Returns
+    -------
+    Gate
+        Colour, and the worst value of every rule with its scenario.
 
     Raises
     ------
@@ -170,7 +197,6 @@ def gate(
     >>> ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
     >>> gate(ended, rig, rest_A=plan.rest_A).safe
     True
-
     """
     return gate_set(
         [(drive, rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s
@@ -186,7 +212,7 @@ def gate_set(
     pause_s: float | None = None,
     averaged: bool = False,
 ) -> tuple[Gate, ...]:
-    """Check drives, each with its rest in A, that may be played again and again in any order; as `gate` does.
+    """Check drives, each with its rest in A, that may be played repeatedly in any order; as `gate` does.
 
     Each is judged by itself, and between bounds on the states that any sequence of all of them can reach. Without a
     pause, that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
@@ -201,14 +227,14 @@ def gate_set(
 
 
 def _gated(
-    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, held: Limits, pause_s: float | None
+    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, limits: Limits, pause_s: float | None
 ) -> tuple[Gate, ...]:
-    singles = [Single.of(ensemble, drive, rest, held) for drive, rest in drives]
+    singles = [Single.of(ensemble, drive, rest, limits) for drive, rest in drives]
     alone = [single for single in singles if not single.safe]  # never written, so never part of a sequence
     together = [single for single in singles if single.safe]
     gates: dict[int, Gate] = {}
     for group in ([together] if together else []) + [[single] for single in alone]:
-        gates |= zip(map(id, group), _gated_together(group, ensemble, held, pause_s), strict=True)
+        gates |= zip(map(id, group), _gated_together(group, ensemble, limits, pause_s), strict=True)
     return tuple(gates[id(single)] for single in singles)
 
 
@@ -225,14 +251,14 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
         shortest_pause_s(repeating) if singles[0].safe else None
     )  # no pause makes a play safe that is red by itself
     repeats = []
-    for single, own, cycle in zip(singles, tallies, cycles, strict=True):
-        checks, plays = worst_of(tally.checks() for tally in own), plays_in(cycle, limits.session_s)
+    for single, own_tallies, cycle in zip(singles, tallies, cycles, strict=True):
+        checks, plays = worst_of(tally.checks() for tally in own_tallies), plays_in(cycle, limits.session_s)
         repeats.append(Repeated(pause, single.recovery_s, shortest, plays, limits.session_s, checks))
     every = [*(single.checks for single in singles), *(repeated.checks for repeated in repeats)]
     display = [check.value for checks in every for check in checks if check.quantity == "display"]
     reach = (min(display), max(display))
-    for single, repeated, own in zip(singles, repeats, tallies, strict=True):
-        yield _gate(single, repeated, single.demands(repeated, own, reach))
+    for single, repeated, own_tallies in zip(singles, repeats, tallies, strict=True):
+        yield _gate(single, repeated, single.demands(repeated, own_tallies, reach))
 
 
 def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
@@ -252,36 +278,36 @@ def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
     )
 
 
-def _lines(one: Gate) -> Iterator[str]:
-    unsure, again = one.uncertainty, one.repeated
+def _lines(verdict: Gate) -> Iterator[str]:
+    unsure, again = verdict.uncertainty, verdict.repeated
     yield (
-        f"safety {one.colour.upper()}: {one.duration_s:.4g} s on {one.rig_name} and {ENDING_S:g} s after, in "
-        f"{one.scenarios} scenarios ({stated(unsure)}; {', '.join(one.after_C)})"
+        f"safety {verdict.colour.upper()}: {verdict.duration_s:.4g} s on {verdict.rig_name} and {ENDING_S:g} s after, "
+        f"in {verdict.scenarios} scenarios ({stated(unsure)}; {', '.join(verdict.after_C)})"
     )
-    yield f"played again and again: {again.text}"
-    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(one, check) for check in one.checks)]
+    yield f"repeated plays: {again.text}"
+    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(verdict, check) for check in verdict.checks)]
     widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
     for row in table:
         yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in one.after_C.items())
+    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in verdict.after_C.items())
     yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    if one.drift_C is not None:
-        yield f"zero current is not the baseline: in the end it takes the skin to {one.drift_C:.1f} °C"
-    if one.limits.changed:
-        yield f"limits changed by the rig: {'; '.join(one.limits.changed)}"
-    if one.limits.loosened:
-        yield f"limits LOOSENED: {'; '.join(one.limits.loosened)}. Reason given: {one.limits.reason}"
+    if verdict.drift_C is not None:
+        yield f"zero current is not the baseline: in the end it takes the skin to {verdict.drift_C:.1f} °C"
+    if verdict.limits.changed:
+        yield f"limits changed by the rig: {'; '.join(verdict.limits.changed)}"
+    if verdict.limits.loosened:
+        yield f"limits LOOSENED: {'; '.join(verdict.limits.loosened)}. Reason given: {verdict.limits.reason}"
     if claims := tightened(unsure):
         yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in one.demands.faults:
+    for fault in verdict.demands.faults:
         yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
     yield WHAT_IT_IS_NOT
 
 
-def _row(one: Gate, check: Check) -> tuple[str, ...]:
+def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
     mark = "ok" if check.passed else ("RED" if check.severity == "hard" else "amber")
     unit = "" if check.unit == "1" else f" {check.unit}"
-    late = check.time_s - one.duration_s
+    late = check.time_s - verdict.duration_s
     when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
     side = "≤" if check.upper else "≥"
     limit = f"{side} {signed(check.limit, '.4g')}{unit} {check.severity}"

@@ -60,9 +60,14 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     trace
         One run; without limits of its own it is checked against the shipped ones.
 
+    Returns
+    -------
+    SafetyVerdict
+        Colour, and the worst value of every rule.
+
     Notes
     -----
-    One run of the rig as given. `gate` also covers uncertainty, endings, repetition and single faults.
+    This is one run of the rig as given. `gate` also covers uncertainty, endings, repetition and single faults.
 
     Examples
     --------
@@ -70,7 +75,6 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     >>> from thermicon.icons import load_library
     >>> judge_safety(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))).colour
     'green'
-
     """
     columns = {name: getattr(trace, name)[np.newaxis] for name in WATCHED}
     if not trace.has_current:  # a thermode has no hot plate; its display stands in, so that no rule is lost

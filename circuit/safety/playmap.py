@@ -76,7 +76,7 @@ class PlayMap:
     def fixed_point(self) -> tuple[Array, npt.NDArray[np.bool_]]:
         """Nodes (rigs, m) that come back to themselves, and whether all others tend to them (rigs,)."""
         point = _solved(self.matrix, self.constant)
-        return point, np.array([_settles(one) for one in self.matrix]) & np.isfinite(point).all(axis=1)
+        return point, np.array([_settles(matrix) for matrix in self.matrix]) & np.isfinite(point).all(axis=1)
 
 
 def _settles(matrix: Array) -> bool:
@@ -120,11 +120,11 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
 
 def _solved(matrix: Array, constant: Array) -> Array:
     """Solutions (rigs, m) of x = matrix·x + constant; NaN where there is none."""
-    systems, found = np.eye(constant.shape[1]) - matrix, np.full_like(constant, np.nan)
+    systems, solution = np.eye(constant.shape[1]) - matrix, np.full_like(constant, np.nan)
     try:
         return np.asarray(np.linalg.solve(systems, constant[..., np.newaxis])[..., 0], dtype=np.float64)
     except np.linalg.LinAlgError:  # of one rig at least: the others have theirs
-        for rig, (one, offset) in enumerate(zip(systems, constant, strict=True)):
+        for rig, (system, offset) in enumerate(zip(systems, constant, strict=True)):
             with suppress(np.linalg.LinAlgError):
-                found[rig] = np.linalg.solve(one, offset)
-    return found
+                solution[rig] = np.linalg.solve(system, offset)
+    return solution

@@ -31,7 +31,16 @@ PAUSE_STEP_S = 0.1
 
 
 class PauseError(InputError):
-    """An impossible pause between plays."""
+    """An impossible pause between plays.
+
+    Examples
+    --------
+    >>> try:
+    ...     check_pause(-1.0)
+    ... except PauseError as problem:
+    ...     print(problem)
+    a pause of -1 s between plays is not possible; give 0 to 600 s
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +71,8 @@ class Repeated:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
-        found = hard_reason(findings_of(self.checks))
-        return None if found is None else f"{found}; {self.cure}"
+        reason = hard_reason(findings_of(self.checks))
+        return None if reason is None else f"{reason}; {self.cure}"
 
     @property
     def cure(self) -> str:
@@ -115,24 +124,26 @@ class Repeating:
         steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
         warm = bound(cycles, self.starts, steady, warm=True)
         cold = bound(cycles, self.starts, steady, warm=False)
-        found = []
+        tallies = []
         for cycle, start, state in zip(cycles, self.starts, steady, strict=True):
             begun = skin_C(self.ensemble, start)
-            own = [self._tally(cycle, state, begun, "", True)[0]] if endings else []  # rates hardly follow the pause
+            drive_tallies = (
+                [self._tally(cycle, state, begun, "", True)[0]] if endings else []
+            )  # rates hardly follow the pause
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
-                own += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
-            found.append(own)
-        return found
+                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
+            tallies.append(drive_tallies)
+        return tallies
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
         """Whether no hard limit is passed with a pause between plays."""
-        return all(tally.passes() for own in self.tallies(pause_s, endings) for tally in own)
+        return all(tally.passes() for drive_tallies in self.tallies(pause_s, endings) for tally in drive_tallies)
 
     def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
         """The tally of a play from a state with its pause, and the state at the end of the play."""
         plays = plays_in(cycle, self.limits.session_s)
-        again = f"played again and again with {cycle.pause_s:.4g} s of pause{what}"
+        again = f"repeated plays with {cycle.pause_s:.4g} s of pause{what}"
         names = [f"{corner}, {again}" for corner in self.ensemble.corners]
         tally, now = Tally(self.limits, names, plays=plays, begun_C=begun), state
         for (rows, values), then in self.ensemble.play(cycle.drive, state):
@@ -198,22 +209,22 @@ def shortest_pause_s(repeating: Repeating) -> float | None:
     Searched in the corners that are worst without a pause; the result is checked in all corners, and any that exceed a
     limit are added to the search.
     """
-    tallies = [tally for own in repeating.tallies(0.0) for tally in own]
+    tallies = [tally for drive_tallies in repeating.tallies(0.0) for tally in drive_tallies]
     if all(tally.passes() for tally in tallies):
         return 0.0
     count = len(repeating.ensemble.corners)
     deciding = {lane % count for tally in tallies for lane in tally.worst_lanes()}
     while True:
         few = _with(repeating, sorted(deciding))
-        found = shortest_of(partial(few.safe, endings=False))
-        if found is None:
+        pause_s = shortest_of(partial(few.safe, endings=False))
+        if pause_s is None:
             return None
-        after = [tally for own in repeating.tallies(found) for tally in own]
+        after = [tally for drive_tallies in repeating.tallies(pause_s) for tally in drive_tallies]
         if all(tally.passes() for tally in after):
-            return found
+            return pause_s
         more = {lane % count for tally in after for lane in tally.worst_lanes()}
         if more <= deciding:
-            return _later(repeating, found)
+            return _later(repeating, pause_s)
         deciding |= more
 
 

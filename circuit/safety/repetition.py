@@ -93,9 +93,9 @@ def steady_cycle(cycle: Cycle, start: State) -> tuple[State, npt.NDArray[np.bool
         result = _joined(cycle.after(_parted(guess, start)))
         guesses, results = [*guesses[-REMEMBERED:], guess], [*results[-REMEMBERED:], result]
         settled = _change(result - guess) <= CLOSE_K
-    found = results[-1].copy()
-    found[~settled] = np.where(np.isfinite(found[~settled]), found[~settled], HOTTEST_C)
-    return _parted(found, start), settled
+    state = results[-1].copy()
+    state[~settled] = np.where(np.isfinite(state[~settled]), state[~settled], HOTTEST_C)
+    return _parted(state, start), settled
 
 
 def bound(cycles: Sequence[Cycle], starts: Sequence[State], steady: Sequence[State], warm: bool) -> State:

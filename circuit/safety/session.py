@@ -55,11 +55,43 @@ class TimeBeyond:
 class Session:
     """A session on a rig.
 
-    `trace` is the rig as given, from the first icon's start to the last one's end. `checks` has every rule once, in its
-    worst scenario. The dose (min CEM43), `henriques`, `energy_J` (into the module) and
-    `heat_to_sink_W` (least, most; None where the sink has a capacity of its own) are those of the rig as given.
-    `recovery_s` is how long after the end display and skin are within 0.1 K of where they began, in every corner of the
-    uncertainty; None where 10 min are too short.
+    Attributes
+    ----------
+    plan
+        Order of play and gap.
+    tracking
+        `replay` (open loop) or `display`.
+    rest_A
+        Current in A in the gaps.
+    trace
+        The rig as given, from the start of the first icon to the end of the last.
+    plays
+        One entry per play, on the rig as given.
+    limits, uncertainty
+        The limits that were applied, and the uncertainty of the rig.
+    scenarios
+        Number of corners.
+    checks
+        Every rule in its worst scenario.
+    time_beyond
+        Time beyond each limit, on the rig as given.
+    dose_cem43_min, henriques
+        Thermal dose in min at 43 °C, and burn integral, of the rig as given.
+    energy_J
+        Electrical energy into the module in J.
+    heat_to_sink_W
+        Least and greatest heat into the sink in W; None where the sink has a capacity of its own.
+    recovery_s
+        Time in s after the end until display and skin are within 0.1 K of their start, in every corner of the
+        uncertainty; None where it exceeds 10 min.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, play_session
+    >>> from thermicon.icons import load_library
+    >>> session = play_session(load_library("six-icons"), SessionPlan(("cooling-step",) * 2), Rig.load("thenar"))
+    >>> session.verdict, session.duration_s, len(session.plays)
+    ('amber', 26.0, 2)
     """
 
     plan: SessionPlan

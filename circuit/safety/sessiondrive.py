@@ -111,24 +111,24 @@ def _tracked(
 ) -> tuple[Drive, Design]:
     """The driver's own currents for set-points at the end of every update of the whole session."""
     update = rig.driver.update_Hz
-    shown = {
+    displays = {
         name: _setpoints(icons[name], rig, counts[order.index(name)], lasting[name]) for name in dict.fromkeys(order)
     }
     ends = starts[-1] + counts[-1]
-    target = np.full(ends, shown[order[0]][0])
+    target = np.full(ends, displays[order[0]][0])
     for name, start, count in zip(order, starts, counts, strict=True):
-        base, levels = shown[name]
+        base, levels = displays[name]
         target[start : start + count] = levels
         target[start + count :] = base
     first = design(icons[order[0]], rig, lasting[order[0]])
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     states, period = bank.states([first.start_C]), 1.0 / update
     if rig.controller is None:
-        current = run_follow(bank, one, one, period, target[np.newaxis], False, states)[0]
+        current = run_follow(bank, lane, lane, period, target[np.newaxis], False, states)[0]
     else:
-        setpoint = np.concatenate([[shown[order[0]][0]], target[:-1]])[np.newaxis]
+        setpoint = np.concatenate([[displays[order[0]][0]], target[:-1]])[np.newaxis]
         gains = np.array([gains_of(rig)])
-        current = run_regulate(bank, one, one, period, setpoint, gains, np.array([first.rest_A]), states)[0]
+        current = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([first.rest_A]), states)[0]
     drive = Drive(np.arange(ends + 1) / update, np.append(current[0], first.rest_A), held=True)
     return drive, first
 

@@ -23,16 +23,38 @@ ORDER_MB = 1.0
 
 
 class SessionError(InputError):
-    """A session that cannot be planned or played; the text gives the reason and what to change."""
+    """A session that cannot be planned or played; the text gives the reason and what to change.
+
+    Examples
+    --------
+    >>> try:
+    ...     SessionPlan(())
+    ... except SessionError as problem:
+    ...     print(problem)
+    a session ...
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class SessionPlan:
-    """Names of icons in the order of play, and `gap_s` from the end of one to the start of the next.
+    """The order of play in a session, and the gap between plays.
 
-    `seed` is that of a shuffled order, None for one that was given. Raises SessionError for an empty order, for more
-    than 5,000 plays, and for a gap outside 0 to 3,600 s.
+    Parameters
+    ----------
+    order
+        Names of icons in the order of play, at most 5,000.
+    gap_s
+        Time in s from the end of one play to the start of the next, 0 to 3,600 s.
+    seed
+        Seed of a shuffled order; None for an order that was given.
 
+    Raises
+    ------
+    SessionError
+        For an empty or too long order, and for a gap outside its range.
+
+    Examples
+    --------
     >>> SessionPlan(("dip", "glow", "dip"), gap_s=5.0)
     SessionPlan(3 plays of 2 icons, 5 s apart)
     """
@@ -87,7 +109,7 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
     line and the nearest name.
     """
     where = Path(path)
-    found: list[str] = []
+    names: list[str] = []
     known: set[str] = set()
     for line, name in _words(read_text(where, "file of an order", ORDER_MB, SessionError)):
         if name not in known:
@@ -95,11 +117,11 @@ def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
                 known.add(icons[name].name)
             except KeyError as problem:
                 raise SessionError(f"{where}:{line}: {problem}") from None
-        found.append(name)
-    if not found:
+        names.append(name)
+    if not names:
         raise SessionError(f"{where}: there is no icon in this order, only comments; write one name per line")
-    _check_count(len(found), str(where))
-    return tuple(found)
+    _check_count(len(names), str(where))
+    return tuple(names)
 
 
 def order_text(plan: SessionPlan) -> str:

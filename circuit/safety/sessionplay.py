@@ -39,20 +39,43 @@ def play_session(
 ) -> Session:
     """Simulate the icons of a plan in sequence on a rig, as one continuous run.
 
-    With tracking `replay` the current of each icon, designed from rest, is played open loop, as exported drives are,
-    and its holding current in the gaps; with `display` the driver follows each icon's display temperature, as a
-    thermode does. The run has a row at every update of the driver and at least 100 rows a second. `limits` replaces
-    those of the rig; `progress` is called with the seconds of the worst case that are done, and their total.
-    Raises SessionError where the plan names an icon that is not given, is too long, or cannot be tracked, and RigError
-    where the rig cannot hold a baseline.
+    Parameters
+    ----------
+    icons
+        The icons that the plan names.
+    plan
+        Order of play and gap.
+    rig
+        The rig.
+    tracking
+        `replay` plays the current of each icon, designed from rest, open loop, as exported drives are, and its holding
+        current in the gaps; with `display` the driver follows each icon's display temperature, as a thermode does.
+    limits
+        Limits in place of the rig's.
+    progress
+        Called with the seconds of the worst case that are done, and their total.
 
+    Returns
+    -------
+    Session
+        One row per update of the driver, and at least 100 rows per second, with the verdict.
+
+    Raises
+    ------
+    SessionError
+        Where the plan names an icon that is not given, is too long, or cannot be tracked.
+    RigError
+        Where the rig cannot hold a baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> plan = SessionPlan(("cooling-step", "warming-step"), gap_s=10.0)
     >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))
     Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
     """
-    wanted = set(plan.names)
-    known = {icon.name: icon for icon in icons if icon.name in wanted}
+    planned = set(plan.names)
+    known = {icon.name: icon for icon in icons if icon.name in planned}
     for name in plan.names:
         if name not in known:
             raise SessionError(f"the plan names {name}, which is not among the icons; {did_you_mean(name, known)}")
@@ -84,13 +107,13 @@ def play_session(
 def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits, energy_J: Array) -> tuple[Play, ...]:
     """Every play, judged on its own rows of the run."""
     first = np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)
-    found, rest = [], float(trace.skin_C[0])
+    plays, rest = [], float(trace.skin_C[0])
     for place, (begin, until) in enumerate(pairwise([*first.tolist(), len(trace.time_s) - 1])):
         rows = slice(begin, until + 1)
         times, skin, display = trace.time_s[rows], trace.skin_C[rows], trace.display_C[rows]
         columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
         verdict = SafetyVerdict(findings_of(checks_of(limits, times, columns)))
-        found.append(
+        plays.append(
             Play(
                 icon=plan.order[place],
                 start_s=played.starts_s[place],
@@ -106,19 +129,19 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
                 energy_J=float(energy_J[begin:until].sum()),
             )
         )
-    return tuple(found)
+    return tuple(plays)
 
 
 def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
     """Time in s beyond every limit of a temperature in °C; a row counts until the next."""
-    steps, found = np.diff(trace.time_s), []
+    steps, totals = np.diff(trace.time_s), []
     for rule in limits.rules:
         if rule.unit != "°C" or rule.relative:
             continue
         values = getattr(trace, PLACES.get(rule.quantity, "skin_C"))[:-1]
         over = values > rule.limit if rule.upper else values < rule.limit
-        found.append(TimeBeyond(rule.quantity, rule.severity, rule.upper, rule.limit, float(steps[over].sum())))
-    return tuple(found)
+        totals.append(TimeBeyond(rule.quantity, rule.severity, rule.upper, rule.limit, float(steps[over].sum())))
+    return tuple(totals)
 
 
 def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:

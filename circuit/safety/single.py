@@ -85,11 +85,11 @@ class Single:
 
     def _farthest(self, tallies: list[Tally]) -> list[int]:
         count = len(self.ensemble.corners)
-        found: dict[int, None] = {0: None}
+        rows: dict[int, None] = {0: None}
         for tally in tallies:
             for lane in tally.worst_lanes():
-                found.setdefault(lane % count)
-        return sorted(list(found)[:MOST_CORNERS])
+                rows.setdefault(lane % count)
+        return sorted(list(rows)[:MOST_CORNERS])
 
     @property
     def drift_C(self) -> float:

@@ -60,7 +60,7 @@ class Faulty:
             after *= 0.5
         after = round(after, 2) if after > 0.05 else 0.0
         text = f"the current hangs for {HANG_S:g} s: {worst}"
-        prevented = f"a watchdog that cuts the current after {after:g} s without a sign of the host"
+        prevented = f"a watchdog that cuts the current after {after:g} s without a message from the host"
         if after == 0.0:
             prevented = "a cut-off on the measured temperature; no watchdog is quick enough"
         return after, SingleFault("host hangs in mid-play", _colour(beyond), text, prevented)
@@ -106,7 +106,7 @@ class Faulty:
 
         at_once = tally_after(0.0)
         findings = findings_of(at_once.checks())
-        text = "; ".join(str(one) for one in findings[:1]) or "no limit is passed"
+        text = "; ".join(str(check) for check in findings[:1]) or "no limit is passed"
         rest: float | None = 0.0
         if not at_once.passes():
             low, high = 0, int(LONGEST_REST_S)
@@ -195,8 +195,8 @@ class Faulty:
         return 0.0
 
     def _safe_after_lane(self, lane: int, amps: Array, time_s: float) -> bool:
-        one = np.array([lane], dtype=np.int64)
-        return self._safe_after(self.start.take(one), amps[one], one, time_s)
+        lanes = np.array([lane], dtype=np.int64)
+        return self._safe_after(self.start.take(lanes), amps[lanes], lanes, time_s)
 
 
 def _constant(ensemble: Ensemble, amps: Array, state: State, times_s: Array, rigs: Index) -> tuple[Array, State]:

@@ -72,6 +72,18 @@ class Summary:
 def summarise(trace: Trace) -> Summary:
     """Return the numbers of a trace by which rigs and icons are compared.
 
+    Parameters
+    ----------
+    trace
+        One run.
+
+    Returns
+    -------
+    Summary
+        Duration, misses, extremes, electrical energy and the safety of this run.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library
     >>> summarise(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar")))

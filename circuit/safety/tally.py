@@ -137,14 +137,14 @@ class Tally:
         limits = self.limits_of(rule)
         over = side * (values - limits[:, np.newaxis]) > 0
         since = np.where(over.any(axis=1), time_s[over.argmax(axis=1)], np.nan)
-        held = self._extremes.get(place)
-        if held is None:
+        extreme = self._extremes.get(place)
+        if extreme is None:
             self._extremes[place] = _Extreme(most, at, since)
             return
-        later = side * most > side * held.value + LEVEL
-        held.at_s[lanes[later]] = at[later]
-        held.value = side * np.maximum(side * held.value, side * most)
-        held.since_s = np.where(np.isnan(held.since_s), since, held.since_s)
+        later = side * most > side * extreme.value + LEVEL
+        extreme.at_s[lanes[later]] = at[later]
+        extreme.value = side * np.maximum(side * extreme.value, side * most)
+        extreme.since_s = np.where(np.isnan(extreme.since_s), since, extreme.since_s)
 
     def _worst(self, place: int, rule: Rule) -> int:
         side = 1.0 if rule.upper else -1.0

@@ -34,7 +34,7 @@ _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shown:
+class DisplayCourse:
     """A display (rows,) in °C, `step_s` apart and linear between: what a device shows if it follows in a certain `way`.
 
     The last `settling_s` come after the end of the drive, until the display has arrived, and are part of the pause.
@@ -69,12 +69,12 @@ def contact_corners(rig: Rig) -> tuple[Corner, ...]:
     """The rig as given, then all combinations of contact and ambient at either end of their uncertainty."""
     contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
     spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
-    found = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
     for share, shift in itertools.product(*spans):
         if share or shift:
             there = perturbed(rig, contact_resistance_relative=share, ambient_K=shift)
-            found.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
-    return tuple(found)
+            corners.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
+    return tuple(corners)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,17 +91,19 @@ class Under:
         corners = contact_corners(rig)
         rigs = [corner.rig for corner in corners]
         return Under(
-            corners, tuple(modes_of(one) for one in rigs), tuple(modes_of(one, insulated=True) for one in rigs)
+            corners,
+            tuple(modes_of(rig_corner) for rig_corner in rigs),
+            tuple(modes_of(rig_corner, insulated=True) for rig_corner in rigs),
         )
 
     def steady(self, display_C: float) -> list[Array]:
         """Modes of every corner under a display held."""
         return [modes.steady(display_C) for modes in self.modes]
 
-    def play(self, shown: Shown, states: Sequence[Array]) -> tuple[Array, list[Array]]:
+    def play(self, course: DisplayCourse, states: Sequence[Array]) -> tuple[Array, list[Array]]:
         """Return WATCHED (4, corners, rows) of a play from states, and the states at its end."""
         runs = [
-            modes.run(shown.display_C, shown.step_s, state) for modes, state in zip(self.modes, states, strict=True)
+            modes.run(course.display_C, course.step_s, state) for modes, state in zip(self.modes, states, strict=True)
         ]
         return watched([felt for felt, _ in runs]), [end for _, end in runs]
 
@@ -112,53 +114,53 @@ class Under:
 
     def let_go(self, states: Sequence[Array], times_s: Array) -> Array:
         """WATCHED (4, corners, times) under a display that conducts no heat and is as warm as the skin below."""
-        found = []
+        tallies = []
         for modes, free, state in zip(self.modes, self.insulated, states, strict=True):
             felt = free.relax(times_s, free.deep_C, free.unlumps @ (modes.lumps @ state))
             felt[_PLACE["display_C"]] = felt[_PLACE["cold_receptor_C"]]
-            found.append(felt)
-        return watched(found)
+            tallies.append(felt)
+        return watched(tallies)
 
-    def after(self, shown: Shown, pause_s: float, states: Sequence[Array]) -> list[Array]:
+    def after(self, course: DisplayCourse, pause_s: float, states: Sequence[Array]) -> list[Array]:
         """States after a play and a pause with the last set-point held."""
-        last = float(shown.display_C[-1])
-        _, ended = self.play(shown, states)
-        left = shown.left_s(pause_s)
+        last = float(course.display_C[-1])
+        _, ended = self.play(course, states)
+        left = course.left_s(pause_s)
         return [modes.after(left, last, end) for modes, end in zip(self.modes, ended, strict=True)]
 
-    def cycle(self, shown: Shown, pause_s: float) -> list[Array]:
+    def cycle(self, course: DisplayCourse, pause_s: float) -> list[Array]:
         """States before each play of a steady cycle: each mode decays by the same share in every cycle."""
         none = [np.zeros_like(modes.rate_per_s) for modes in self.modes]
-        forced = self.after(shown, pause_s, none)
-        length = shown.end_s + shown.left_s(pause_s)
+        forced = self.after(course, pause_s, none)
+        length = course.end_s + course.left_s(pause_s)
         return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
 
-    def bound(self, shows: Sequence[Shown], pause_s: float, warm: bool) -> list[Array]:
+    def bound(self, shows: Sequence[DisplayCourse], pause_s: float, warm: bool) -> list[Array]:
         """States warmer (or colder), lump by lump, than those before any play of a sequence in any order."""
-        rests = [self.steady(float(shown.display_C[0])) for shown in shows]
-        starts = [self._lumps(states) for states in (*rests, *(self.cycle(shown, pause_s) for shown in shows))]
-        bounded = least_bound([self._map(shown, pause_s) for shown in shows], starts, 1.0 if warm else -1.0)
+        rests = [self.steady(float(course.display_C[0])) for course in shows]
+        starts = [self._lumps(states) for states in (*rests, *(self.cycle(course, pause_s) for course in shows))]
+        bounded = least_bound([self._map(course, pause_s) for course in shows], starts, 1.0 if warm else -1.0)
         return [modes.unlumps @ lumps for modes, lumps in zip(self.modes, bounded, strict=True)]
 
     def _lumps(self, states: Sequence[Array]) -> Array:
         """Lumps (corners, n) above the deep node's temperature, for modes."""
         return np.array([modes.lumps @ state for modes, state in zip(self.modes, states, strict=True)])
 
-    def _map(self, shown: Shown, pause_s: float) -> PlayMap:
+    def _map(self, course: DisplayCourse, pause_s: float) -> PlayMap:
         """A play and its pause as a map of lumps, whose entries, unlike those of modes, are never negative."""
-        length = shown.end_s + shown.left_s(pause_s)
-        forced = self.after(shown, pause_s, [np.zeros_like(modes.rate_per_s) for modes in self.modes])
-        kept = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
-        return PlayMap(np.array(kept), self._lumps(forced))
+        length = course.end_s + course.left_s(pause_s)
+        forced = self.after(course, pause_s, [np.zeros_like(modes.rate_per_s) for modes in self.modes])
+        decays = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
+        return PlayMap(np.array(decays), self._lumps(forced))
 
-    def recovery_s(self, shown: Shown, ended: Sequence[Array]) -> float | None:
+    def recovery_s(self, course: DisplayCourse, ended: Sequence[Array]) -> float | None:
         """Time in s after the end of a drive until the skin is within 0.1 K of where it began, in every corner."""
-        last, first = float(shown.display_C[-1]), float(shown.display_C[0])
+        last, first = float(course.display_C[-1]), float(course.display_C[0])
         skin = self.hold(last, ended, RECOVERY_ROWS_S)[0]
         began = self.hold(first, self.steady(first), np.array([0.0]))[0]
         away = (np.abs(skin - began).max(axis=0) > RECOVERED_K) | (abs(last - first) > RECOVERED_K)
         back_s = back_after_s(away)
-        return None if back_s is None else round(shown.settling_s + back_s, 1)
+        return None if back_s is None else round(course.settling_s + back_s, 1)
 
 
 def watched(felt: Sequence[Array]) -> Array:
@@ -166,21 +168,23 @@ def watched(felt: Sequence[Array]) -> Array:
     return np.stack([[each[_PLACE.get(name, _PLACE["display_C"])] for each in felt] for name in WATCHED])
 
 
-def tally_once(under: Under, shown: Shown, limits: Limits, rates: bool = True) -> tuple[list[Tally], list[Array]]:
+def tally_once(
+    under: Under, course: DisplayCourse, limits: Limits, rates: bool = True
+) -> tuple[list[Tally], list[Array]]:
     """Every rule over one play and its endings, and the states at the end of the play."""
-    values, ended = under.play(shown, under.steady(float(shown.display_C[0])))
-    played = Tally(limits, [f"{corner}, {shown.way}" for corner in under.corners])
-    played.add(shown.rows_s, values, rates=rates)
+    values, ended = under.play(course, under.steady(float(course.display_C[0])))
+    played = Tally(limits, [f"{corner}, {course.way}" for corner in under.corners])
+    played.add(course.rows_s, values, rates=rates)
     tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
-    add_endings(under, shown, ended, tallies)
+    add_endings(under, course, ended, tallies)
     return [played, *tallies], ended
 
 
 def add_endings(
-    under: Under, shown: Shown, ended: Sequence[Array], tallies: Sequence[Tally], sums: bool = True
+    under: Under, course: DisplayCourse, ended: Sequence[Array], tallies: Sequence[Tally], sums: bool = True
 ) -> None:
     """Add what follows a play to the tally of each ending."""
-    last, end = float(shown.display_C[-1]), shown.end_s
+    last, end = float(course.display_C[-1]), course.end_s
     tallies[0].add(end + ENDING_ROWS_S, under.hold(last, ended, ENDING_ROWS_S), sums=sums)
     tallies[1].add(end + ENDING_ROWS_S[1:], under.let_go(ended, ENDING_ROWS_S[1:]), rates=False, sums=sums, drift=True)
     tallies[1].add(end + LATE_S, under.let_go(ended, LATE_S), rates=False, sums=sums, drift=True)

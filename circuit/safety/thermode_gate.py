@@ -27,7 +27,7 @@ from .single_faults import BEYOND_K, MARGIN
 from .tally import Tally
 from .thermode import (
     ENDINGS,
-    Shown,
+    DisplayCourse,
     Under,
     add_endings,
     limits_without_module,
@@ -35,7 +35,7 @@ from .thermode import (
     time_to_limit_s,
 )
 
-Ways = Sequence[Shown]
+Ways = Sequence[DisplayCourse]
 """What a device shows of one drive, in each way of following it."""
 
 
@@ -75,17 +75,17 @@ def gate_shown(
 
     """
     check_pause(pause_s)
-    under, held = Under.of(rig), rig.limits if limits is None else limits
-    held = held if module else limits_without_module(held)
+    under, limits_held = Under.of(rig), rig.limits if limits is None else limits
+    limits_held = limits_held if module else limits_without_module(limits_held)
     once: list[tuple[tuple[Check, ...], float | None, dict[str, float]]] = []
     for ways in drives:
         judged, recoveries, after = [], [], {}
-        for shown in ways:
-            tallies, ended = tally_once(under, shown, held, rates)
+        for course in ways:
+            tallies, ended = tally_once(under, course, limits_held, rates)
             judged += [tally.checks() for tally in tallies]
-            recoveries.append(under.recovery_s(shown, ended))
+            recoveries.append(under.recovery_s(course, ended))
             minute = np.array([ENDING_S])
-            last = under.hold(float(shown.display_C[-1]), ended, minute), under.let_go(ended, minute)
+            last = under.hold(float(course.display_C[-1]), ended, minute), under.let_go(ended, minute)
             after = {name: float(values[0, 0, 0]) for name, values in zip(ENDINGS, last, strict=True)}
         known = [time for time in recoveries if time is not None]
         once.append((worst_of(judged), max(known) if len(known) == len(recoveries) else None, after))
@@ -93,57 +93,57 @@ def gate_shown(
     if pause is None:
         times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
         pause = max(times)
-    again = _again(under, drives, held, pause, rates)
+    again = _again(under, drives, limits_held, pause, rates)
     shortest = None
     if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
-        shortest = _shortest_s(under, drives, held, rates)
-    found = []
+        shortest = _shortest_s(under, drives, limits_held, rates)
+    verdicts = []
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
-        plays = _plays(ways[0], pause, held.session_s)
-        repeated = Repeated(pause, recovery, shortest, plays, held.session_s, repeated_checks)
-        every = [check for each in (*(one[0] for one in once), *again) for check in each]
-        found.append(
+        plays = _plays(ways[0], pause, limits_held.session_s)
+        repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks)
+        every = [check for each in (*(tally_pair[0] for tally_pair in once), *again) for check in each]
+        verdicts.append(
             Gate(
                 rig.name,
                 ways[0].end_s,
                 rig.uncertainty,
-                held,
+                limits_held,
                 len(under.corners) * len(ways) * len(ENDINGS),
                 worst_of([checks, repeated_checks]),
                 checks,
                 after,
                 None,
                 repeated,
-                _demands(under, ways, held, repeated, stuck_C, every),
+                _demands(under, ways, limits_held, repeated, stuck_C, every),
             )
         )
-    return tuple(found)
+    return tuple(verdicts)
 
 
 def _again(
     under: Under, drives: Sequence[Ways], limits: Limits, pause_s: float, rates: bool
 ) -> list[tuple[Check, ...]]:
     """Every rule for each drive in its steady cycle, and between the bounds on any sequence of all drives."""
-    shows = [shown for ways in drives for shown in ways]
+    shows = [course for ways in drives for course in ways]
     begun = under.steady(float(shows[0].display_C[0]))
     bounds = {word: under.bound(shows, pause_s, warm) for word, warm in (("warm", True), ("cold", False))}
     skin = under.hold(float(shows[0].display_C[0]), begun, np.array([0.0]))[0, :, 0]
-    found = []
+    all_checks = []
     for ways in drives:
         judged = []
-        for shown in ways:
-            judged.append(_cycle_checks(under, shown, limits, pause_s, under.cycle(shown, pause_s), skin, "", rates))
+        for course in ways:
+            judged.append(_cycle_checks(under, course, limits, pause_s, under.cycle(course, pause_s), skin, "", rates))
             judged += [
-                _cycle_checks(under, shown, limits, pause_s, states, skin, f" ({word} bound)", False)
+                _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", False)
                 for word, states in bounds.items()
             ]
-        found.append(worst_of(checks for group in judged for checks in group))
-    return found
+        all_checks.append(worst_of(checks for group in judged for checks in group))
+    return all_checks
 
 
 def _cycle_checks(
     under: Under,
-    shown: Shown,
+    course: DisplayCourse,
     limits: Limits,
     pause_s: float,
     states: Sequence[Array],
@@ -151,21 +151,21 @@ def _cycle_checks(
     what: str,
     rates: bool,
 ) -> list[tuple[Check, ...]]:
-    again = f"{shown.way}, played again and again with {pause_s:.4g} s of pause{what}"
+    again = f"{course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     names = [f"{corner}, {again}" for corner in under.corners]
-    values, ended = under.play(shown, states)
-    tally = Tally(limits, names, plays=_plays(shown, pause_s, limits.session_s), begun_C=begun_C)
-    tally.add(shown.rows_s, values, rates=rates)
-    rows = np.append(0.0, pause_rows(shown.left_s(pause_s)))
+    values, ended = under.play(course, states)
+    tally = Tally(limits, names, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
+    tally.add(course.rows_s, values, rates=rates)
+    rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
-        tally.add(shown.end_s + rows, under.hold(float(shown.display_C[-1]), ended, rows), rates=False)
+        tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
     endings = [Tally(limits, [f"{name}, then {ending}" for name in names], begun_C=begun_C) for ending in ENDINGS]
-    add_endings(under, shown, ended, endings, sums=False)
+    add_endings(under, course, ended, endings, sums=False)
     return [tally.checks(), *(ending.checks() for ending in endings)]
 
 
-def _plays(shown: Shown, pause_s: float, session_s: float) -> int:
-    return max(1, math.floor((session_s + pause_s) / (shown.end_s + shown.left_s(pause_s)) + 1e-9))
+def _plays(course: DisplayCourse, pause_s: float, session_s: float) -> int:
+    return max(1, math.floor((session_s + pause_s) / (course.end_s + course.left_s(pause_s)) + 1e-9))
 
 
 def _safe(again: Sequence[Sequence[Check]]) -> bool:
@@ -189,7 +189,7 @@ def _demands(
 ) -> Demands:
     """What the device itself must prevent: a stuck set-point, and a loop that runs to the end of its range."""
     start = under.steady(float(ways[0].display_C[0]))
-    levels = [float(level) for shown in ways for level in (shown.display_C.min(), shown.display_C.max())]
+    levels = [float(level) for course in ways for level in (course.display_C.min(), course.display_C.max())]
     hangs = [(level, *time_to_limit_s(under, limits, level, start)) for level in (min(levels), max(levels))]
     stuck = [(level, *time_to_limit_s(under, limits, level, start)) for level in stuck_C]
     watchdog = min(time for _, time, _ in hangs)
@@ -211,7 +211,7 @@ def _demands(
             "set-point hangs in mid-play",
             "red" if watchdog < ENDING_S else "green",
             f"display held at {_levels(hangs)} for {ENDING_S:g} s",
-            f"a return to the baseline {watchdog:g} s after the last sign of the host",
+            f"a return to the baseline {watchdog:g} s after the last message from the host",
         ),
         SingleFault(
             "loop stuck at the end of its range",
@@ -232,5 +232,5 @@ def _prevents_stuck(cut: CutOff) -> str:
     )
 
 
-def _levels(held: Sequence[tuple[float, float, Tally]]) -> str:
-    return " or ".join(f"{signed(level, '.1f')} °C" for level, _, _ in held)
+def _levels(faults: Sequence[tuple[float, float, Tally]]) -> str:
+    return " or ".join(f"{signed(level, '.1f')} °C" for level, _, _ in faults)

@@ -68,12 +68,44 @@ def simulate_many(
     tracking: str | None = None,
     probes: Sequence[str] = USUAL,
 ) -> Batch:
-    """Simulate every cue on every rig until `end_s`; the result does not depend on the number of cores.
+    """Simulate every cue on every rig; the result does not depend on the number of cores.
 
-    `tracking` is one of TRACKINGS, or None for the default of each cue: `replay` plays the current designed on
-    `nominal` open loop, `display` tracks the display temperature designed on `nominal` within each driver's limits,
-    `ideal` solves anew for each rig. Rigs with a PID loop run it; a thermode shows the same display to everybody.
-    Raises RigError where a rig cannot hold a baseline.
+    Parameters
+    ----------
+    icons
+        The cues.
+    rigs
+        The rigs, such as one for each virtual person. With a PID loop in the rig file, it is simulated.
+    nominal
+        The rig for which the currents are designed.
+    end_s
+        Time in s until which every run continues.
+    rate_Hz
+        Rows per second.
+    tracking
+        `replay` plays the current designed on `nominal` open loop, `display` tracks the display temperature designed on
+        `nominal` within each driver's limits, `ideal` designs anew for each rig; None: the default of each cue. A
+        thermode shows the same display to everybody.
+    probes
+        Columns of a trace to record.
+
+    Returns
+    -------
+    Batch
+        Recorded temperatures in °C (probes, rigs, icons, rows).
+
+    Raises
+    ------
+    RigError
+        Where a rig cannot hold a baseline, or the rigs differ in what a batch needs in common.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> thenar = Rig.load("thenar")
+    >>> rigs = [thenar, thenar.with_(**{"skin.rest_C": 33.0})]
+    >>> simulate_many(tuple(load_library("six-icons"))[:2], rigs, nominal=thenar, end_s=9.0)
+    Batch(2 icons on 2 rigs, 901 rows, 9 s: skin_C, cold_receptor_C, warm_receptor_C)
     """
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -120,8 +152,37 @@ def simulate_stream(
     probes: Sequence[str] = USUAL,
     at_once: int = 256,
 ) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
-    """Simulate any number of cues on one rig, `at_once` of them in memory; yields (cues, their batch) in order.
+    """Simulate any number of cues on one rig, a part of them in memory at a time.
 
+    Parameters
+    ----------
+    icons
+        The cues.
+    rig
+        The rig.
+    end_s
+        Time in s until which every run continues.
+    rate_Hz
+        Rows per second.
+    probes
+        Columns of a trace to record.
+    at_once
+        Number of cues in memory.
+
+    Yields
+    ------
+    icons : tuple of Icon
+        The cues of a part, in order.
+    batch : Batch
+        Their runs.
+
+    Raises
+    ------
+    RigError
+        Where the rig cannot hold a baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
     >>> [(len(cues), batch.values.shape) for cues, batch in parts]
@@ -173,13 +234,13 @@ class _Stage:
         ends = periods(self.nominal, self.end_s)
         if way == "display" and control == "skin":
             rate = self.nominal.driver.update_Hz
-            shown = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
-            targets, control = np.array([display[1 : len(ends) + 1] for display in shown]), "display"
-            bases = [float(display[0]) for display in shown]
+            displays = [simulate(icon, self.nominal, rate_Hz=rate, tail_s=self.end_s).display_C for icon in icons]
+            targets, control = np.array([display[1 : len(ends) + 1] for display in displays]), "display"
+            bases = [float(display[0]) for display in displays]
         else:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
-        held = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
-        lanes = [held[r, base] for r in range(len(self.rigs)) for base in bases]
+        steady = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
+        lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
         states = [state for _, state in lanes]
         if self.nominal.controller is None:
             currents = self._follow(control, targets, states)
@@ -204,7 +265,7 @@ class _Stage:
         """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point."""
         if control == "skin":
             raise RigError(
-                "skin-controlled cues cannot be solved anew through a PID loop, which sees the display alone; "
+                "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
                 "use tracking display, or rigs without [controller]"
             )
         bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
@@ -216,11 +277,11 @@ class _Stage:
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
         times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
-        held = np.concatenate([currents, currents[:, -1:]], axis=1)
+        extended = np.concatenate([currents, currents[:, -1:]], axis=1)
         bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
-        intervals = cut(self.rows, times, held, held=True)
+        intervals = cut(self.rows, times, extended, held=True)
         out = run_forward(bank, rig_of, cue_of, intervals, bank.states(states), self.probes)
         return out.reshape(len(self.probes), *shape, len(self.rows))

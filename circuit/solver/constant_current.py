@@ -94,9 +94,9 @@ class ConstantCurrent:
         rows = [READ.index(probe) for probe in probes]
         values = np.empty((len(probes), len(rigs), len(times_s)))
         for lane, rig in enumerate(rigs.tolist()):
-            kept = np.exp(np.clip(-np.outer(self.rate_per_s[rig], times_s), None, FARTHEST))
+            decay = np.exp(np.clip(-np.outer(self.rate_per_s[rig], times_s), None, FARTHEST))
             read = self.reading[rig][rows] * modes[lane]
-            values[:, lane] = self.level_C[rig][rows][:, np.newaxis] + read @ kept
+            values[:, lane] = self.level_C[rig][rows][:, np.newaxis] + read @ decay
         return values
 
     def after(self, rigs: Index, nodes_C: Array, time_s: float) -> Array:
@@ -109,6 +109,6 @@ class ConstantCurrent:
 
     def passage(self, time_s: float) -> tuple[Array, Array]:
         """What a time in s does to the nodes above the deep one: matrix (r, m, m) and constant (r, m)."""
-        kept = np.exp(np.clip(-self.rate_per_s * time_s, None, FARTHEST))
-        matrix = (self.from_modes * kept[:, np.newaxis, :]) @ self.to_modes
+        decay = np.exp(np.clip(-self.rate_per_s * time_s, None, FARTHEST))
+        matrix = (self.from_modes * decay[:, np.newaxis, :]) @ self.to_modes
         return matrix, self.rest_C - np.einsum("rkm,rm->rk", matrix, self.rest_C)

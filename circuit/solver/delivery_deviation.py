@@ -32,7 +32,7 @@ class DeliveryDeviation:
 
     def __repr__(self) -> str:
         places = ", ".join(
-            f"{one.place} {one.largest_K * 1e3:+.3g} mK (rms {one.rms_K * 1e3:.3g})" for one in self.places
+            f"{place.place} {place.largest_K * 1e3:+.3g} mK (rms {place.rms_K * 1e3:.3g})" for place in self.places
         )
         return f"DeliveryDeviation({places})"
 
@@ -40,9 +40,9 @@ class DeliveryDeviation:
         """A sentence for each receptor whose rms deviation is over the stated loss."""
         limit = loss_limit("receptor difference")
         return tuple(
-            f"the {one.place} differs by {one.rms_K:.3f} K (rms) from the design, over the stated {limit:g} K"
-            for one in self.places
-            if "receptor" in one.place and one.rms_K > limit
+            f"the {place.place} differs by {place.rms_K:.3f} K (rms) from the design, over the stated {limit:g} K"
+            for place in self.places
+            if "receptor" in place.place and place.rms_K > limit
         )
 
 

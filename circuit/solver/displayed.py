@@ -79,13 +79,13 @@ def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_
     if icon.context.control == "skin":
         start = modes.display_holding_skin_C(base)
         _check_baseline(start, rig, f" (for {base:g} °C on the skin)")
-        wanted = modes.display_for_skin(target_at(icon, base, ticks), update, start, thermode.slew_K_per_s, limits)
+        setpoints_C = modes.display_for_skin(target_at(icon, base, ticks), update, start, thermode.slew_K_per_s, limits)
     else:
         _check_baseline(base, rig, "")
         corners = icon.corners(base)
         levels = _rounded(np.array(corners.value), thermode.resolution_K)
-        wanted = np.clip(np.interp(ticks, corners.time_s, levels), *limits)
-    setpoints = np.interp(times, ticks, wanted)
+        setpoints_C = np.clip(np.interp(ticks, corners.time_s, levels), *limits)
+    setpoints = np.interp(times, ticks, setpoints_C)
     prompt = shown(setpoints, step, 0.0, thermode.slew_K_per_s)
     outcome = judge_display(icon, modes, base, step, prompt, limits, thermode.slew_K_per_s)
     return DisplayDesign(
@@ -106,11 +106,11 @@ def judge_display(
     target, reached = target_at(icon, base, times), prompt_C
     if icon.context.control == "skin":
         reached = modes.run(prompt_C, step_s, modes.steady(float(prompt_C[0])))[0][SKIN_ROW]
-    held = [
+    limits_met = [
         ("range of the thermode", (prompt_C <= limits_C[0] + 1e-9) | (prompt_C >= limits_C[1] - 1e-9)),
         ("ramp rate of the thermode", np.abs(np.diff(prompt_C, append=prompt_C[-1])) >= slew_K_per_s * step_s - 1e-9),
     ]
-    met = tuple((name, float(times[np.argmax(where)])) for name, where in held if where.any())
+    met = tuple((name, float(times[np.argmax(where)])) for name, where in limits_met if where.any())
     met = tuple(sorted(met, key=lambda limit: limit[1]))
     return judge(target[1:], reached[1:], step_s, met, steps_at(icon, base))
 
@@ -135,11 +135,11 @@ def trace_of_display(
 
     There is no current, so that current, voltage and hot plate are NaN: empty in files, null in JSON.
     """
-    own = readings_of(rig)
-    modes = modes_of(rig) if own is None and readings is None else _modes_with(rig, joined(own, readings))
+    own_probes = readings_of(rig)
+    modes = modes_of(rig) if own_probes is None and readings is None else _modes_with(rig, joined(own_probes, readings))
     values, _ = modes.run(display_C, step_s, modes.steady(float(display_C[0])))
     times: Array = np.arange(len(display_C), dtype=np.float64) * step_s
-    listed = len(FELT) + (0 if own is None else len(own[0]))
+    listed = len(FELT) + (0 if own_probes is None else len(own_probes[0]))
     probes = sensed(rig, times, values[len(FELT) : listed], 1)
     felt = dict(zip(FELT, (_at(rows, times, row) for row in values), strict=False))
     nothing = np.full(len(rows), np.nan)

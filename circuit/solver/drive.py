@@ -25,13 +25,38 @@ four months; largest current in A, far above what any module takes."""
 
 
 class DriveError(InputError):
-    """A drive that cannot be played, or a drive file that cannot be read."""
+    """A drive that cannot be played, or a drive file that cannot be read.
+
+    Examples
+    --------
+    >>> try:
+    ...     Drive([0, 2, 1], [0.0, 0.5, 0.5])
+    ... except DriveError as problem:
+    ...     print(problem)
+    row 3: time 1 s does not come after 2 s; times must increase
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Currents in A at times in s, first at 0; `held` keeps each until the next, otherwise linear between.
+    """A current against time.
 
+    Parameters
+    ----------
+    time_s
+        Times in s, increasing from 0.
+    current_A
+        Current in A at each time, positive cools the skin.
+    held
+        Whether each current is held until the next time; otherwise it is linear between times.
+
+    Raises
+    ------
+    DriveError
+        For lengths that differ, fewer than two rows, times that do not increase from 0, and numbers out of range.
+
+    Examples
+    --------
     >>> Drive([0, 1, 4], [0.0, 0.5, 0.5])
     Drive(3 rows, 4 s, 0 … 0.5 A, linear)
     """
@@ -87,7 +112,34 @@ class Drive:
 
 
 def read_drive(path: str | Path, hold: bool = False) -> Drive:
-    """Return the drive of a CSV file with columns `time_s,current_A`; raises DriveError naming the line at fault."""
+    r"""Read a drive from a CSV file with the columns `time_s` and `current_A`.
+
+    Parameters
+    ----------
+    path
+        The file.
+    hold
+        Whether each current is held until the next row; otherwise it is linear between rows.
+
+    Returns
+    -------
+    Drive
+        The current against time.
+
+    Raises
+    ------
+    DriveError
+        With the line at fault.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "drive.csv"
+    ...     _ = path.write_text("time_s,current_A\n0,0\n2,0.5\n")
+    ...     read_drive(path)
+    Drive(2 rows, 2 s, 0 … 0.5 A, linear)
+    """
     where = Path(path)
     text = read_text(where, "drive file", MOST_MB, DriveError)
     # Line ends may be those of Windows or of an old Macintosh; the csv reader accepts one kind only.
@@ -122,10 +174,10 @@ def _places(header: list[str], where: Path) -> list[int]:
             f"this one does is in the sidecar beside it, under predicted"
         )
     if missing:
-        found = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
+        present = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
         raise DriveError(
             f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "
-            f"(found {found or 'nothing'})"
+            f"(found {present or 'nothing'})"
         )
     return [header.index(name) for name in COLUMNS]
 

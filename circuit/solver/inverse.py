@@ -57,19 +57,17 @@ def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
 
     That is the end of the hold after the step, or the next step where a ramp follows at once: the rig may catch up.
     """
-    corners, found = icon.corners(start), []
+    corners, steps = icon.corners(start), []
     times, levels = corners.time_s, corners.value
     begins = [times[place] for place in corners.steps]
     for place, begin, following in zip(corners.steps, begins, [*begins[1:], math.inf][: len(begins)], strict=True):
-        held = place + 2 < len(levels) and levels[place + 2] == levels[place + 1]
-        found.append((begin, times[place + 2] if held else following))
-    return tuple(found)
+        followed_by_hold = place + 2 < len(levels) and levels[place + 2] == levels[place + 1]
+        steps.append((begin, times[place + 2] if followed_by_hold else following))
+    return tuple(steps)
 
 
 def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     """Return the current that plays a cue on a rig.
-
-    Skin and display control give currents held over each driver period; current control gives the cue's own corners.
 
     Parameters
     ----------
@@ -80,12 +78,22 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     end_s
         Time in s until which the current is designed; the last level is held.
 
+    Returns
+    -------
+    Design
+        The drive, its resting current, and whether the target is reached. Skin and display control give a current held
+        over each driver period; current control gives the corners of the cue.
+
     Raises
     ------
     RigError
         For a baseline that the rig cannot hold.
 
-
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> design(load_library("six-icons")["cooling-step"], Rig.load("thenar"), 8.0)
+    Design(Drive(801 rows, 8 s, -0.477... … 1.108... A, held), rest 0.0828 A, reached)
     """
     plan = design_ideal(icon, rig, end_s)
     if rig.controller is None or icon.context.control == "current":
@@ -106,10 +114,10 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
         return Design(Drive(times, values), current, state, None)
     ends, base = periods(rig, end_s), baseline_C(icon, rig)
     target = target_at(icon, base, ends)
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period = 1.0 / rig.driver.update_Hz
     currents, reached, why = run_follow(
-        bank, one, one, period, target[np.newaxis], control == "skin", bank.states([state])
+        bank, lane, lane, period, target[np.newaxis], control == "skin", bank.states([state])
     )
     outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
     return Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
@@ -126,7 +134,7 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     [True, True, True, True, True, True]
     """
     together = [icon for icon in icons if icon.context.control != "current" and rig.controller is None]
-    found: dict[int, Design] = {}
+    designs: dict[int, Design] = {}
     bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
     for control in ("skin", "display"):
         cues = [icon for icon in together if icon.context.control == control]
@@ -141,8 +149,8 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
         for icon, base, target, currents, reached, why in zip(cues, bases, targets, *results, strict=True):
             outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
             drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
-            found[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
-    return tuple(found.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
+            designs[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
+    return tuple(designs.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
 
 
 def gains_of(rig: Rig) -> tuple[float, float, float, float]:
@@ -158,12 +166,12 @@ def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
     the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
     """
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
     gains = np.array([gains_of(rig)])
     currents, reached, why = run_regulate(
-        bank, one, one, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
+        bank, lane, lane, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
     )
     drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
     loop = Design(drive, plan.rest_A, plan.start_C, None)
@@ -174,9 +182,9 @@ def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:
     """A probe at the beginning of every driver period of a design, and at its end."""
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     intervals = cut(plan.drive.time_s, plan.drive.time_s, plan.drive.current_A[np.newaxis], held=True)
-    return np.asarray(run_forward(bank, one, one, intervals, bank.states([plan.start_C]), (probe,))[0, 0])
+    return np.asarray(run_forward(bank, lane, lane, intervals, bank.states([plan.start_C]), (probe,))[0, 0])
 
 
 def _limits(why: Index, period: float) -> tuple[tuple[str, float], ...]:

@@ -92,7 +92,7 @@ def skin_network_of(rig: Rig) -> Network:
 
 def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
     """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
-    module, driver, own = rig.module, rig.driver, rig.heat_sink.controller
+    module, driver, controller = rig.module, rig.driver, rig.heat_sink.controller
     plates = np.array(
         [
             module.seebeck_V_per_K,
@@ -108,8 +108,13 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
             driver.voltage_limit_V,
             *(
                 (0.0, 0.0, 0.0, 0.0)
-                if own is None
-                else (own.capacity_J_per_K, own.kp_W_per_K, own.ki_W_per_Ks, own.power_limit_W)
+                if controller is None
+                else (
+                    controller.capacity_J_per_K,
+                    controller.kp_W_per_K,
+                    controller.ki_W_per_Ks,
+                    controller.power_limit_W,
+                )
             ),
         ]
     )

@@ -98,8 +98,8 @@ class SkinModes:
         """Return FELT (7, times) at times after now, with the display held; `modes` (n,) are those of now."""
         rest = self.steady(display_C)
         z = rest[:, np.newaxis] + (modes - rest)[:, np.newaxis] * np.exp(-np.outer(self.rate_per_s, times_s))
-        held = self.direct * (display_C - self.deep_C) + self.offset_C
-        return np.asarray(self.reading @ z + held[:, np.newaxis])
+        steady_C = self.direct * (display_C - self.deep_C) + self.offset_C
+        return np.asarray(self.reading @ z + steady_C[:, np.newaxis])
 
     def after(self, time_s: float, display_C: float, modes: Array) -> Array:
         """Modes (n,) a time later, with the display held."""
@@ -121,15 +121,15 @@ class SkinModes:
         per_display = float(weight @ (damped * gain)) + direct
         modes, level, most = self.steady(start_C), start_C - self.deep_C, slew_K_per_s * step_s
         low, high = limits_C[0] - self.deep_C, limits_C[1] - self.deep_C
-        found = np.empty(len(target_C))
-        found[0] = start_C
+        displays_C = np.empty(len(target_C))
+        displays_C[0] = start_C
         for k, target in enumerate((target_C - self.offset_C[row]).tolist()[1:], 1):
-            wanted = (target - float(weight @ (damped * modes))) / per_display
-            new = min(max(wanted, level - most, low), level + most, high)
+            needed_C = (target - float(weight @ (damped * modes))) / per_display
+            new = min(max(needed_C, level - most, low), level + most, high)
             modes = keep * modes + self.drive_per_s * (now * level + then * new)
             level = new
-            found[k] = new + self.deep_C
-        return found
+            displays_C[k] = new + self.deep_C
+        return displays_C
 
     def display_holding_skin_C(self, skin_C: float) -> float:
         """Temperature of the display in °C that holds the face of the skin at one in steady state."""
@@ -187,9 +187,9 @@ def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: fl
         weights = _weights(np.array([1.0 / lag_s]), step_s)
         keep, now, then = float(weights[0][0]), float(weights[1][0]) / lag_s, float(weights[2][0]) / lag_s
     level, before, reached = float(setpoint_C[0]), float(setpoint_C[0]), []
-    for wanted in setpoint_C.tolist():
-        goal = keep * level + now * before + then * wanted
-        level, before = min(max(goal, level - most), level + most), wanted
+    for target_C in setpoint_C.tolist():
+        goal = keep * level + now * before + then * target_C
+        level, before = min(max(goal, level - most), level + most), target_C
         reached.append(level)
     return np.array(reached)
 

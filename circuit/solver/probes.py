@@ -93,13 +93,13 @@ def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None
 def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[str, Array], ...]:
     """Return (name, °C) of every probe at every `parts`-th time, from the readings (k, times) of `readings_of`."""
     lumps = recorded[len(rig.probes) :]
-    found = []
+    readings = []
     for probe, read in zip(rig.probes, recorded, strict=False):
         value = np.ascontiguousarray(read)
         if probe.place == "insulated skin":
             value = insulated_C(rig, probe, time_s, value, lumps)
-        found.append((probe.name, _lagged(probe, time_s, value)[::parts].copy()))
-    return tuple(found)
+        readings.append((probe.name, _lagged(probe, time_s, value)[::parts].copy()))
+    return tuple(readings)
 
 
 def _lagged(probe: Probe, time_s: Array, value: Array) -> Array:

@@ -59,9 +59,9 @@ def switched(duty: Array, rate_Hz: float, carrier_Hz: float, peak_A: float) -> D
     begin = np.arange(len(share)) / (cycles * rate_Hz)
     times = np.stack([begin, begin + np.abs(share) / (cycles * rate_Hz)], axis=1)
     currents = np.stack([np.sign(share) * peak_A, np.zeros(len(share))], axis=1)
-    kept = np.stack([share != 0, np.abs(share) < 1], axis=1)
+    nonempty = np.stack([share != 0, np.abs(share) < 1], axis=1)
     end = (len(duty) - 1) / rate_Hz
-    return Drive(np.append(times[kept], end), np.append(currents[kept], duty[-1] * peak_A), held=True)
+    return Drive(np.append(times[nonempty], end), np.append(currents[nonempty], duty[-1] * peak_A), held=True)
 
 
 def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:

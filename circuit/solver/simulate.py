@@ -80,7 +80,26 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:
-    """Time in s from a cue's start to its last corner; under current control, it depends on the holding current."""
+    """Return the time in s from a cue's start to its last corner.
+
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig; under current control the duration depends on its holding current.
+
+    Returns
+    -------
+    float
+        Duration in s.
+
+    Examples
+    --------
+    >>> from thermicon.icons import load_library
+    >>> duration_s(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    8.0
+    """
     if icon.context.control == "current":
         if rig.thermode is not None:
             refuse_current(icon, f"rig {rig.name}")
@@ -89,8 +108,31 @@ def duration_s(icon: Icon, rig: Rig) -> float:
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
-    """Simulate every cue of a set on one rig until `end_s`; as `simulate`, in parallel where that is quicker.
+    """Simulate every cue of a set on one rig, in parallel where that is quicker.
 
+    Parameters
+    ----------
+    icons
+        The cues.
+    rig
+        The rig.
+    end_s
+        Time in s until which every trace continues.
+    rate_Hz
+        Rows of the traces per second.
+
+    Returns
+    -------
+    tuple of Trace
+        One trace per cue, as `simulate` gives it.
+
+    Raises
+    ------
+    RigError
+        Where no current holds a baseline, or a run is not physical or too long.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
     6
@@ -99,7 +141,7 @@ def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: floa
     alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:
         tails = [end_s - duration_s(icon, rig) for icon in icons]
-        return tuple(simulate(one, rig, rate_Hz=rate_Hz, tail_s=tail) for one, tail in zip(icons, tails, strict=True))
+        return tuple(simulate(cue, rig, rate_Hz=rate_Hz, tail_s=tail) for cue, tail in zip(icons, tails, strict=True))
     plans, rows, bank = design_many(icons, rig, end_s), rows_until(end_s, rate_Hz), bank_of(rig)
     lanes = np.arange(len(icons), dtype=np.int64)
     intervals = cut(rows, plans[0].drive.time_s, np.array([plan.drive.current_A for plan in plans]), held=True)
@@ -132,11 +174,20 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     start_C
         Another state (n + 3,) in °C to start from.
 
+    Returns
+    -------
+    Trace
+        A run without a target.
+
     Raises
     ------
     RigError
         Where the first current has no steady state, or the run is not physical.
 
+    Examples
+    --------
+    >>> simulate_current(Drive([0, 1, 4], [0.08, 0.5, 0.5]), Rig.load("thenar"))
+    Trace('drive' on thenar, 401 rows, 4 s, skin ... °C, 0.08 … 0.50 A)
     """
     return _replay(drive, rig, rate_Hz, None, start_C)[0]
 
@@ -183,21 +234,21 @@ def _run(
     rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
     outcome: Outcome | None, readings: tuple[Index, Array] | None,
 ) -> tuple[Trace, Array]:  # fmt: skip
-    bank, one = bank_of(rig), np.zeros(1, dtype=np.int64)
+    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     parts = between(rows, rig)
     fine = divided(rows, parts)
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
-    own = readings_of(rig)
-    recorded = run_forward(bank, one, one, intervals, bank.states([state]), extra=joined(own, readings))[:, 0]
+    own_probes = readings_of(rig)
+    recorded = run_forward(bank, lane, lane, intervals, bank.states([state]), extra=joined(own_probes, readings))[:, 0]
     probes, others = recorded[: len(RECORDED), ::parts], recorded[len(RECORDED) :]
-    listed = 0 if own is None else len(own[0])
+    listed = 0 if own_probes is None else len(own_probes[0])
     trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
     return trace, others[listed:, ::parts]
 
 
 def _trace(
     rig: Rig, drive: Drive, rows: Array, icon: str | None, target: Array, control: str, outcome: Outcome | None,
-    probes: Array, own: tuple[tuple[str, Array], ...],
+    probes: Array, own_probes: tuple[tuple[str, Array], ...],
 ) -> Trace:  # fmt: skip
     """The trace of RECORDED quantities (probes, rows); RigError where they are not physical."""
     temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
@@ -206,8 +257,8 @@ def _trace(
         at = int(np.argmin(possible))
         where = RECORDED[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
         raise RigError(
-            f"rig {rig.name}: {where} leaves what is physical ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at {rows[at]:.2f} s, "
-            f"under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
+            f"rig {rig.name}: {where} leaves the physical range ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at "
+            f"{rows[at]:.2f} s, under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
         )
     current = drive.at(rows)
     values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
@@ -227,7 +278,7 @@ def _trace(
         current_A=current,
         voltage_V=voltage,
         target_C=target,
-        probes=own,
+        probes=own_probes,
         limits=rig.limits,
         **values,
     )
@@ -239,19 +290,19 @@ def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
 
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
     """Sentences for a drive that exceeds the driver."""
-    driver, found = rig.driver, []
-    asked = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
-    if asked.max() > 1e-9:
-        most, since = int(np.argmax(asked)), float(rows[int(np.argmax(asked > 1e-9))])
-        found.append(
-            f"the drive asks for {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+    driver, sentences = rig.driver, []
+    excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    if excess_A.max() > 1e-9:
+        most, since = int(np.argmax(excess_A)), float(rows[int(np.argmax(excess_A > 1e-9))])
+        sentences.append(
+            f"the drive needs {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
     needed = np.abs(voltage) - driver.voltage_limit_V
     if needed.max() > 1e-6:
         most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
-        found.append(
+        sentences.append(
             f"the drive needs {voltage[most]:.3g} V at {rows[most]:.2f} s; this driver gives at most "
             f"{driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
         )
-    return tuple(found)
+    return tuple(sentences)

@@ -20,12 +20,28 @@ from .steady import holding_current_A, state_under_current, steady_state
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
-    """Return one sentence for each reason why a cue is impossible on a rig; empty where there is none.
+    """Return the reasons why a cue is impossible on a rig, without simulating it.
 
-    Checks the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and, under
-    display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig.
+
+    Returns
+    -------
+    tuple of str
+        A sentence for each reason; empty where there is none.
+
+    Notes
+    -----
+    Checked are the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and,
+    under display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
     `simulate` reports whether the rig reaches the target in time.
 
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     ()
@@ -37,27 +53,27 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
         start_A, _ = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
     except RigError as problem:
         return (f"icon {icon.name}: {problem}",)
-    driver, found = rig.driver, []
+    driver, reasons = rig.driver, []
     if control == "current":
         corners = icon.corners(start_A)
         for level in (corners.lowest, corners.highest):
             if not driver.current_min_A <= level <= driver.current_max_A:
-                found.append(
+                reasons.append(
                     f"icon {icon.name}: {level:g} A is outside the driver's {driver.current_min_A:g} … "
                     f"{driver.current_max_A:g} A; change the cue or driver.current_limit_A"
                 )
-        return tuple(found)
+        return tuple(reasons)
     corners = icon.corners(baseline_C(icon, rig))
     low, high = _holdable(rig, control)
     for level in (corners.lowest, corners.highest):
         if not low - 1e-9 <= level <= high + 1e-9:
-            found.append(
+            reasons.append(
                 f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.1f} … {high:.1f} °C that "
                 f"rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
             )
-    if control == "display" and not found:
-        found += _too_fast(icon, rig, corners)
-    return tuple(found)
+    if control == "display" and not reasons:
+        reasons += _too_fast(icon, rig, corners)
+    return tuple(reasons)
 
 
 def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
@@ -67,11 +83,11 @@ def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
         refuse_current(icon, f"rig {rig.name}")
     except RigError as problem:
         return (f"icon {icon.name}: {problem}",)
-    corners, found = icon.corners(base), []
+    corners, reasons = icon.corners(base), []
     for level in dict.fromkeys((base, corners.lowest, corners.highest)):
         needed = modes.display_holding_skin_C(level) if control == "skin" else level
         if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:
-            found.append(
+            reasons.append(
                 f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.1f} °C, outside the "
                 f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
             )
@@ -81,11 +97,11 @@ def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
             continue
         rate = (to - level) / (later - time)
         if abs(rate) > thermode.slew_K_per_s * (1 + 1e-9):
-            found.append(
+            reasons.append(
                 f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s is "
                 f"more than the {thermode.slew_K_per_s:g} °C/s of thermode {rig.name}; slow it down"
             )
-    return tuple(found)
+    return tuple(reasons)
 
 
 def _holdable(rig: Rig, control: str) -> tuple[float, float]:
@@ -138,7 +154,7 @@ def _within(current: float, allowed: Callable[[float], bool]) -> float:
 
 def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
     """Sentences for the ramps that are steeper than the driver can begin them from rest at their first level."""
-    found = []
+    reasons = []
     points = zip(corners.time_s, corners.value, strict=True)
     for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
         if place in corners.steps:  # as fast as the driver can, whatever that is
@@ -146,11 +162,11 @@ def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
         rate = (to - level) / (later - time)
         limit = _steepest(rig, level, cooling=rate < 0)
         if abs(rate) > limit:
-            found.append(
+            reasons.append(
                 f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
                 f"is more than the {limit:.3g} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
             )
-    return found
+    return reasons
 
 
 def _steepest(rig: Rig, level_C: float, cooling: bool) -> float:

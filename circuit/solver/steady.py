@@ -98,7 +98,7 @@ def check_sink(rig: Rig, state_C: Array) -> None:
 
 
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
-    """Return the current in A and the state in °C (n + 3,) that hold a baseline in steady state.
+    """Return the current and the temperatures that hold a baseline in steady state.
 
     Parameters
     ----------
@@ -108,6 +108,13 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
         What is held: `skin` or `display`.
     level_C
         The baseline in °C.
+
+    Returns
+    -------
+    current_A : float
+        The holding current in A.
+    state_C : Array
+        Temperatures (n + 3,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`.
 
     Raises
     ------
@@ -119,7 +126,6 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     >>> current, state = steady_state(Rig.load("thenar"), "skin", 32.0)
     >>> round(current, 2)
     0.08
-
     """
     network = network_of(rig)
     probe = "skin_C" if control == "skin" else "display_C"

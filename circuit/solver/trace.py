@@ -34,10 +34,29 @@ LAST_S = 2.0
 class Outcome:
     """Whether the controlled temperature reached its target, judged at the end of every driver period.
 
-    Largest miss in K (signed: above the target is positive) with its time in s, rms miss in K, and the limits that
-    were met with the times in s at which each was first met. A step is as fast as the driver can make it: no miss is
-    counted from its beginning until it arrives. `slowest_step_s` is the longest time that a step took; None where the
-    cue has no step. `late_s` are the times of steps that had not arrived when the level moved on, or at the end.
+    Attributes
+    ----------
+    reached
+        Whether it did.
+    largest_miss_K, largest_miss_s
+        Largest miss in K, positive above the target, and its time in s.
+    rms_miss_K
+        Root mean square of the misses in K.
+    limits
+        Limits that were met, each with the time in s at which it was first met.
+    slowest_step_s
+        Longest time in s that a step took; None where the cue has no step.
+    late_s
+        Times in s of steps that had not arrived when the level moved on, or at the end.
+
+    Notes
+    -----
+    A step is as fast as the driver can make it: no miss is counted from its beginning until it arrives.
+
+    Examples
+    --------
+    >>> print(Outcome(False, -1.2, 3.0, 0.4, (("current limit", 2.5),)).reason)
+    misses its target by 1.20 K at 3.00 s, limited by the current limit from 2.50 s
     """
 
     reached: bool
@@ -60,22 +79,64 @@ class Outcome:
         """Why the target was missed, in one sentence; None where it was reached."""
         if self.reached:
             return None
-        held = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
+        limits = " and ".join(f"{name} from {start:.2f} s" for name, start in self.limits)
         late = f"; its step at {self.late_s[0]:.2f} s does not arrive in time" if self.late_s else ""
         return (
             f"misses its target by {abs(self.largest_miss_K):.2f} K at {self.largest_miss_s:.2f} s{late}"
-            f"{f', held back by the {held}' if held else ''}"
+            f"{f', limited by the {limits}' if limits else ''}"
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """One run; arrays (rows,) are read-only, temperatures °C, heat flow W/m² positive into the skin.
+    """One run: temperatures, heat flow and current against time, as read-only arrays (rows,).
 
-    `current_A` is the current held from that row on; it, `voltage_V` and `hot_plate_C` are NaN on a thermode, which has
-    none. `target_C` is NaN where the run had no target temperature.
-    `probes` has name and temperature of every probe of the rig, in the order of its file. `warnings` are about the rig,
-    `beyond` about a drive that exceeds the driver. `limits` are the rig's limits of safety.
+    Attributes
+    ----------
+    icon
+        Name of the icon; None for a drive.
+    rig_name, site
+        Name of the rig, and the body site of its skin.
+    area_m2
+        Area of contact in m².
+    driver_limits_A
+        Least and greatest current of the driver in A.
+    control
+        What the cue prescribes: `skin`, `display` or `current`.
+    outcome
+        Whether the target was reached; None without a target temperature.
+    warnings
+        Sentences about the rig.
+    beyond
+        Sentences about a drive that exceeds the driver.
+    time_s
+        Times in s.
+    current_A, voltage_V
+        Current of the module in A, held from its row on, and voltage in V; NaN on a thermode.
+    target_C
+        Temperature in °C that the cue prescribes; NaN where it prescribes none.
+    hot_plate_C
+        Temperature of the hot plate in °C; NaN on a thermode.
+    display_C, skin_C
+        Temperature of the display and of the skin surface in °C.
+    cold_receptor_C, warm_receptor_C
+        Temperature at the depth of the cold and of the warm receptors in °C.
+    heat_flow_skin_W_per_m2
+        Heat flow into the skin surface in W/m².
+    heat_flow_cold_receptor_W_per_m2, heat_flow_warm_receptor_W_per_m2
+        Heat flow at the depth of the receptors in W/m², positive away from the surface.
+    probes
+        Name and temperature (rows,) in °C of every probe of the rig, in the order of its file.
+    limits
+        Limits of safety of the rig; None: the shipped ones.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    >>> trace.reachable, round(float(trace.skin_C.min()), 2)
+    (True, 26.92)
     """
 
     icon: str | None
@@ -109,12 +170,12 @@ class Trace:
             array.setflags(write=False)
 
     def __repr__(self) -> str:
-        said = "" if self.outcome is None or self.outcome.reached else ", target missed"
-        said += ", beyond the driver" if self.beyond else ""
+        notes = "" if self.outcome is None or self.outcome.reached else ", target missed"
+        notes += ", beyond the driver" if self.beyond else ""
         drive = f"{self.current_A.min():.2f} … {self.current_A.max():.2f} A" if self.has_current else "a thermode"
         return (
             f"Trace({self.icon or 'drive'!r} on {self.rig_name}, {len(self.time_s)} rows, {self.time_s[-1]:g} s, "
-            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, {drive}{said})"
+            f"skin {self.skin_C.min():.2f} … {self.skin_C.max():.2f} °C, {drive}{notes})"
         )
 
     def _repr_html_(self) -> str:
@@ -167,7 +228,7 @@ class Trace:
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
-    """Write traces to one table, one after the other; NaN becomes an empty cell.
+    r"""Write traces to one table, one after the other; NaN becomes an empty cell.
 
     Parameters
     ----------
@@ -179,8 +240,18 @@ def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
     Raises
     ------
     InputError
-        Parquet is requested and pyarrow, which writes it, is not installed.
+        Where Parquet is requested and pyarrow, which writes it, is not installed.
 
+    Examples
+    --------
+    >>> import tempfile
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), rate_Hz=10)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     write_trace(trace, Path(folder) / "step.csv")
+    ...     (Path(folder) / "step.csv").read_text(encoding="utf-8").count("\n")
+    82
     """
     import pandas as pd
 
@@ -206,25 +277,25 @@ def judge(
     at the end of the run does not count as late.
     """
     miss = reached_C - target_C
-    close, asked = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
+    close, counted = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
     ends, took, late = period_s * np.arange(1, len(miss) + 1), 0.0, []
     for begin, until in steps_s:
         window = np.flatnonzero((ends > begin + 1e-9) & (ends <= until + 1e-9))
         arrived = window[close[window]]
-        asked[window[window < arrived[0]] if len(arrived) else window] = False
+        counted[window[window < arrived[0]] if len(arrived) else window] = False
         if len(arrived):
             took = max(took, float(ends[arrived[0]]) - begin)
         elif len(window) and (math.isfinite(until) or ends[-1] - begin >= LAST_S):
             late.append(begin)
-            asked[window[-1]] = True
+            counted[window[-1]] = True
         elif not len(window) and until < ends[-1]:  # it is over before the driver's next update
             late.append(begin)
-    if not asked.any():
+    if not counted.any():
         return Outcome(not late, 0.0, 0.0, 0.0, limits, took, tuple(late))
-    worst = int(np.argmax(np.where(asked, np.abs(miss), -1.0)))
-    over = asked & ~close
+    worst = int(np.argmax(np.where(counted, np.abs(miss), -1.0)))
+    over = counted & ~close
     largest = float(miss[worst])
     reached = not over.any() or (abs(largest) <= BRIEF_K and float(over.sum()) * period_s <= BRIEF_S)
-    rms = float(np.sqrt(np.mean(miss[asked] ** 2)))
+    rms = float(np.sqrt(np.mean(miss[counted] ** 2)))
     slowest = took if steps_s else None
     return Outcome(bool(reached and not late), largest, (worst + 1) * period_s, rms, limits, slowest, tuple(late))

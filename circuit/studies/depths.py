@@ -42,14 +42,41 @@ class Depths:
 def probe_depths(
     cue: Icon | Drive, rig: Rig, depths_m: Sequence[float] | Array, *, rate_Hz: float = 100.0, tail_s: float = 0.0
 ) -> Depths:
-    """Simulate a cue or a drive on a rig and record depths in m from the surface; lumps are at `rig.column.depth_m`.
+    """Simulate a cue or a drive on a rig and record temperature and heat flow at given depths.
 
-    Temperature is linear in thermal resistance between lumps. Heat flow at a lump is the mean of its two faces, between
-    lumps the face's, at the surface the contact's. Raises RigError for a depth outside the skin.
+    Parameters
+    ----------
+    cue
+        A cue or a drive.
+    rig
+        The rig.
+    depths_m
+        Depths below the surface in m; the lumps of the skin are at `rig.column.depth_m`.
+    rate_Hz
+        Rows per second.
+    tail_s
+        Time in s that the run continues after the cue's last corner.
 
+    Returns
+    -------
+    Depths
+        Temperature in °C and heat flow in W/m² at each depth.
+
+    Raises
+    ------
+    RigError
+        For a depth outside the skin.
+
+    Notes
+    -----
+    Temperature is linear in thermal resistance between lumps. Heat flow at a lump is the mean of its two faces; between
+    lumps it is that of the face, at the surface that of the contact.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
-    >>> seen = probe_depths(load_library("six-icons")["cooling-step"], Rig.load("thenar"), [0.0, 0.5e-3, 2e-3])
-    >>> seen.temperature_C.min(axis=1).round(2)
+    >>> run = probe_depths(load_library("six-icons")["cooling-step"], Rig.load("thenar"), [0.0, 0.5e-3, 2e-3])
+    >>> run.temperature_C.min(axis=1).round(2)
     array([26.92, 29.57, 32.02])
     """
     depths = np.array(depths_m, dtype=np.float64)
@@ -88,10 +115,37 @@ def resembles(
 ) -> Likeness:
     """Return the depth in the skin under the display whose course a probe on insulated skin resembles most.
 
-    Changes from the first row are compared, since the start of a trace does not depend on depth: least rms over the
-    rows, over all depths. `probe` is a name, or None for the first on insulated skin. A lag of the probe is part of its
-    reading. The second column is a 1-D substitute, and so is the result. Raises RigError without such a probe.
+    Parameters
+    ----------
+    cue
+        A cue or a drive.
+    rig
+        A rig with such a probe.
+    probe
+        Name of the probe; None: the first on insulated skin.
+    rate_Hz
+        Rows per second.
+    tail_s
+        Time in s that the run continues after the cue's last corner.
 
+    Returns
+    -------
+    Likeness
+        The depth in m, and the rms residual in K.
+
+    Raises
+    ------
+    RigError
+        Where the rig has no such probe.
+
+    Notes
+    -----
+    The depth with the least rms difference of the changes from the first row; changes, since the start of a trace does
+    not depend on depth. A lag of the probe is part of its reading. The insulated skin is a 1-D substitute for lateral
+    conduction, and so is the result.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> rig = Rig.load("thenar").with_(probe=[{"name": "pad", "place": "insulated skin"}])
     >>> resembles(load_library("six-icons")["cooling-step"], rig)

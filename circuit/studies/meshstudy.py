@@ -60,9 +60,9 @@ def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:
     layers = len(rig.skin.layers)
     outer = max(1, layers - 3)
     fixed = [(1,) * outer + (few,) * (layers - outer) for few in (5, 10, 20)]
-    own = rig.skin.elements
-    if own is not None and own not in fixed:
-        fixed.insert(0, own)
+    own_elements = rig.skin.elements
+    if own_elements is not None and own_elements not in fixed:
+        fixed.insert(0, own_elements)
     return (
         SHIPPED,
         Mesh("twice as coarse", 2 * FIRST_CELL_M, 2 * CELL_GROWTH),
@@ -129,14 +129,14 @@ class MeshStudy:
 
     def rows(self) -> tuple[MeshRow, ...]:
         """One row for each mesh."""
-        found = []
+        rows = []
         for k, mesh in enumerate(self.meshes):
             wrong = np.abs(self.error_K[k])
             at = wrong.argmax(axis=1)
             worst = [(float(wrong[d, at[d]]), float(self.time_s[at[d]])) for d in range(2)]
             parts = (*self.part(k, 0.5), *self.part(k, 4.0))
-            found.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
-        return tuple(found)
+            rows.append(MeshRow(mesh.name, mesh.section, self.lumps[k], *worst[0], *worst[1], *parts))
+        return tuple(rows)
 
     def to_frame(self) -> pd.DataFrame:
         """Return the rows as a table, with stimulus and way."""
@@ -163,12 +163,36 @@ def mesh_study(
     rate_Hz: float = 1000.0,
     tail_s: float = 0.0,
 ) -> MeshStudy:
-    """Simulate a cue or a drive on several meshes of a rig's skin and on a converged one.
+    """Simulate a cue or a drive on several meshes of a rig's skin, and compare them with a converged one.
 
-    With `way="current"` all get the current designed on the rig as it is; with `"temperature"` each follows the cue
-    with its own. Time steps are the rows, the same for all, and 1 ms by default, so that they do not affect the result.
-    Raises RigError for a way that does not exist, or a drive without a prescribed temperature.
+    Parameters
+    ----------
+    rig
+        The rig.
+    cue
+        A cue or a drive.
+    way
+        With `current` all meshes get the current designed on the rig as it is; with `temperature` each follows the cue
+        with its own current.
+    meshes
+        The meshes; None: the shipped mesh, coarser and finer ones, and fixed elements.
+    rate_Hz
+        Rows and time steps per second, the same for all meshes. At 1000 Hz they do not affect the comparison.
+    tail_s
+        Time in s that the run continues after the cue's last corner.
 
+    Returns
+    -------
+    MeshStudy
+        Errors in K at the depths of both receptors.
+
+    Raises
+    ------
+    RigError
+        For an unknown way, or a drive without a prescribed temperature.
+
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
     MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.8 mK; reference within 0.11 mK)
@@ -185,9 +209,9 @@ def mesh_study(
     runs = []
     for network in networks:
         drive, state = plan.on(network) if way == "current" else _led(rig, cue, network, plan.end_s)
-        bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+        bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
         intervals = cut(rows, drive.time_s, drive.current_A[np.newaxis], drive.held)
-        runs.append(run_forward(bank, one, one, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
+        runs.append(run_forward(bank, lane, lane, intervals, bank.states([state]), (*DEPTHS, "display_C"))[:, 0])
     reference, display = runs[-2][:2], runs[-2][2]
     return MeshStudy(
         rig.name,
@@ -247,9 +271,9 @@ def _led(rig: Rig, cue: Icon | Drive, network: Network, end_s: float) -> tuple[D
     assert isinstance(cue, Icon)
     control, base, ends = cue.context.control, baseline_C(cue, rig), periods(rig, end_s)
     state = state_under_current(network, holding_current_A(network, control, base))
-    bank, one = Bank.of([network]), np.zeros(1, dtype=np.int64)
+    bank, lane = Bank.of([network]), np.zeros(1, dtype=np.int64)
     target = target_at(cue, base, ends)[np.newaxis]
     currents, _, _ = run_follow(
-        bank, one, one, 1.0 / rig.driver.update_Hz, target, control == "skin", bank.states([state])
+        bank, lane, lane, 1.0 / rig.driver.update_Hz, target, control == "skin", bank.states([state])
     )
     return Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), state

@@ -43,11 +43,27 @@ class Nearest:
 
 
 def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
-    """Return the nearest cue that the rig reaches; None where the cue itself is reached, or no such cue exists.
+    """Return the nearest cue that the rig reaches.
 
+    Parameters
+    ----------
+    icon
+        The cue.
+    rig
+        The rig.
+
+    Returns
+    -------
+    Nearest or None
+        None where the rig reaches the cue itself, where no such cue exists, and for a cue that prescribes current.
+
+    Notes
+    -----
     Searched by bisection, to about 1 %, in two ways: slower ramps between the same levels, and smaller changes in the
-    same time. A cue that prescribes current is not changed.
+    same time.
 
+    Examples
+    --------
     >>> from thermicon.icons import load_library
     >>> cue = load_library("cooling-step-skin").icons[0]
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence

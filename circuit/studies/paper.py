@@ -100,8 +100,8 @@ class ControlledCue:
         }
 
     def __repr__(self) -> str:
-        said = ", ".join(f"{name} control: {_said(trace)}" for name, trace in _both(self))
-        return f"ControlledCue({self.skin.rig_name}; {said})"
+        controls = ", ".join(f"{name} control: {_said(trace)}" for name, trace in _both(self))
+        return f"ControlledCue({self.skin.rig_name}; {controls})"
 
     def plot(self, ax: Axes | None = None, control: str = "skin") -> Axes:
         """Draw target, display and skin under `skin` or `display` control; returns the Axes."""
@@ -169,8 +169,8 @@ def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, contr
         probes[2] |= {"lateral_mm": lateral_m * 1e3, "width_mm": lateral_m * 1e3}
     rig, cue = _rig(rig).with_(probe=probes), cooling_step(control)
     likeness = resembles(cue, rig, "3", tail_s=TAIL_S)
-    seen = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
-    return Thermistors(seen.trace, likeness, seen.temperature_C[0], rig.probes[2].lateral_m)
+    depths = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
+    return Thermistors(depths.trace, likeness, depths.temperature_C[0], rig.probes[2].lateral_m)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,9 +223,9 @@ def dermis_change(rig: Rig | None = None, *, control: str = "skin") -> DermisCha
     """Play the cue and look at all depths down to 2 mm: how much, and how fast, the tissue cools there."""
     rig = _rig(rig)
     depths = np.linspace(0.0, min(2.0e-3, rig.skin.thickness_m), 201)
-    seen = probe_depths(cooling_step(control), rig, depths, tail_s=TAIL_S)
-    change = seen.temperature_C[:, :1] - seen.temperature_C.min(axis=1, keepdims=True)
-    fall = -np.diff(seen.temperature_C, axis=1).min(axis=1) / seen.trace.time_s[1]
+    run = probe_depths(cooling_step(control), rig, depths, tail_s=TAIL_S)
+    change = run.temperature_C[:, :1] - run.temperature_C.min(axis=1, keepdims=True)
+    fall = -np.diff(run.temperature_C, axis=1).min(axis=1) / run.trace.time_s[1]
     return DermisChange(rig.name, depths, change[:, 0], fall, (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m))
 
 

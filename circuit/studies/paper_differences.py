@@ -86,14 +86,14 @@ def _shape(cue: ControlledCue) -> PaperDifference:
 
 
 def _current(rig: Rig) -> PaperDifference:
-    own = printed().one("module current").central
-    misses = miss_by_limit(rig, [rig.driver.current_max_A, own]).miss_K
+    module_A = printed().one("module current").central
+    misses = miss_by_limit(rig, [rig.driver.current_max_A, module_A]).miss_K
     return PaperDifference(
         "current",
         False,
         "the drive that makes the skin's step is found and played; no limit is given.",
-        f"at {rig.driver.current_max_A:g} A the skin misses by {misses[0]:.2f} K, at the module's own {own:g} A by "
-        f"{misses[1]:.2f} K; {steady_state(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
+        f"at {rig.driver.current_max_A:g} A the skin misses by {misses[0]:.2f} K, at the module's own {module_A:g} A "
+        f"by {misses[1]:.2f} K; {steady_state(rig, 'skin', rig.skin.rest_C)[0]:.2f} A hold it at rest.",
         f"The limit is derived: with it held the display settles at {coldest_display_C(rig):.1f} °C, and the paper "
         f"says about {printed().one('lowest contact temperature').central:g} °C at the lowest. A corner in the skin's "
         "temperature asks for a current that grows without bound as the corner gets sharper, and the printed slab's "
@@ -131,15 +131,19 @@ def _rest(rig: Rig, palm: Rig) -> PaperDifference:
 
 
 def _receptors(rig: Rig) -> PaperDifference:
-    seen, said, rate = dermis_change(rig), printed().one("dermis change").central, printed().one("dermis rate").central
-    (cold, cold_rate), (warm, warm_rate) = (seen.at(depth) for depth in seen.receptor_m)
+    dermis, change_K, rate = (
+        dermis_change(rig),
+        printed().one("dermis change").central,
+        printed().one("dermis rate").central,
+    )
+    (cold, cold_rate), (warm, warm_rate) = (dermis.at(depth) for depth in dermis.receptor_m)
     return PaperDifference(
         "change at the receptors",
         False,
-        f"about {said:g} °C at about {rate:g} °C/s at the thermoreceptors.",
-        f"{cold:.1f} K at up to {cold_rate:.1f} K/s at {seen.receptor_m[0] * 1e3:g} mm and {warm:.1f} K at up to "
-        f"{warm_rate:.1f} K/s at {seen.receptor_m[1] * 1e3:g} mm. {said:g} K is reached at "
-        f"{seen.depth_of_m(said) * 1e3:.2f} mm, {rate:g} K/s at {seen.depth_of_rate_m(rate) * 1e3:.2f} mm.",
+        f"about {change_K:g} °C at about {rate:g} °C/s at the thermoreceptors.",
+        f"{cold:.1f} K at up to {cold_rate:.1f} K/s at {dermis.receptor_m[0] * 1e3:g} mm and {warm:.1f} K at up to "
+        f"{warm_rate:.1f} K/s at {dermis.receptor_m[1] * 1e3:g} mm. {change_K:g} K is reached at "
+        f"{dermis.depth_of_m(change_K) * 1e3:.2f} mm, {rate:g} K/s at {dermis.depth_of_rate_m(rate) * 1e3:.2f} mm.",
         "Both of the paper's numbers fit one depth, about 1.5 mm, where the fourth of its five dermis elements has its "
         "node: its curve inside the dermis was probably taken there, several times deeper than the receptors it cites.",
     )
@@ -147,7 +151,7 @@ def _receptors(rig: Rig) -> PaperDifference:
 
 def _insulated(rig: Rig) -> PaperDifference:
     assumed, near = thermistors(rig), _lateral_for(rig, printed().one("dermis change").central)
-    moved, other = (abs(float(np.ptp(found.trace.probe("3")))) for found in (assumed, near))
+    moved, other = (abs(float(np.ptp(probe_run.trace.probe("3")))) for probe_run in (assumed, near))
     return PaperDifference(
         "thermistor on insulated skin",
         False,
@@ -187,9 +191,9 @@ def _mesh(rig: Rig) -> PaperDifference:
 
 
 def _depth(palm: Rig) -> PaperDifference:
-    seen, corneum = dermis_change(palm), palm.skin.layers[0].thickness_m
-    surface = [seen.at(depth)[0] for depth in seen.receptor_m]
-    below = [seen.at(depth + corneum)[0] for depth in seen.receptor_m]
+    dermis, corneum = dermis_change(palm), palm.skin.layers[0].thickness_m
+    surface = [dermis.at(depth)[0] for depth in dermis.receptor_m]
+    below = [dermis.at(depth + corneum)[0] for depth in dermis.receptor_m]
     return PaperDifference(
         "depth of the receptors",
         False,

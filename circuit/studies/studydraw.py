@@ -51,7 +51,7 @@ def plot_controlled(trace: Trace, ax: Axes | None = None) -> Axes:
     return tidy(ax, trace.time_s, "temperature (°C)")
 
 
-def plot_thermistors(found: Thermistors, ax: Axes | None = None) -> Axes:
+def plot_thermistors(thermistors: Thermistors, ax: Axes | None = None) -> Axes:
     """Draw what the three thermistors read, as changes, and the depth that the third resembles most."""
     ax = new_axes(ax)
     styles = (
@@ -60,33 +60,35 @@ def plot_thermistors(found: Thermistors, ax: Axes | None = None) -> Axes:
         ("3", PROBE, (0, (5, 1.5)), "#3 insulated skin"),
     )
     for name, colour, dashes, label in styles:
-        read = found.trace.probe(name)
-        ax.plot(found.trace.time_s, read - read[0], color=colour, lw=1.8, ls=dashes, label=label)
-    depth = f"skin at {found.likeness.depth_m * 1e3:.2f} mm"
-    ax.plot(found.trace.time_s, found.depth_C - found.depth_C[0], color=COOL, lw=1.2, ls=":", label=depth)
+        read = thermistors.trace.probe(name)
+        ax.plot(thermistors.trace.time_s, read - read[0], color=colour, lw=1.8, ls=dashes, label=label)
+    depth = f"skin at {thermistors.likeness.depth_m * 1e3:.2f} mm"
+    ax.plot(
+        thermistors.trace.time_s, thermistors.depth_C - thermistors.depth_C[0], color=COOL, lw=1.2, ls=":", label=depth
+    )
     ax.axhline(0, color="#cccccc", lw=0.8, zorder=0)
-    title = f"insulated patch {found.lateral_m * 1e3:.2g} mm from skin in contact, as wide (a 1-D stand-in)"
+    title = f"insulated patch {thermistors.lateral_m * 1e3:.2g} mm from skin in contact, as wide (a 1-D stand-in)"
     ax.set_title(title, fontsize="small", loc="left")
-    return tidy(ax, found.trace.time_s, "change (K)")
+    return tidy(ax, thermistors.trace.time_s, "change (K)")
 
 
-def plot_dermis(seen: DermisChange, ax: Axes | None = None) -> Axes:
+def plot_dermis(dermis: DermisChange, ax: Axes | None = None) -> Axes:
     """Draw largest change and fastest fall against depth on a logarithmic axis, with the paper's two numbers."""
     from .paper import printed
 
     ax = new_axes(ax)
-    depth = seen.depth_m * 1e3
-    said, rate = printed().one("dermis change").central, printed().one("dermis rate").central
-    ax.plot(depth, seen.change_K, color=COOL, lw=1.8, label="largest change (K)")
-    ax.plot(depth, seen.fastest_K_per_s, color=WARM, lw=1.8, ls=(0, (5, 1.5)), label="fastest fall (K/s)")
-    ax.axhline(said, color=COOL, lw=0.9, ls=":", label=f"paper: about {said:g} °C")
+    depth = dermis.depth_m * 1e3
+    change_K, rate = printed().one("dermis change").central, printed().one("dermis rate").central
+    ax.plot(depth, dermis.change_K, color=COOL, lw=1.8, label="largest change (K)")
+    ax.plot(depth, dermis.fastest_K_per_s, color=WARM, lw=1.8, ls=(0, (5, 1.5)), label="fastest fall (K/s)")
+    ax.axhline(change_K, color=COOL, lw=0.9, ls=":", label=f"paper: about {change_K:g} °C")
     ax.axhline(rate, color=WARM, lw=0.9, ls=":", label=f"paper: about {rate:g} °C/s")
-    for place, where in enumerate(seen.receptor_m):
+    for place, where in enumerate(dermis.receptor_m):
         ax.axvline(where * 1e3, color=LIMIT, lw=0.9, ls="-.", label=None if place else "receptor depths")
     ax.set_yscale("log")
     ax.set_yticks([0.05, 0.1, 0.2, 0.5, 1, 2, 5], ["0.05", "0.1", "0.2", "0.5", "1", "2", "5"])
     ax.set_title(
-        f"{seen.rig_name}: the paper's numbers belong to a depth, not to the receptors", fontsize="small", loc="left"
+        f"{dermis.rig_name}: the paper's numbers belong to a depth, not to the receptors", fontsize="small", loc="left"
     )
     tidy(ax, depth, "K, K/s")
     ax.set_xlabel("depth (mm)")
@@ -98,13 +100,13 @@ def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:
     from .paper import printed
 
     ax = new_axes(ax)
-    own = printed().one("module current").central
+    module_A = printed().one("module current").central
     ax.plot(misses.limit_A, misses.miss_K, color=COOL, lw=1.6)
     reached = np.array(misses.reached)
     for which, face, label in ((reached, COOL, "reached"), (~reached, "white", "missed")):
         ax.plot(misses.limit_A[which], misses.miss_K[which], "o", color=COOL, mfc=face, label=label)
     ax.axvline(misses.shipped_A, color=DISPLAY, lw=1.2, ls="--", label=f"this rig's {misses.shipped_A:g} A")
-    ax.axvline(own, color=LIMIT, lw=1.6, ls=":", label=f"the module's own {own:g} A")
+    ax.axvline(module_A, color=LIMIT, lw=1.6, ls=":", label=f"the module's own {module_A:g} A")
     ax.set_ylim(bottom=0)
     tidy(ax, misses.limit_A, "largest miss (K)")
     ax.set_xlabel("current limit (A)")
@@ -117,6 +119,6 @@ def stacked_figure(*draw: Callable[[Axes], Axes]) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7.4, 2.9 * len(draw)), layout="constrained")
-    for panel, one in zip(np.atleast_1d(figure.subplots(len(draw), 1)), draw, strict=True):
-        one(panel)
+    for panel, plot in zip(np.atleast_1d(figure.subplots(len(draw), 1)), draw, strict=True):
+        plot(panel)
     return figure

@@ -57,7 +57,7 @@ def explain(code: str) -> str:
 
     >>> print(explain("E205").split("\\n\\n")[0])
     E205 rest away from baseline
-    `rest` is a pause at baseline, and the icon is somewhere else. To stay at a level, `hold`.
+    `rest` is a pause at baseline, and the icon is at another level. To stay at a level, write `hold`.
     >>> explain("missing units")
     Traceback (most recent call last):
       ...

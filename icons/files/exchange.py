@@ -20,8 +20,20 @@ Holes = Mapping[tuple[Path, str], str]
 
 
 def to_json(icons: IconSet) -> str:
-    """Return a set as JSON text: units stand in the names of the keys, ``from_json`` gives an equal set.
+    """Return a set as JSON text, which ``from_json`` reads as an equal set.
 
+    Parameters
+    ----------
+    icons
+        The set.
+
+    Returns
+    -------
+    str
+        JSON whose keys contain their units, as in ``rate_K_per_s``.
+
+    Examples
+    --------
     >>> from thermicon.icons import parse
     >>> print(to_json(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return over 2 s }")))
     {
@@ -52,16 +64,33 @@ def to_json(icons: IconSet) -> str:
 
 
 def from_json(text: str | bytes, file: str = "<json>") -> IconSet:
-    """Return the set in a JSON text; ``file`` is the name that errors show.
+    """Return the set in a JSON text.
 
-    Raises CueErrors, and nothing else, with everything that is wrong: E011 when the text is not JSON, E012 when it is
-    not a cue set, and the codes of cue files for what they have in common. Places are paths in the JSON.
+    Parameters
+    ----------
+    text
+        The JSON text; bytes are decoded as UTF-8.
+    file
+        Name that errors show.
 
+    Returns
+    -------
+    IconSet
+        The icons and families of the text.
+
+    Raises
+    ------
+    CueErrors
+        With every error: E011 where the text is not JSON, E012 where it is not a cue set, otherwise the codes of cue
+        files. Positions are paths in the JSON text.
+
+    Examples
+    --------
     >>> from thermicon.icons import CueErrors
     >>> try:
     ...     from_json('{"format": "thermicon cue", "version": 1, "icon": []}', "a.json")
-    ... except CueErrors as found:
-    ...     print(found.errors[0].code, found.errors[0].what)
+    ... except CueErrors as problem:
+    ...     print(problem.errors[0].code, problem.errors[0].what)
     E012 the file: "icons" is missing
     """
     from .json_reader import read_json

@@ -103,12 +103,19 @@ class Library(Mapping[str, IconSet]):
 
 
 def library() -> Library:
-    """Return all shipped sets; in a notebook they show as a table with pictures.
+    """Return all shipped sets; in a notebook they appear as a table with pictures.
 
-    >>> shelf = library()
-    >>> shelf["six-icons"]["cooling-step"].metadata.means
+    Returns
+    -------
+    Library
+        Sets by name; ``entries`` lists name, title and number of icons of each.
+
+    Examples
+    --------
+    >>> sets = library()
+    >>> sets["six-icons"]["cooling-step"].metadata.means
     'a quick, strong cooling'
-    >>> [entry.count for entry in shelf.entries if entry.name == "six-icons"]
+    >>> [entry.count for entry in sets.entries if entry.name == "six-icons"]
     [6]
     """
     return Library(tuple((name, load_library(name)) for name in library_names()))

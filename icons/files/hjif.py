@@ -37,19 +37,38 @@ class _Track:
 
 
 def to_hjif(icons: IconSet | Iterable[Icon], date: datetime | None = None) -> str:
-    """Return icons as the text of an HJIF file: experimental, never read by MPEG's own software.
+    """Return icons as the text of an HJIF file (experimental: never read by MPEG's own software).
 
-    Each icon is a perception of modality Temperature with one channel and one Curve band of straight lines: amplitude
-    (-1 to 1) times the channel's gain is the change in K from the baseline, which is our convention, since the unit of
-    the standard was not available; the file says so. Icons follow one another, 10 s of baseline between. Times are in
-    ticks, exact wherever a timescale up to 48000 ticks/s allows, else rounded to the nearest, which the file says. A
-    step takes one tick. ``date`` is that of the file, by default now.
+    Parameters
+    ----------
+    icons
+        A set, or icons with a baseline.
+    date
+        Date of the file; None: now.
 
-    Raises HjifError for icons under control current, without a baseline, or more than 128.
+    Returns
+    -------
+    str
+        JSON with one perception of modality Temperature per icon.
 
+    Raises
+    ------
+    HjifError
+        For icons under current control or without a baseline, and for more than 128 icons.
+
+    Notes
+    -----
+    Each perception has one channel and one Curve band of straight lines. Amplitude (-1 to 1) times the channel's
+    gain is the change from the baseline in K. This convention is our own, since the standard's text was not
+    available for its unit; the file states so. Icons follow one another after 10 s of baseline. Times are in ticks:
+    exact where a timescale of at most 48000 ticks/s permits, otherwise rounded to the nearest tick, which the file
+    states. A step takes one tick.
+
+    Examples
+    --------
     >>> from thermicon.icons import read_cue
-    >>> made = json.loads(to_hjif(read_cue("cooling-step-skin")))
-    >>> made["perceptions"][0]["channels"][0]["gain"]
+    >>> document = json.loads(to_hjif(read_cue("cooling-step-skin")))
+    >>> document["perceptions"][0]["channels"][0]["gain"]
     6.0
     """
     title = ""
@@ -103,7 +122,7 @@ def _check(icons: list[Icon]) -> None:
     if not icons:
         raise HjifError("there is no icon to write")
     if len(icons) > MOST_ICONS:
-        raise HjifError(f"HJIF takes {MOST_ICONS} icons a file at most (profile Main, level 1); choose among them")
+        raise HjifError(f"HJIF takes {MOST_ICONS} icons per file at most (profile Main, level 1); choose among them")
     for icon in icons:
         if icon.context.control == "current":
             help = "write the set with control skin or display, or export the current as a waveform"

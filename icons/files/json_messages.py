@@ -74,7 +74,7 @@ def schema_error(error: ErrorDetails, file: str) -> CueError:
         if value is None:
             help = "a key without a value is left out"
         elif isinstance(value, str) and kind in ("float_type", "int_type"):
-            help = "numbers stand without quotation marks; the unit is in the name of the key"
+            help = "numbers have no quotation marks; the unit is in the name of the key"
     else:
         what = f"{_shown(value)}: {error['msg'][:1].lower()}{error['msg'][1:]}"
     return at_path(file, code, path, what, help)

@@ -134,7 +134,7 @@ class _CueText:
         for place, parameter in enumerate(table.parameters or ()):
             here = (*path, "parameters", place)
             if parameter.name in parameters:
-                self.add("E213", (*here, "name"), f'"{parameter.name}" stands in this list already', "keep one of them")
+                self.add("E213", (*here, "name"), f'"{parameter.name}" is already in this list', "keep one of them")
             parameters[parameter.name] = parameter
             self.write("," if place else "(", path)
             self.write(f"{parameter.name} in", (*here, "name"))

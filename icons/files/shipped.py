@@ -16,6 +16,13 @@ from .input_files import NotRegular, TooLarge, read_limited
 def library_names() -> tuple[str, ...]:
     """Return the names of the shipped sets, sorted.
 
+    Returns
+    -------
+    tuple of str
+        Names that ``load_library`` and ``read_cue`` accept.
+
+    Examples
+    --------
     >>> library_names()[0]
     'cooling-step-skin'
     """
@@ -25,8 +32,25 @@ def library_names() -> tuple[str, ...]:
 
 
 def load_library(name: str) -> IconSet:
-    """Return a shipped set by its name; CueErrors, with the nearest names, when there is none.
+    """Return a shipped set.
 
+    Parameters
+    ----------
+    name
+        Its name, see ``library_names``.
+
+    Returns
+    -------
+    IconSet
+        The icons of the set.
+
+    Raises
+    ------
+    CueErrors
+        Where no set has this name; the message gives the most similar names.
+
+    Examples
+    --------
     >>> len(load_library("six-icons"))
     6
     """
@@ -42,10 +66,25 @@ def load_library(name: str) -> IconSet:
 
 
 def read_cue(source: str | Path) -> IconSet:
-    """Return the set in a ``.cue`` or ``.json`` file, or the shipped set of this name; an existing path wins.
+    """Return the set in a file, or a shipped set.
 
-    Raises CueErrors when the file is missing, a folder, unreadable, too large or not a sound cue text or JSON.
+    Parameters
+    ----------
+    source
+        Path of a ``.cue`` or ``.json`` file, or the name of a shipped set. A path that exists takes precedence.
 
+    Returns
+    -------
+    IconSet
+        The icons and families of the file.
+
+    Raises
+    ------
+    CueErrors
+        Where the file is missing, a folder, unreadable or too large, or its text has errors.
+
+    Examples
+    --------
     >>> read_cue("six-icons").context.control
     'display'
     """
@@ -64,7 +103,7 @@ def is_json(source: str | Path) -> bool:
 
 
 def file_bytes(source: str | Path) -> bytes | None:
-    """Return what is in a file, or None when there is none of this name.
+    """Return what is in a file, or None when there is not one of this name.
 
     Raises CueErrors when it is a folder (but not one with the name of a shipped set), unreadable or too large.
 

@@ -96,7 +96,7 @@ class _Assembler:
                 self.builder.add("E010", span(number), what, help, Edit(*span(number), "1"))
             if place:
                 line, _ = self.source.place(span(found[0])[0])
-                self.builder.add("E213", span(part), f"the version stands on line {line} already", "keep the first")
+                self.builder.add("E213", span(part), f"the version is already on line {line}", "keep the first")
         if found and kinds[0] not in ("version", "broken"):
             self.builder.add("E214", span(found[0]), "the version comes after something else", help)
         if not found and kinds[:1] != ["broken"]:
@@ -114,7 +114,7 @@ class _Assembler:
             word = (span(part)[0], span(part)[0] + 3)
             if first is not None:
                 line, _ = self.source.place(span(first)[0])
-                self.builder.add("E212", word, f"a set stands on line {line} already", "a file is one set")
+                self.builder.add("E212", word, f"a set is already on line {line}", "a file is one set")
                 continue
             first = part
             if "icon" in kinds[: parts.index(part)]:
@@ -135,7 +135,7 @@ class _Assembler:
                 metadata.append(part)
             elif rule != "BROKEN" and rule in seen:
                 line, _ = self.source.place(seen[rule])
-                self.builder.add("E213", span(part), f'"{rule}" stands on line {line} already', "keep one of them")
+                self.builder.add("E213", span(part), f'"{rule}" is already on line {line}', "keep one of them")
             elif rule != "BROKEN":
                 seen[rule] = span(part)[0]
                 self.setting(rule, part.children[0])
@@ -218,7 +218,7 @@ class _Assembler:
             return found
         member = found.find(name) if values else None
         if member is None:
-            what = f"{known} is a family of {len(found):,} icons" + (", this is none of them" if values else "")
+            what = f"{known} is a family of {len(found):,} icons" + (", but this is not one of them" if values else "")
             cures = (Edit(*place, found[0].name),)
             self.builder.add("E230", place, what, f"play one of its members, such as {found[0].name}", *cures)
         return member

@@ -212,7 +212,7 @@ class _Scope:
             what, help = f"{own.name}: {found[1]}", f"its values: {str(own)[:80]}"
             if found[0] == "E104":
                 what = found[1]
-                help = f"the unit stands once, behind the values: {own.name} in [...] {next(iter(UNITS[kind]))}".strip()
+                help = f"the unit comes once, after the values: {own.name} in [...] {next(iter(UNITS[kind]))}".strip()
             elif found[0] == "E202" and rule_of(tree) == "wave":
                 what = f"{own.name}: an amplitude is positive"
             self.builder.add(found[0], span(token), what, help)

@@ -66,7 +66,7 @@ class Builder:
             cures = (Edit(*span(number), positive),) if value < 0 and kind not in signed else ()
             if wave and kind == "difference" and found[0] == "E202":
                 found = "E202", "an amplitude is positive"
-                help = 'what swings goes both ways; to begin downwards, add "starting cool"'
+                help = 'a wave goes both ways; to begin downwards, add "starting cool"'
             self.add(found[0], place, found[1], help, *cures)
             return float("nan")
         return value
@@ -80,7 +80,7 @@ class Builder:
             text = self.text(token)
             if key in first:
                 line, _ = self.source.place(first[key])
-                self.add("E213", span(tree), f'"{key}" stands on line {line} already', "keep one of them")
+                self.add("E213", span(tree), f'"{key}" is already on line {line}', "keep one of them")
             elif text is not None and not text.strip(" \t\n," if key == "tags" else None):
                 self.add("E117", span(token), "the text is empty", f"write something, or leave {key} out")
             elif text is not None:

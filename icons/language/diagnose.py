@@ -30,7 +30,7 @@ def not_yet(case: FailedStatement) -> Finding | None:
     bad = case.bad
     if case.first in NOT_YET and case.index == 0:
         help = NOT_YET[case.first]
-        return at(bad, "E120", f'"{case.first}" is designed, but this version does not have it', help)
+        return at(bad, "E120", f'"{case.first}" is planned, but not in this version', help)
     if bad.text == "baseline" and case.where in ("icon", "repeat") and case.before is not None:
         what = "baseline is not a target in this version"
         if case.first == "step":
@@ -75,7 +75,7 @@ def text(case: FailedStatement) -> Finding | None:
             cures = (Edit(bad.start + len(inner), bad.end, '" {'), *cures)
         cures = (*curly[:2], *cures)
         return at(
-            bad, "E111", "this text has no closing quotation mark", 'a text stands on one line, between "..."', *cures
+            bad, "E111", "this text has no closing quotation mark", 'a text is on one line, between "..."', *cures
         )
     if case.accepts == {"STRING"}:
         key = case.before.text if case.before else ""
@@ -122,9 +122,8 @@ def block(case: FailedStatement) -> Finding | None:
     if bad.kind == "end" or bad.text in VOCABULARY["icon"] or bad.text in VOCABULARY["set"]:
         here = case.before or last
         cure = Edit(here.end, here.end, " {")
-        return Finding(
-            "E114", here.start, here.end, 'no "{" opens the block after this', 'statements stand in "{ ... }"', (cure,)
-        )
+        cause, hint = 'no "{" opens the block after this', 'statements are written in "{ ... }"'
+        return Finding("E114", here.start, here.end, cause, hint, (cure,))
     if case.first == "repeat":
         return at(bad, "E114", 'a "{" is needed here', "for example: repeat 3 { ... }", swap(bad, ""))
     texted = any(piece.kind == "text" for piece in case.rest[:1])
@@ -145,7 +144,7 @@ def name(case: FailedStatement) -> Finding | None:
     plain = plain if plain[:1].isalpha() else f"{case.first}-{plain}" if plain else ""
     if bad.kind == "end" or not plain:
         return at(bad, "E113", f'a name is missing after "{case.first}"', _NAME_HELP)
-    what = "a name stands without quotation marks" if bad.kind == "text" else f'"{short(bad.text)}" is not a name'
+    what = "a name has no quotation marks" if bad.kind == "text" else f'"{short(bad.text)}" is not a name'
     return at(bad, "E113", what, _NAME_HELP, swap(bad, plain))
 
 
@@ -164,7 +163,7 @@ def _examples(where: str) -> str:
 
 
 def _keys() -> str:
-    return f'after the name stand {", ".join(VOCABULARY["header"])}, each with a text, then "{{"'
+    return f'after the name come {", ".join(VOCABULARY["header"])}, each with a text, then "{{"'
 
 
 _RULES = (

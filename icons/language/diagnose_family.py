@@ -6,9 +6,9 @@ from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding, Piece
 
 _ALL_UNITS = tuple(dict.fromkeys(unit for units in UNITS.values() for unit in units if unit))
-_HELP = 'values stand in a list, "amount in [-3, 3] °C", or in a range, "amount in 1..3 step 0.5 °C"'
+_HELP = 'values are a list, "amount in [-3, 3] °C", or a range, "amount in 1..3 step 0.5 °C"'
 _NAME_HELP = "a parameter is called after what varies, such as: amount, rate, pause"
-_NO_COMMA = "a unit stands right behind its values, without a comma"
+_NO_COMMA = "a unit comes right after its values, without a comma"
 THREE_DOTS = "a range has two dots between its ends, not three"
 _OPENERS, _CLOSERS = ("[", "{", "<"), ("]", "}", ">")
 
@@ -20,7 +20,7 @@ def family(case: FailedStatement) -> Finding | None:
         return _around(case)
     if bad.kind == "newline":
         here = case.before or bad
-        return at(here, "E118", "a parameter stands on one line", "break the line behind a comma")
+        return at(here, "E118", "a parameter is on one line", "break the line after a comma")
     for terminal, rule in _RULES.items():
         if terminal in case.accepts:
             return rule(case)
@@ -32,9 +32,9 @@ def _around(case: FailedStatement) -> Finding | None:
     if case.first != "icon" or "LBRACE" not in case.accepts or bad.text not in ("(", *_OPENERS):
         return None
     if "LPAR" in case.accepts:
-        what = f'parameters stand in "( ... )", not in "{bad.text}"'
+        what = f'parameters are written in "( ... )", not in "{bad.text}"'
         return at(bad, "E118", what, _HELP, swap(bad, "("))
-    return at(bad, "E118", "parameters stand directly behind the name of the icon", 'icon x(...) means "..." {')
+    return at(bad, "E118", "parameters come directly after the name of the icon", 'icon x(...) means "..." {')
 
 
 def _name(case: FailedStatement) -> Finding:
@@ -84,7 +84,7 @@ def _values(case: FailedStatement) -> Finding:
         close = case.index + 1 + len(numbers)
         if cures and close < len(case.pieces) and case.pieces[close].text in (")", *_CLOSERS):
             cures = [Edit(bad.start, case.pieces[close].end, f"[{_listed(numbers)}]")]
-        return at(bad, "E118", f'a list of values stands in "[ ... ]", not in "{bad.text}"', _HELP, *cures)
+        return at(bad, "E118", f'a list of values is written in "[ ... ]", not in "{bad.text}"', _HELP, *cures)
     what = (
         "the values are missing" if bad.text in (")", ",", "") else f'"{short(bad.text)}" is neither a list nor a range'
     )
@@ -130,7 +130,7 @@ def _more(case: FailedStatement) -> Finding:
     if bad.text in _ALL_UNITS and any(piece.text == "]" for piece in case.rest):
         return _unit_inside(case, first)
     if bad.text == "..":
-        dots = THREE_DOTS if case.next().startswith(".") else 'a range stands without brackets: "1..3 step 0.5 °C"'
+        dots = THREE_DOTS if case.next().startswith(".") else 'a range has no brackets: "1..3 step 0.5 °C"'
         return at(bad, "E118", dots, _HELP)
     numbers = _run(case, first + 1)
     whole = Edit(case.pieces[first].start, numbers[-1].end, f"[{_listed(numbers)}")
@@ -157,7 +157,7 @@ def _unit_inside(case: FailedStatement, first: int) -> Finding:
     behind = close + 1 < len(case.pieces) and case.pieces[close + 1].text in units
     text = f"[{_listed(inside)}]" + ("" if behind else f" {bad.text}")
     cures = (Edit(case.pieces[first].start, case.pieces[close].end, text),) if len(units) == 1 else ()
-    return at(bad, "E118", "the unit stands once, behind the list", "for example: amount in [1, 2] °C", *cures)
+    return at(bad, "E118", "the unit comes once, after the list", "for example: amount in [1, 2] °C", *cures)
 
 
 def _number(case: FailedStatement) -> Finding:
@@ -165,11 +165,11 @@ def _number(case: FailedStatement) -> Finding:
     if bad.text == "]" and before is not None:
         if before.text == "[":
             return at(bad, "E118", "this list is empty", _HELP)
-        return at(bad, "E118", "a value is missing behind the comma", _HELP, Edit(before.start, bad.start, ""))
+        return at(bad, "E118", "a value is missing after the comma", _HELP, Edit(before.start, bad.start, ""))
     if found := signed(case):
         return found
     what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
-    return at(bad, "E106", what, "numbers look like 6, 0.5 or 1e-3; the unit stands once, behind them")
+    return at(bad, "E106", what, "numbers look like 6, 0.5 or 1e-3; the unit comes once, after them")
 
 
 def _end(case: FailedStatement) -> Finding:
@@ -186,12 +186,12 @@ def _end(case: FailedStatement) -> Finding:
     if bad.text in _CLOSERS:
         return at(bad, "E118", f'the parameters end with ")", not with "{bad.text}"', _HELP, swap(bad, ")"))
     if bad.text == ",":
-        return at(bad, "E118", "a comma stands on the line of the parameter before it", _HELP)
-    what = f'")" or "," is needed, not "{short(bad.text)}"' if bad.text else '")" is missing behind the parameters'
+        return at(bad, "E118", "the comma belongs at the end of the line before", _HELP)
+    what = f'")" or "," is needed, not "{short(bad.text)}"' if bad.text else '")" is missing after the parameters'
     separate = ((swap(bad, ","),) if bad.text in (";", "and") else ()) + (Edit(end, end, ")"),)
     here = bad
     if not bad.text or bad.text in VOCABULARY["header"] or bad.text in VOCABULARY["icon"]:
-        what, here = '")" is missing behind the parameters', Piece("end", "", max(0, end - 1), end)
+        what, here = '")" is missing after the parameters', Piece("end", "", max(0, end - 1), end)
     return at(here, "E118", what, _HELP, *separate)
 
 

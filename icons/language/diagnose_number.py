@@ -58,7 +58,7 @@ def notation(case: FailedStatement) -> Finding | None:
     cures: tuple[Edit, ...] = ()
     if sign == "/" and (value := _fraction(pieces)):
         cures = (Edit(pieces[0].start, pieces[2].end, value),)
-    return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is no number: {what}', help, cures)
+    return Finding("E106", pieces[0].start, pieces[-1].end, f'"{short(text)}" is not a number: {what}', help, cures)
 
 
 def _operand(piece: Piece, names: Container[str]) -> bool:
@@ -96,7 +96,7 @@ def unit(case: FailedStatement) -> Finding | None:
         shared = bad.kind == "number" and case.next() in UNITS[kind]  # two numbers, one unit: which was meant?
         return at(number, "E102", "this number has no unit", EXAMPLES[kind], *(() if shared else (cure,)))
     if bad.text in (case.names or ()):
-        help = "a parameter stands in the place of number and unit; there is no arithmetic"
+        help = "a parameter replaces number and unit; there is no arithmetic"
         return at(
             bad, "E103", f'"{short(bad.text)}" is a parameter, not a unit', help, Edit(number.start, bad.start, "")
         )
@@ -115,7 +115,7 @@ def unit(case: FailedStatement) -> Finding | None:
             whole, "E103", f'"{whole.text}" is not a unit', 'a unit must not contain spaces: "°C" or "degC"', cure
         )
     if bad.text in _DEGREES and re.fullmatch(r"[Ff](/.*)?|fahrenheit", case.next()):
-        return at(bad, "E103", "degrees Fahrenheit are no unit of this language", EXAMPLES[kind])
+        return at(bad, "E103", "degrees Fahrenheit are not a unit of this language", EXAMPLES[kind])
     if others:
         return _wrong_kind(case, kind, others)
     if kind == "time" and (found := _periods(case)):
@@ -189,7 +189,7 @@ def not_a_number(case: FailedStatement) -> Finding | None:
     if bad.kind == "number":
         if re.fullmatch(r"[+\-−]?[1-9][0-9]{0,2},[0-9]{3}", bad.text):
             what = f'"{bad.text}" may be {bad.text.replace(",", "")} or {bad.text.replace(",", ".")}'
-            return at(bad, "E106", what, "the decimal mark is a point, and nothing stands between thousands")
+            return at(bad, "E106", what, "the decimal mark is a point, and thousands are not separated")
         plain = bad.text.replace(",", ".").replace("_", "")
         cures = [swap(bad, plain)] if plain.count(".") <= 1 else []
         return at(bad, "E106", f'"{short(bad.text)}" is not a number', "numbers look like 6, 0.5 or 1e-3", *cures)

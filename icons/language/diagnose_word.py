@@ -93,10 +93,10 @@ def extra(case: FailedStatement) -> Finding | None:
         return at(bad, "E108", "a second statement begins here", 'put ";" or a new line between them', cure)
     if found := _two_times(case):
         return found
-    help = "one statement a line"
+    help = "one statement per line"
     twice = bad.text in ("at", "over") and (case.find("at") or case.find("over") or case.index) < case.index
     if twice:
-        help = 'either "at" a rate or "over" a time: the one follows from the other'
+        help = 'either "at" a rate or "over" a time: one follows from the other'
     # A suggestion leaves nothing out that was meant.
     cures = (Edit(before.end, case.pieces[-1].end, ""),) if twice or _worthless(case) else ()
     if bad.text == "for" and case.first in ("cool", "warm", "change", "to", "return"):
@@ -134,15 +134,15 @@ def _behind_wave(case: FailedStatement) -> Finding | None:
     if bad.text == "starting" and case.find("cut") == case.index - 1:
         behind = case.said(case.index)
         cure = Edit(case.pieces[case.index - 1].start, last.end, f"{behind} cut")
-        return at(bad, "E214", '"starting" stands before "cut"', EXAMPLES["sine"], cure)
+        return at(bad, "E214", '"starting" comes before "cut"', EXAMPLES["sine"], cure)
     if bad.kind != "word" or "CUT" not in case.accepts or (bad.text in VOCABULARY[case.where] and case.next()):
         return None
     if bad.text.casefold() in STARTS and "STARTING" in case.accepts:
         cure = Edit(bad.start, bad.start, "starting ")
         return at(bad, "E116", f'"starting" is missing before "{bad.text}"', "a wave starts upwards or downwards", cure)
     if close := nearest(bad.text, ("starting", "cut")):
-        help = 'behind a wave stand "starting warm" or "starting cool", and "cut"'
-        return at(bad, "E116", f'"starting" or "cut" may stand here, not "{short(bad.text)}"', help, swap(bad, close))
+        help = 'a wave may end with "starting warm" or "starting cool", and with "cut"'
+        return at(bad, "E116", f'"starting" or "cut" is expected here, not "{short(bad.text)}"', help, swap(bad, close))
     return None
 
 
@@ -156,7 +156,7 @@ def pace(case: FailedStatement) -> Finding | None:
     help = f'how fast, such as "{rate}", or how long, such as "over 2 s"'
     if bad.kind == "end":
         cure = Edit(bad.end, bad.end, f" {rate}")
-        return Finding("E107", pieces[0].start, bad.end, "how fast, or over what time, is not said", help, (cure,))
+        return Finding("E107", pieces[0].start, bad.end, "the rate or the time is missing", help, (cure,))
     cures = []
     if bad.kind == "number":
         cures = [Edit(bad.start, bad.start, "at "), Edit(bad.start, bad.start, "over ")]
@@ -177,7 +177,7 @@ def unit_twice(case: FailedStatement) -> Finding | None:
     if before is None or before.text not in (case.names or ()) or case.index < 2 or not unit_kinds(bad.text):
         return None
     what = f'"{before.text}" has its unit already'
-    return at(bad, "E104", what, "the unit of a parameter stands in the header, behind its values", swap(bad, ""))
+    return at(bad, "E104", what, "the unit of a parameter is in the header, after its values", swap(bad, ""))
 
 
 def connective(case: FailedStatement) -> Finding | None:

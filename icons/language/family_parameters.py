@@ -12,7 +12,7 @@ from .build import Builder, Place, rule_of, short, span
 from .diagnose_family import THREE_DOTS
 from .source import Edit
 
-_LIST_HELP = 'values stand in a list, "[1, 3] °C", or in a range, "1..3 step 0.5 °C"'
+_LIST_HELP = 'values are a list, "[1, 3] °C", or a range, "1..3 step 0.5 °C"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ def parameters_of(builder: Builder, tree: Any) -> FamilyParameters:
         found = _parameter(builder, part)
         if name in places:
             line, column = builder.source.place(places[name][0])
-            what = f'"{short(name)}" stands on line {line}, column {column} already'
+            what = f'"{short(name)}" is already on line {line}, column {column}'
             builder.add("E213", span(token), what, "each parameter needs a different name")
             unread = True
         places.setdefault(name, span(token))
@@ -55,7 +55,7 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
     name, unit = str(token), str(rest[0]) if rest else ""
     sound = True
     if any(name in units for units in UNITS.values()):
-        what = f'"{name}" is a unit, and no name for a parameter'
+        what = f'"{name}" is a unit, and cannot be the name of a parameter'
         builder.add("E113", span(token), what, "call it after what varies, such as: amount, rate, pause")
         sound = False
     numbers = [_number(builder, number) for number in values.children]
@@ -78,7 +78,7 @@ def _parameter(builder: Builder, tree: Any) -> Parameter | None:
         if number in seen:
             here = span(values.children[place])
             cure = Edit(span(values.children[place - 1])[1], here[1], "")
-            what = f"{short(values.children[place])} stands in this list already"
+            what = f"{short(values.children[place])} is already in this list"
             builder.add("E213", here, what, "keep one of them", cure)
             return None
         seen.add(number)

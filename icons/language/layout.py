@@ -1,4 +1,4 @@
-"""The formatter: a cue text in canonical layout, one statement a line, with every comment and number of its author."""
+"""The formatter: a cue text in canonical layout, one statement per line; comments and numbers are kept."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -16,12 +16,29 @@ Item = tuple[str, str]
 
 
 def format_text(text: str | bytes, file: str = "<text>") -> str:
-    """Return a sound cue text in canonical layout; ``file`` is the name that errors show.
+    r"""Return a cue text in canonical layout.
 
-    Comments, units and the digits of numbers stay the author's; ``°C`` is written for ``degC``. The result means the
-    same as the text, and is its own canonical layout. Lines end with ``\\n``. Raises CueErrors as ``parse`` does.
+    Parameters
+    ----------
+    text
+        A cue text without errors; bytes are decoded as UTF-8.
+    file
+        Name that errors show.
 
-    >>> print(format_text("cue 1; icon dip{cool by 6K at 3degC/s;hold for+.5 s # short\\n return over 2. s}"), end="")
+    Returns
+    -------
+    str
+        A text of the same meaning, whose canonical layout is itself. Comments, units and digits are kept, except that
+        ``°C`` replaces ``degC``. Lines end with a line feed.
+
+    Raises
+    ------
+    CueErrors
+        With every error of the text, as ``parse``.
+
+    Examples
+    --------
+    >>> print(format_text("cue 1; icon dip{cool by 6K at 3degC/s;hold for+.5 s # short\n return over 2. s}"), end="")
     cue 1
     <BLANKLINE>
     icon dip {

@@ -14,16 +14,33 @@ _MOST_CURES = 4
 
 
 def parse(text: str | bytes, file: str = "<text>") -> IconSet:
-    """Return the icons of a cue text; ``file`` is the name that errors show.
+    """Return the icons of a cue text.
 
-    Raises CueErrors, and nothing else, with everything that is wrong, in the order of the text.
+    Parameters
+    ----------
+    text
+        The cue text; bytes are decoded as UTF-8.
+    file
+        Name that errors show.
 
+    Returns
+    -------
+    IconSet
+        The icons and families of the text, with their common context.
+
+    Raises
+    ------
+    CueErrors
+        With every error of the text, in its order; nothing else is raised.
+
+    Examples
+    --------
     >>> parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }")["dip"].corners().time_s
     (0.0, 2.0, 6.0, 8.0)
     >>> try:
     ...     parse("cue 1; icon dip { cool by 6 at 3 °C/s }", "dip.cue")
-    ... except CueErrors as found:
-    ...     print(found)
+    ... except CueErrors as errors:
+    ...     print(errors)
     dip.cue:1:27  E102 missing unit
       1 | cue 1; icon dip { cool by 6 at 3 °C/s }
         |                           ^ this number has no unit

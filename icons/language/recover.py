@@ -211,7 +211,7 @@ class _Reader:
             if end > self.begin:  # the next block begins on a line of its own, before this one was opened
                 place = self.begin, self.begin + len(self.text[self.begin : end].split("\n")[0])
                 what = 'no "{" opens the block after this'
-                self.report(Finding("E114", *place, what, 'statements and settings stand in "{ ... }"'))
+                self.report(Finding("E114", *place, what, 'statements and settings are written in "{ ... }"'))
                 self.resume(end, "file")
                 return
         braces = self.listing and self.text[at] == "{" and self.takes("LSQB")
@@ -226,7 +226,7 @@ class _Reader:
         closed = self.last == "}"  # a whole block stands before: what was read of it stays
         braced = None if header or self.listing or closed else _BRACED.match(self.text, at)
         if braced and where in ("icon", "repeat"):
-            help = "a parameter stands without braces between statements, with them in a text"
+            help = "a parameter is written without braces in statements, and with braces in a text"
             edit = Edit(at, braced.end(), braced[1])
             self.report(Finding("E105", at, braced.end(), "braces are not allowed here", help, (edit,)))
             self.resume(self.stop(braced.end()), where)

@@ -167,7 +167,7 @@ def decode(data: str | bytes, file: str) -> str:
     text = data if isinstance(data, str) else _utf8(data, file)
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
-        raise whole_file("E006", file, f"a zero byte stands on line {line}", "a cue file is plain UTF-8 text")
+        raise whole_file("E006", file, f"a zero byte is on line {line}", "a cue file is plain UTF-8 text")
     if any("\ud800" <= char <= "\udfff" for char in text):
         raise whole_file("E007", file, "half a character (a lone surrogate) in the text", "save the file as UTF-8")
     text = text.removeprefix("\ufeff")

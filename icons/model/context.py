@@ -33,10 +33,24 @@ def text_fault(text: str) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What a set prescribes and where: control, baseline in °C (None: whoever plays it says) and body site.
+    """What icons prescribe, and where on the body.
 
-    Raises ValueError for an unknown control, a baseline outside −10 to 60 °C, or a site that is not a name.
+    Parameters
+    ----------
+    control
+        ``skin`` or ``display`` (a temperature in °C), or ``current`` (in A).
+    baseline_C
+        Temperature in °C from which icons start, −10 to 60 °C; None: that of the rig.
+    site
+        Body site, such as ``thenar``.
 
+    Raises
+    ------
+    ValueError
+        For an unknown control, a baseline outside its range, or a site that is not a name.
+
+    Examples
+    --------
     >>> Context("display", 32)
     Context(control='display', baseline_C=32.0, site=None)
     """
@@ -59,10 +73,28 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """What travels with an icon or a set: intent, author or source, DOI, licence, tags (each once).
+    """What is known about an icon or a set, apart from its course.
 
-    Raises ValueError for an empty text.
+    Parameters
+    ----------
+    means
+        What it is meant to say.
+    by
+        Author or source.
+    doi
+        DOI of the source.
+    licence
+        Licence of the file.
+    tags
+        Words for finding it, each once.
 
+    Raises
+    ------
+    ValueError
+        For an empty text, control characters, and a tag with a comma.
+
+    Examples
+    --------
     >>> Metadata(means="turn left", tags=("alert",)).means
     'turn left'
     """

@@ -134,9 +134,27 @@ class CueError:
 
 
 class CueErrors(ValueError):
-    """The one exception of this package: all that is wrong with a file, in the order of the file.
+    """Every error of a file, in the order of the file; the only exception of reading one.
 
-    ``errors`` holds at most 100; ``more`` counts those beyond. ``str()`` is every error rendered, a blank line between.
+    Parameters
+    ----------
+    errors
+        At most 100 errors, each with code, position and cure.
+    more
+        Number of errors beyond those.
+
+    Notes
+    -----
+    ``str()`` renders every error, separated by empty lines.
+
+    Examples
+    --------
+    >>> from thermicon.icons import parse
+    >>> try:
+    ...     parse("cue 1; icon dip { cool by 6 at 3 °C/s }")
+    ... except CueErrors as problem:
+    ...     [(error.code, error.line, error.column) for error in problem.errors]
+    [('E102', 1, 27)]
     """
 
     def __init__(self, errors: tuple[CueError, ...], more: int = 0) -> None:

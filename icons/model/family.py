@@ -24,14 +24,37 @@ FEWER = "take larger steps or fewer parameters, or split the family over several
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Family:
-    """Icons that differ in the values of their parameters; ``template`` is the first of them, ``slots`` what varies.
+    r"""Icons that differ only in the values of their parameters.
 
-    A family is a sequence: ``len``, ``family[3]``, iteration and ``in`` work without expanding it. Members are named
-    after their values, as in ``ramp_amount=-6_rate=1``. Raises ValueError for a bad name, parameter or slot, and
-    CueErrors when a member cannot be run.
+    A family is a sequence: ``len``, ``family[3]``, iteration and ``in`` work without creating all members. Members are
+    named after their values, as in ``ramp_amount=-6_rate=1``.
 
+    Parameters
+    ----------
+    name
+        Name of the family, the first part of the members' names.
+    parameters
+        Names and values of what varies, each in its unit.
+    template
+        Statements of the first member.
+    slots
+        Where in the template the parameters are used.
+    context
+        What the icons prescribe, the baseline in °C and the body site.
+    metadata
+        Intent, author, DOI, licence and tags.
+
+    Raises
+    ------
+    ValueError
+        For a bad name, parameter or slot.
+    CueErrors
+        Where a member cannot be played.
+
+    Examples
+    --------
     >>> from thermicon.icons import parse
-    >>> text = "cue 1; icon dip(size in [3, 6] K) means \\"{size} down\\" { cool by size at 3 K/s; return at 3 K/s }"
+    >>> text = "cue 1; icon dip(size in [3, 6] K) means \"{size} down\" { cool by size at 3 K/s; return at 3 K/s }"
     >>> family = parse(text).families[0]
     >>> family
     <Family dip: 2 icons over size in [3, 6] K, control skin>

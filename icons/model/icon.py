@@ -22,11 +22,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Icon:
-    """A thermal icon: a name, statements that run from baseline, the context they are meant in, and metadata.
+    """A thermal icon: statements that start from a baseline, with their context and metadata.
 
-    Raises ValueError for a bad name or no statements, and CueErrors when the statements cannot be run, for example
-    a rest away from baseline. A context without baseline is tried with 32 °C.
+    Parameters
+    ----------
+    name
+        A word of letters, digits and hyphens.
+    statements
+        Ramps, holds, waves and other statements, in the order of play.
+    context
+        What the icon prescribes, the baseline in °C and the body site. Without a baseline, 32 °C is used for checks.
+    metadata
+        Intent, author, DOI, licence and tags.
 
+    Raises
+    ------
+    ValueError
+        For a bad name, or no statements.
+    CueErrors
+        Where the statements cannot be played, for example a rest away from baseline.
+
+    Examples
+    --------
     >>> from thermicon.icons import Icon
     >>> from thermicon.icons.model.statements import Ramp, Hold, Return
     >>> Icon("dip", (Ramp("cool", by_K=6, rate_K_per_s=3), Hold(4), Return(3)))

@@ -60,12 +60,29 @@ class Members(Sequence[Icon]):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class IconSet:
-    """Icons and families with the context they share; ``set["name"]`` is one of them, or a member of a family.
+    """Icons and families with a common context; ``set["name"]`` is an icon, a family or a member of a family.
 
-    ``entries`` is what the file lists, ``icons`` every icon with the members of families, ``families`` the families.
-    Raises ValueError without icons, for two of one name, for a context other than that of the set, and for an icon that
-    plays one that the set does not have.
+    Parameters
+    ----------
+    name
+        Name of the set.
+    title
+        One line for people.
+    context
+        What the icons prescribe, the baseline in °C and the body site.
+    metadata
+        Intent, author, DOI, licence and tags of the set.
+    entries
+        Icons and families in the order of the file; ``icons`` has every icon, with the members of the families.
 
+    Raises
+    ------
+    ValueError
+        For a set without icons, two of the same name, a context that differs from that of the set, and an icon that
+        plays one that the set does not have.
+
+    Examples
+    --------
     >>> from thermicon.icons import read_cue
     >>> read_cue("cooling-step-skin")
     <IconSet cooling-step-skin: 1 icon, 8 s, control skin, baseline 32 °C>

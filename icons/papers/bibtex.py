@@ -13,11 +13,21 @@ _ESCAPES |= {mark: "\\" + mark for mark in "&%$#_{}"}
 
 
 def bibtex(icons: IconSet) -> str:
-    """Return BibTeX entries for what a set and its icons cite, and for thermicon itself, in UTF-8.
+    """Return BibTeX entries for the sources of a set and its icons, and for thermicon itself.
 
-    Entries come from the bibliography that ships; their note tells what of them is unverified. A source that is not in
-    it becomes ``@misc`` with what the set says of it, marked.
+    Parameters
+    ----------
+    icons
+        The set.
 
+    Returns
+    -------
+    str
+        Entries in UTF-8, from the shipped bibliography; a note names what is unverified. A source that the bibliography
+        lacks becomes an ``@misc`` entry from the metadata of the set, and is marked.
+
+    Examples
+    --------
     >>> from thermicon.icons import read_cue
     >>> [line for line in bibtex(read_cue("six-icons")).splitlines() if line.startswith("@")]
     ['@inproceedings{singhal-jones-2015,', '@article{singhal-jones-2018,', '@misc{thermicon,']

@@ -28,14 +28,28 @@ _COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 
 
 def methods(icons: IconSet, rig_about: str | None = None) -> str:
-    """Return a paragraph for the methods of a paper: the set, the course of every icon in words, and the sources.
+    r"""Return a paragraph for the methods section of a paper: the set, every icon in words, and the sources.
 
-    ``rig_about`` is what is known of the rig, as ``Rig.about`` says it.
+    Parameters
+    ----------
+    icons
+        The set.
+    rig_about
+        Description of the rig, from ``Rig.about``; None: no rig is described.
 
+    Returns
+    -------
+    str
+        Plain text.
+
+    Examples
+    --------
     >>> from thermicon.icons import parse
-    >>> print(methods(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }")).partition(" The icons")[0])
-    One thermal icon was used. It prescribes the temperature of the skin surface. It lasts 4 s. Its course, from \
-baseline: dip, cooling by 6 °C at 3 °C/s and a return to baseline at 3 °C/s (4 s).
+    >>> text = methods(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }"))
+    >>> print(*text.split(". ")[:3], sep="\n")
+    One thermal icon was used
+    It prescribes the temperature of the skin surface
+    It lasts 4 s
     """
     many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""

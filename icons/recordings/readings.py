@@ -157,7 +157,7 @@ def _column(place: str, header: list[str], column: str | None) -> str:
         raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
     for cell in (TIME, chosen):
         if header.count(cell) > 1:
-            raise whole_file("E013", place, f"the column {cell} is there twice", "rename or remove one of them")
+            raise whole_file("E013", place, f"the column {cell} appears twice", "rename or remove one of them")
     return chosen
 
 
@@ -174,7 +174,7 @@ def _number(place: str, column: str, cells: list[str], at: int, mark: str, first
         value = math.nan
     if not math.isfinite(value):
         what = f"{column} is {cell[:30]!r}, not a finite number" if cell else f"{column} is empty"
-        help = "fill it in, or remove the row; what lies between readings counts as straight"
+        help = "fill it in, or remove the row; between readings the course is taken as linear"
         if first and cell:
             help = "units belong in the names of the columns; remove this row"
         raise whole_file("E014", place, what, help)
@@ -185,7 +185,7 @@ def _check_times(file: str, times: list[float], rows: list[int]) -> None:
     for n, (before, time) in enumerate(pairwise(times), start=1):
         if time < before:
             what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
-            raise whole_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording a file")
+            raise whole_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording per file")
         if n > 1 and time == times[n - 2]:
             help = "two readings at one time are a step; write more decimals of the time"
             raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
@@ -202,7 +202,7 @@ def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) 
     if out is None:
         return
     middle = sorted(levels)[len(levels) // 2]
-    help = "correct or remove the reading, if it is a fault of the sensor"
+    help = "correct or remove the reading, if it is an error of the sensor"
     if 200 < middle < 400:
         help = "these look like kelvin: convert the column to °C"
     elif HIGHEST_C < middle < 150:

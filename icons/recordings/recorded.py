@@ -25,20 +25,42 @@ def from_csv(
     tolerance_K: float = 0.05,
     baseline_C: float | None = None,
 ) -> Icon:
-    """Return the icon whose course stays within ``tolerance_K`` of every reading of a CSV file.
+    r"""Return an icon that stays within a tolerance of every reading of a CSV file.
 
-    The file has a column ``time_s`` (s, from any start) and one of ``temperature_C``, ``target_C``, ``setpoint_C``,
-    ``display_C`` and ``skin_C`` (°C), or the one named ``column``; commas, semicolons or tabs between them. A column
-    ``display_C`` or ``skin_C`` says what the icon controls, otherwise ``control`` does. A time that stands twice is a
-    step. The icon has the file's name unless ``name`` is given; its baseline is where the recording begins, unless
-    ``baseline_C`` prescribes one within the tolerance of that.
+    Parameters
+    ----------
+    path
+        A file with a column ``time_s`` (s, from any start) and one of ``temperature_C``, ``target_C``, ``setpoint_C``,
+        ``display_C`` and ``skin_C`` (°C), separated by commas, semicolons or tabs. A time that occurs twice is a step.
+    name
+        Name of the icon; None: the name of the file.
+    column
+        Column to read in place of those above.
+    control
+        What the icon controls, unless the column is ``display_C`` or ``skin_C``.
+    tolerance_K
+        Largest deviation from any reading, in K.
+    baseline_C
+        Baseline in °C, within the tolerance of the first reading; None: the first reading.
 
-    Raises CueErrors that says what is wrong with the file, and in which row, and ValueError for other arguments.
+    Returns
+    -------
+    Icon
+        The icon, with ramps and holds in place of the readings.
 
+    Raises
+    ------
+    CueErrors
+        For a fault of the file, with its row.
+    ValueError
+        For any other argument.
+
+    Examples
+    --------
     >>> import tempfile, pathlib
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "dip.csv"
-    ...     _ = path.write_text("time_s,skin_C\\n0,32\\n2,26\\n4,26.02\\n6,25.98\\n8,32\\n")
+    ...     _ = path.write_text("time_s,skin_C\n0,32\n2,26\n4,26.02\n6,25.98\n8,32\n")
     ...     from_csv(path).corners().value
     (32.0, 26.0, 26.0, 32.0)
     """

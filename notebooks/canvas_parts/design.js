@@ -50,14 +50,14 @@ class DesignView {
     this.editor.replace(text);
     this.edited(text);
     this.editor.area.focus({ preventScroll: true });
-    this.say("Your text from before is back in the editor.");
+    this.say("The earlier text is back in the editor.");
   }
 
   forget() {
     this.kept.forget();
     this.onForget();
     this.editor.area.focus({ preventScroll: true });
-    this.say("The text from before is forgotten.");
+    this.say("The earlier text was discarded.");
   }
 
   get textPending() {

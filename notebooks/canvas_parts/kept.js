@@ -36,9 +36,9 @@ class Kept {
     Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say });
     const button = (name, act) => make("button", { type: "button", class: "tm-button", onclick: act }, name);
     this.element = make(
-      "div", { class: "tm-kept", role: "group", "aria-label": "Text from before", hidden: true },
-      make("span", {}, "Your text from before is kept:"),
-      button("Take it back", () => onTake(this.offered)), button("Forget", onForget),
+      "div", { class: "tm-kept", role: "group", "aria-label": "Earlier text", hidden: true },
+      make("span", {}, "An earlier text was saved:"),
+      button("Restore it", () => onTake(this.offered)), button("Discard", onForget),
     );
   }
 
@@ -65,7 +65,7 @@ class Kept {
   offer(text) {
     this.offered = text;
     this.element.hidden = false;
-    const said = "Your text from before is kept. Above the editor are buttons to take it back or to forget it.";
+    const said = "An earlier text was saved. Buttons above the editor restore or discard it.";
     setTimeout(() => this.offered !== null && this.say(said), 0); // after what the first frame says
   }
 

@@ -32,7 +32,7 @@ class Workbench {
 
   showLate(late) {
     const { kept } = this.view ?? {};
-    const text = kept?.place ? (kept.works ? "; your text is kept in this page" : "; copy your text before") : "";
+    const text = kept?.place ? (kept.works ? "; your text is saved in this page" : "; copy your text first") : "";
     this.banner.hidden = !late;
     this.copy.hidden = !text;
     setText(this.copy, "Copy text");

@@ -38,7 +38,7 @@ class Timeline {
       },
       this.stack, this.axis,
     );
-    this.staleTag = make("div", { class: "tm-stale-tag", hidden: true }, "drawn from the last good text");
+    this.staleTag = make("div", { class: "tm-stale-tag", hidden: true }, "drawn from the last valid text");
     this.nothing = make("p", { class: "tm-nothing", hidden: true }, "Nothing to draw yet.");
     this.tip = make("div", { class: "tm-tip", role: "tooltip", hidden: true });
     this.element = make("div", { class: "tm-timeline" }, help, this.stage, this.staleTag, this.nothing, this.tip);

@@ -49,7 +49,7 @@ class Copied:
     def text(self) -> str:
         """Summary of what was written, without the folder."""
         if not self.written:
-            return "nothing to write, all notebooks are there" if self.current else ""
+            return "nothing to write, all notebooks exist" if self.current else ""
         parts = [f"wrote {_counted(self.written)}"]
         if self.current:
             parts.append(f"{_counted(self.current)} already there")
@@ -80,7 +80,7 @@ def lab_command(
     Notebooks that you changed are kept. Notebooks that you only ran are replaced if thermicon has a newer version.
     """
     if page and files_only:
-        raise usage("opens nothing, so there is no page to serve", "--files-only")
+        raise usage("opens nothing, so no page can be served", "--files-only")
     if port is not None and not 1 <= port <= 65535:
         raise usage(f"{port} is outside 1 to 65535", "--port")
     if folder.suffix.lower() in FILES:
@@ -103,7 +103,7 @@ def copy_notebooks(folder: Path, force: bool = False) -> Copied:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as made:
     ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
-    ('wrote 8 notebooks', 'nothing to write, all notebooks are there')
+    ('wrote 8 notebooks', 'nothing to write, all notebooks exist')
     """
     check_folder(folder)
     shipped = shipped_notebooks()

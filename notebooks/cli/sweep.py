@@ -101,17 +101,19 @@ def sweep(
 
     Parameters
     ----------
-    icons : Iterable[Icon]
+    icons
         Icons to play.
-    rig : Rig
+    rig
         Rig to change.
-    key, values : str, Sequence[float]
-        Dotted key of the rig file and its values, in the unit of the rig file.
-    second : tuple of key and values, optional
-        A second key; every combination of both keys is played.
-    tail_s : float
-        Time simulated after the last corner, in s.
-    progress : callable, optional
+    key
+        Dotted key of the rig file.
+    values
+        Its values, in the unit of the rig file.
+    second
+        A second key and its values; every combination of both keys is played.
+    tail_s
+        Time in s that is simulated after the last corner.
+    progress
         Called with the number of runs done and their total.
 
     Returns
@@ -126,10 +128,14 @@ def sweep(
     RigError
         For a key that no rig has.
 
-    Columns: icon, the key, the fields of a `Summary`, what the receptors see, and `reason`. A value at
-    which the rig cannot be, or cannot play the icon, gives a row with only the reason. Raises RigError for a key that
-    no rig has.
-
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> step = load_library("six-icons")["cooling-step"]
+    >>> frame = sweep([step], Rig.load("thenar"), "driver.current_limit_A", [0.5, 1.5])
+    >>> frame["reached"].tolist()
+    [False, True]
     """
     import pandas as pd
 

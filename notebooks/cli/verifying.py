@@ -56,7 +56,7 @@ def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
         if folder.exists():
             raise OutputError(f"cannot verify {folder}: it is a file; give the folder of an export")
         left = folder.with_name(STAGE.format(folder.name))
-        more = f"; an export was ended half way, and the next one into {folder} puts it back" if left.exists() else ""
+        more = f"; an export was interrupted, and the next one into {folder} repairs it" if left.exists() else ""
         raise OutputError(f"cannot verify {folder}: there is no such folder{more}")
     files, others = {}, []
     for path in sorted(folder.iterdir()):

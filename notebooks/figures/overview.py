@@ -18,10 +18,29 @@ INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
 
 
 def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
-    """Everything about one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
+    """Draw one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
 
-    Line styles differ as well as colours, so the figure survives a grey printer. Returns a matplotlib ``Figure``;
-    nothing is shown. ``rig_changes`` are named in the title.
+    Parameters
+    ----------
+    trace
+        The run.
+    percept
+        What is felt of it; None: no panel of sensation.
+    rig_changes
+        Changes of the rig, named in the title.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A figure that is not shown. Line styles differ as well as colours, so that it can be printed in grey.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
+    >>> [ax.get_ylabel() for ax in overview(trace).axes][2]
+    'current (A)'
     """
     from matplotlib.figure import Figure
 
@@ -91,7 +110,27 @@ def _sensation(percept: Percept, ax: Axes) -> None:
 
 
 def set_figure(ranking: Ranking) -> Figure:
-    """Who is confused with whom: distances (d′) and the predicted confusions of one set, side by side."""
+    """Draw who is confused with whom: distances (d′) and predicted confusions of one set, side by side.
+
+    Parameters
+    ----------
+    ranking
+        The ranking of the set.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A figure that is not shown.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.perception import rank
+    >>> ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=20)
+    >>> len(set_figure(ranking).axes) >= 2
+    True
+    """
     from matplotlib.figure import Figure
 
     from thermicon.perception.plots import draw, draw_heat

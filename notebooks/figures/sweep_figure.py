@@ -29,9 +29,33 @@ PANELS = (
 
 
 def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
-    """Draw the table of a sweep; an icon that cools first is blue, one that warms orange, and each has its own mark.
+    """Draw the table of a sweep, one panel per quantity and one line per icon.
 
-    A mark without filling stands where an icon was not reached, a grey band where nothing could be played.
+    Icons that mainly cool are blue, others orange, and each has its own mark. A hollow mark stands for an icon that was
+    not reached, a grey band for values at which nothing could be played.
+
+    Parameters
+    ----------
+    frame
+        The table that `sweep` returns.
+    key
+        The column on the abscissa: the key of the rig that was varied.
+    log
+        Whether the abscissa is logarithmic.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A figure that is not shown.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.notebooks import sweep
+    >>> step, key = load_library("six-icons")["cooling-step"], "driver.current_limit_A"
+    >>> len(sweep_figure(sweep([step], Rig.load("thenar"), key, [1.0, 1.5]), key).axes)
+    9
     """
     from matplotlib.figure import Figure
 

@@ -48,7 +48,7 @@ def replaced_with(files: Mapping[str, bytes], there: Mapping[str, Path], folder:
                 continue
             if digest(there[name].read_bytes()) != known:
                 raise OutputError(
-                    f"{folder / name} is not what its sidecar {sidecar} says any more, and would be left without one; "
+                    f"{folder / name} no longer matches its sidecar {sidecar}, and would be left without one; "
                     f"move it away, or {CURE}"
                 )
             gone.append(name)

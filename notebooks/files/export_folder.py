@@ -43,7 +43,7 @@ def check_export_folder(folder: Path) -> Path:
             raise OutputError(f"cannot export into {folder}: it is your home folder; {CURE}")
     if not os.access(goal.parent, os.W_OK | os.X_OK):
         raise OutputError(
-            f"cannot export into {folder}: its files are put together beside it, and {goal.parent} is not writable for "
+            f"cannot export into {folder}: its files are prepared beside it, and {goal.parent} is not writable for "
             f"you; give a folder inside one that is"
         )
     if goal.exists():
@@ -99,8 +99,8 @@ def _listed(goal: Path, folder: Path) -> dict[str, tuple[int, int]]:
             if not stat.S_ISREG(held.st_mode):
                 kind = "link" if entry.is_symlink() else "folder" if entry.is_dir() else "device or pipe"
                 raise OutputError(
-                    f"cannot export into {folder}: it holds a {kind}, {entry.name}, and exports replace their folder "
-                    f"as a whole; {CURE}"
+                    f"cannot export into {folder}: it contains a {kind}, {entry.name}, and exports replace their "
+                    f"folder as a whole; {CURE}"
                 )
             found[entry.name] = (held.st_dev, held.st_ino)
     return found
@@ -111,7 +111,7 @@ def _keep(files: Collection[str], there: Collection[str], folder: Path, replace:
     taken = [name for name in files if name in there]
     if taken and not replace:
         more = f" and {len(taken) - 1} more" if len(taken) > 1 else ""
-        raise OutputError(f"{folder / taken[0]}{more} exists already and is kept; {how}")
+        raise OutputError(f"{folder / taken[0]}{more} already exists and was kept; {how}")
 
 
 @contextmanager
@@ -144,7 +144,7 @@ def _stage(goal: Path, folder: Path) -> Iterator[Path]:
                 with contextlib.suppress(OSError):
                     stage.rmdir()  # not empty: the next export has taken it over
             return
-    raise OutputError(f"cannot write into {folder}: {stage.name} beside it comes and goes; try again")
+    raise OutputError(f"cannot write into {folder}: another process keeps replacing {stage.name}; try again")
 
 
 def _check_stage(stage: Path, folder: Path) -> None:

@@ -42,7 +42,7 @@ def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
         require_pyarrow(f"cannot write {path}", OutputError)
     _check_folder(path, path.parent)
     if path.exists() and not os.access(path, os.W_OK):
-        raise OutputError(f"cannot write {path}: the file is there already and is read-only")
+        raise OutputError(f"cannot write {path}: the file exists and is read-only")
 
 
 def check_separate(inputs: Sequence[str | Path], outputs: Sequence[Path | None]) -> None:
@@ -73,7 +73,7 @@ def _check_folder(path: Path, folder: Path) -> None:
     if not folder.is_dir():
         raise OutputError(f"cannot write {path}: {folder} is a file, not a folder")
     if not os.access(folder, os.W_OK | os.X_OK):
-        raise OutputError(f"cannot write {path}: the folder {folder} is not writable for you")
+        raise OutputError(f"cannot write {path}: the folder {folder} is not writable")
 
 
 @contextmanager
@@ -120,7 +120,7 @@ def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = Fal
             there = [name for name in files if (folder / name).exists()]
             if there and not replace:
                 more = f" and {len(there) - 1} more" if len(there) > 1 else ""
-                raise OutputError(f"{folder / there[0]}{more} exists already and is kept; --force replaces it")
+                raise OutputError(f"{folder / there[0]}{more} already exists and was kept; --force replaces it")
             drafts = {name: held.enter_context(draft_of(folder / name)) for name in files}
             for name, draft in drafts.items():
                 with draft.open("wb") as file:

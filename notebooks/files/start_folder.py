@@ -32,7 +32,7 @@ def below_start(folder: Path) -> Path:
         root = Path(start).resolve(strict=True)
         goal = (root / folder).resolve()
     except (OSError, RuntimeError, ValueError):
-        raise OutputError(f"{folder} is no folder that can be used; give the name of one below {start}") from None
+        raise OutputError(f"{folder} is not a usable folder; give the name of one below {start}") from None
     if not goal.is_relative_to(root):
         raise OutputError(
             f"{folder} is outside the folder of this page; it writes only below {root}, into a folder such as drives"

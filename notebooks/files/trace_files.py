@@ -90,7 +90,7 @@ def _read(path: Path) -> pd.DataFrame:
         raise LogError(f"{path}:1: columns are separated by semicolons; save it with commas and decimal points")
     header = [name.strip() for name in next(csv.reader([text.partition("\n")[0]]))]
     if doubled := [name for place, name in enumerate(header) if name in header[:place]]:
-        raise LogError(f"{path}:1: the column {doubled[0]} is there twice; remove one of them")
+        raise LogError(f"{path}:1: the column {doubled[0]} appears twice; remove one of them")
     try:
         frame = pd.read_csv(io.StringIO(text), skip_blank_lines=False, dtype=object, skipinitialspace=True)
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as problem:

@@ -22,7 +22,7 @@ QUICKEST_S = 0.02
 """The gate does not look for reactions quicker than this: where none is safe, it states 0."""
 
 _CORNER = re.compile(r"(?P<name>.+) (?P<sign>[+−])[\d.]+ (%|K)")
-_AGAIN = re.compile(r"played again and again with \S+ s of pause")
+_AGAIN = re.compile(r"repeated plays with \S+ s of pause")
 
 Named = tuple[str, "Gate"]
 
@@ -37,7 +37,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     >>> from thermicon.notebooks.files.exporting import prepare_icon
     >>> ready = prepare_icon(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
     >>> [about for about, _ in gate_words(ready.prepared)]
-    ['played again and again', 'the hardware must provide']
+    ['repeated plays', 'the hardware must provide']
     """
     from thermicon.circuit.safety.gate import Gate
 
@@ -46,7 +46,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     ]
     if not gates:
         return []
-    again = "played again and again" + (", in any order" if len(gates) > 1 else "")
+    again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
     return [(again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
 
 
@@ -112,7 +112,7 @@ def demands_text(gates: Sequence[Named]) -> str:
 def short_scenario(scenario: str) -> str:
     """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows.
 
-    >>> short_scenario("contact −30 %, gain +10 %, played again and again with 9 s of pause (warm bound)")
+    >>> short_scenario("contact −30 %, gain +10 %, repeated plays with 9 s of pause (warm bound)")
     'low contact; high gain; repeated (warm bound)'
     >>> short_scenario("the rig as given, then zero current")
     'the rig as given, then zero current'

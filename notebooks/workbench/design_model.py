@@ -106,12 +106,12 @@ class DesignModel:
         try:
             shown = act()
         except Exception as wrong:  # a page that goes silent is worse than any sentence
-            self.scene = with_notes(self.scene, f"this could not be done: {wrong or type(wrong).__name__}")
+            self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
             made = frame_of(self.scene)
         except Exception as wrong:
-            self.scene = replace(with_notes(self.scene, f"this could not be drawn: {wrong}"), drawing=None, stale=True)
+            self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
         if (self.text, self.rig) != before:
             for tell in self._tell:
@@ -139,11 +139,11 @@ class DesignModel:
                 return self._step(self.history.undo() if kind == "undo" else self.history.redo(), kind)
             case "apply":
                 return self._mend(message.get("line"))
-        raise ValueError(f"the page sent a message that is not known: {kind}")
+        raise ValueError(f"the page sent an unknown message: {kind}")
 
     def _typed(self, text: object) -> None:
         if not isinstance(text, str) or len(text) > MOST_LETTERS:
-            raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it stays as it was")
+            raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it was not changed")
         self.history = self.history.typed(text, time.monotonic())
         self._draw()
 
@@ -180,7 +180,7 @@ class DesignModel:
     def _mend(self, line: object) -> str:
         new = mended(self.text, line) if isinstance(line, int) else None
         if new is None:
-            self.scene = with_notes(self.scene, f"line {line} has no suggestion that helps")
+            self.scene = with_notes(self.scene, f"line {line} has no suggestion to apply")
             return self.text
         self.history = self.history.changed(new)
         self._draw()

@@ -66,7 +66,7 @@ def _drag(text: str, name: str, index: int, time_s: float, level: float, start: 
     if not 0 <= index < len(corners):
         raise _Refused(f"{name} has {len(corners)} corners now, so there is none to move at {index + 1}")
     if not (math.isfinite(time_s) and math.isfinite(level)):
-        raise _Refused("the corner stays where it is: a place to drag it to is missing")
+        raise _Refused("the corner was not moved: the message has no target position")
     corner = corners[index]
     grip = grip_of(corner, slots_of(reading.family_of(name)))
     if (grip.time is None and grip.level is None) or corner.path is None or corner.leaf.span is None:
@@ -150,7 +150,7 @@ class _Move:
         except (CueErrors, ValueError) as wrong:
             raise _Refused(_said(wrong)) from None
         if len(found) <= self.index:
-            raise _Refused("the statement has no such corner then")
+            raise _Refused("the statement would no longer have this corner")
         return float(found[self.index].level), float(found[self.index].time_s)
 
     def check(self, size: float, took: float) -> None:
@@ -159,7 +159,7 @@ class _Move:
         if grip.time is not None and took <= 0:
             raise _Refused(self.too_early())
         if grip.level is not None and abs(size) < CLOSE:
-            raise _Refused("the corner cannot lie at the level its statement begins at: that would be no change")
+            raise _Refused("the corner cannot be at the level at which its statement begins: that would be no change")
         if isinstance(now.leaf, Wave) and grip.level is not None and size * now.leaf.sign < 0:
             first = {"warm": "cool", "cool": "warm", "up": "down", "down": "up"}[str(now.leaf.start)]
             raise _Refused(f'to begin the other way, write "starting {first}": an amplitude is positive')

@@ -104,7 +104,7 @@ def slots_of(family: Family | None) -> dict[tuple[Path, str], str]:
 def grip_of(corner: Corner, written: dict[tuple[Path, str], str]) -> Grip:
     """Return the numbers that a corner depends on, or the reason why it does not move."""
     if corner.path is None:
-        return Grip(None, None, f"this is played from {corner.played}; choose that icon to move its corners")
+        return Grip(None, None, f"this is played from {corner.played}; select that icon to move its corners")
     if corner.leaf.span is None:
         return Grip(None, None, "this corner is not written in the text")
     time, level, why = _fields(corner.leaf, corner.part)
@@ -136,11 +136,11 @@ def _fields(leaf: Leaf, part: Part) -> tuple[str | None, str | None, str | None]
         case Return():
             return pace, None, "a return ends at baseline"
         case Hold():
-            return "duration_s", None, "a hold stays where it begins: move the corner before it"
+            return "duration_s", None, "a hold keeps its level: move the corner before it"
         case Rest():
             return "duration_s", None, "a rest stays at baseline"
         case Step():
-            return None, level, "a step takes no time of its own: move the corner before it"
+            return None, level, "a step takes no time: move the corner before it"
         case Pulse() if part == "top":
             return None, level, "a pulse begins where the statement before it ends"
         case Pulse():

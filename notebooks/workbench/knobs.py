@@ -71,19 +71,20 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
     thermode = known.one("thermode area of the forced-choice thresholds")
     area = round(rig.contact.area_m2 * 1e4, 6)
     smallest = round(min(Rig.load(name).contact.area_m2 for name in rig_names()) * 1e4, 6)
-    contact = f"light touch of 3e-4 to 3e-3 m²·K/W, as the shipped rigs say of theirs; {spread.source}"
+    contact = f"light touch of 3e-4 to 3e-3 m²·K/W, as stated in the shipped rigs; {spread.source}"
     areas = f"the finger pad of the fingertip rig; {thermode.quantity}: {thermode.source}"
     return (
         Knob("contact", "contact resistance", "×", FIRMEST_TIMES, LIGHTEST_TIMES, 0.05, 1.0,
              "resistance between display and skin, as a multiple of the rig's", contact),
         Knob("area", "contact area", "cm²", min(smallest, area), max(thermode.interval[1], area), 0.5, area,
-             "heat for the same change, and thresholds, which fall with area", areas),
+             "affects the heat needed, and thresholds, which fall with area", areas),
         Knob("rest", "rest temperature", "°C", min(zone.interval[0], rig.skin.rest_C),
              max(zone.interval[1], rig.skin.rest_C), 0.1, rig.skin.rest_C,
-             "what bare skin rests at, and where icons begin that give no baseline",
+             "temperature of bare skin at rest, and baseline of icons that give none",
              f"{zone.quantity}: {zone.source}"),
-        Knob("site", "site", "", 0.0, 0.0, 0.0, rig.site, "layers of skin, depths of receptors, thresholds, path",
-             "the shipped rigs", tuple(dict.fromkeys((rig.site, *_sites())))),
+        Knob("site", "site", "", 0.0, 0.0, 0.0, rig.site,
+             "selects layers of skin, depths of receptors, thresholds and nerve path", "the shipped rigs",
+             tuple(dict.fromkeys((rig.site, *_sites())))),
         Knob("age", "age", "years", YOUNGEST_YEARS, OLDEST_YEARS, 1.0, YOUNG_YEARS,
              "thresholds of both channels, each by its own loss per decade",
              f"{lost.quantity}: {lost.source}"),
@@ -96,7 +97,8 @@ def _limit_knob(rig: Rig) -> Knob:
     limit, greatest = rig.driver.current_max_A, math.floor(10 * _greatest_cooling_A(rig)) / 10
     return Knob(
         "limit", "current limit", "A", min(LEAST_A, limit), max(greatest, limit), 0.05, limit,
-        "how fast and how far the driver can go", "up to the current of greatest cooling of the rig's module",
+        "largest current: limits how fast and how far temperature changes",
+        "up to the current of greatest cooling of the rig's module",
     )  # fmt: skip
 
 
@@ -140,7 +142,7 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
             notes += _unusual(table[key], value)
         except RigError as wrong:
             knob = table[key]
-            before = f"{knob.label} stays at {knob.shown(knob.value)}, {knob.shown(value)} cannot be"
+            before = f"{knob.label} stays at {knob.shown(knob.value)}, {knob.shown(value)} is not possible"
             notes.append(f"{before}: {str(wrong).splitlines()[0]}")
     return KnobResult(made, person, tuple(notes))
 
@@ -197,9 +199,9 @@ def _fault(knob: Knob, value: float | str) -> str | None:
     if knob.options:
         if value in knob.options:
             return None
-        return f"{knob.label} stays at {knob.value}: {value} is none of {', '.join(knob.options)}"
+        return f"{knob.label} stays at {knob.value}: {value} is not one of {', '.join(knob.options)}"
     if isinstance(value, str) or not math.isfinite(value):
-        return f"{knob.label} stays at {knob.shown(knob.value)}: {value} is no number"
+        return f"{knob.label} stays at {knob.shown(knob.value)}: {value} is not a number"
     return None
 
 

@@ -106,4 +106,4 @@ class LiveView(ABC, Generic[Request]):
         try:
             act()
         except Exception as wrong:  # a message is better than a page that goes silent
-            self._say(f"this could not be done: {wrong or type(wrong).__name__}", "th-caution")
+            self._say(f"the action failed: {wrong or type(wrong).__name__}", "th-caution")

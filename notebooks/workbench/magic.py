@@ -86,7 +86,7 @@ def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet 
         from ..cli.check import against_rig
 
         print(
-            "\n\n".join(against_rig(icons, rig, "cell")) or f"{rig.name} can do what {name} asks for, taken statically"
+            "\n\n".join(against_rig(icons, rig, "cell")) or f"{rig.name} can hold every level of {name} (static check)"
         )
     return icons
 
@@ -118,8 +118,8 @@ def _read_line(line: str) -> tuple[str, str | None]:
         raise CueMagicError(f"%%cue: {error}\n{USAGE}") from None
     if not said.name.isidentifier() or keyword.iskeyword(said.name):
         plain = re.sub(r"\W", "_", said.name)
-        help = f"; {plain} would do" if plain.isidentifier() and not keyword.iskeyword(plain) else ""
-        raise CueMagicError(f"%%cue: {said.name!r} is no name for a variable{help}\n{USAGE}")
+        help = f"; try {plain}" if plain.isidentifier() and not keyword.iskeyword(plain) else ""
+        raise CueMagicError(f"%%cue: {said.name!r} is not a valid variable name{help}\n{USAGE}")
     return said.name, said.rig
 
 
@@ -128,6 +128,6 @@ def _again(shell: InteractiveShell, line: str) -> IconSet | Icon | Family:
 
     name = line.strip().strip("\"'")
     if not name:
-        raise CueMagicError("%cue: say what to show: a variable, a shipped set or a file\nusage: %cue NAME")
+        raise CueMagicError("%cue: name what to show: a variable, a shipped set or a file\nusage: %cue NAME")
     held = shell.user_ns.get(name)
     return held if isinstance(held, (IconSet, Icon, Family)) else read_cue(name)

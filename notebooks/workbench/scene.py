@@ -185,7 +185,7 @@ def _chosen(reading: Reading, wanted: str | None, before: Scene | None) -> tuple
         return first, []
     if before is not None and before.count == len(reading.icons) and wanted in before.names:
         first = reading.icons.icons[min(before.names.index(wanted), len(reading.icons) - 1)]
-        return first, [f"{wanted} is called {first.name} now"]
+        return first, [f"{wanted} is now called {first.name}"]
     return first, [f"no icon is called {wanted}; {first.name} is shown"]
 
 

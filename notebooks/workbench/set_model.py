@@ -54,7 +54,7 @@ class RankedSet:
         for pair in self.ranking.pairs:
             if {pair.a, pair.b} == {a, b}:
                 return pair
-        raise KeyError(f"{a} and {b} are no pair of this set")
+        raise KeyError(f"{a} and {b} are not a pair of this set")
 
 
 def rank_set(

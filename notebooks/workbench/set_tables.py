@@ -14,7 +14,7 @@ from ..text.rank_text import caveat, rival
 if TYPE_CHECKING:
     from thermicon.perception import Edit, NoEdit, PairScore, Ranking
 
-ALONE = "The set has one icon: with nothing to confuse it with, there is no distance to show."
+ALONE = "The set has only one icon, so there are no distances to show."
 
 
 def ranking_table(ranking: Ranking, result: dict[str, Any]) -> str:

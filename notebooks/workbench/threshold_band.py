@@ -55,14 +55,16 @@ def threshold_bands(trace: Trace, observer: Observer) -> tuple[ThresholdBand, ..
         return ()
     starts = (trace.cold_receptor_C, trace.warm_receptor_C)
     return tuple(
-        ThresholdBand(channel, float(start[0]), threshold_change_K(observer, channel, trace.area_m2, trace.site, float(start[0])))
+        ThresholdBand(
+            channel, float(start[0]), threshold_change_K(observer, channel, trace.area_m2, trace.site, float(start[0]))
+        )
         for channel, start in zip(CHANNELS, starts, strict=True)
     )
 
 
 @lru_cache(maxsize=256)
 def threshold_change_K(observer: Observer, channel: Channel, area_m2: float, site: str, level_C: float) -> float:
-    """Size (K) of the ramp at receptor depth with d′ = 1, for an observer adapted to the level (°C) that it starts from.
+    """Size (K) of the ramp at receptor depth with d′ = 1, for an observer adapted to the level (°C) it starts from.
 
     The ramp has the rate and hold of the published threshold step; thresholds depend on area and site as everywhere
     else, and on the level: warm skin must cool further before it is cold. LARGEST_K where no ramp does.

@@ -29,11 +29,29 @@ FIRST = "six-icons"
 class Workbench:
     """A workbench for one set of icons on one rig, shown as a page where a notebook can show widgets.
 
-    ``text`` is cue text, the path of a cue file, the name of a shipped set, an icon or a set (None: six-icons); ``rig``
-    a name, the path of a rig file, or a rig; ``icon`` is shown first; ``folder`` is where drives are written.
-    Cue text with errors is no error here: the page shows them. Raises CueErrors for a file or name that is not there,
-    RigError for such a rig, ValueError for such an icon.
+    Parameters
+    ----------
+    text
+        Cue text, the path of a cue file, the name of a shipped set, an icon or a set; None: six-icons. Errors in a cue
+        text are shown on the page.
+    rig
+        A rig, its name, or the path of a rig file.
+    icon
+        Name of the icon that is shown first; None: the first.
+    folder
+        Folder into which drives are exported.
 
+    Raises
+    ------
+    CueErrors
+        For a file or a name that does not exist.
+    RigError
+        For a rig that does not exist, or cannot be.
+    ValueError
+        For an icon that the set does not have.
+
+    Examples
+    --------
     >>> bench = Workbench("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }")
     >>> bench
     Workbench('dip' of 1 on thenar, green)

@@ -9,7 +9,7 @@ import pytest
 
 from tests.browser.staticpage import TEXT, Bench, design, open_bench
 
-OFFER = "Your text from before is kept. Above the editor are buttons to take it back or to forget it."
+OFFER = "An earlier text was saved. Buttons above the editor restore or discard it."
 FORBIDDEN = "Object.defineProperty(window, 'sessionStorage', { get() { throw new DOMException('no') } })"
 
 
@@ -41,7 +41,7 @@ def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
     assert not offered(edited)
     edited.again("two")
     assert offered(edited)
-    assert edited.page.locator(".tm-kept span").inner_text() == "Your text from before is kept:"
+    assert edited.page.locator(".tm-kept span").inner_text() == "An earlier text was saved:"
     edited.said(OFFER)
     assert text_of(edited) == TEXT
     assert edited.sent("text") == []
@@ -52,7 +52,7 @@ def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
     assert text_of(edited) == TEXT + "# mine"
     assert not offered(edited)
     assert edited.page.evaluate("document.activeElement.className") == "tm-area"
-    edited.said("Your text from before is back in the editor.")
+    edited.said("The earlier text is back in the editor.")
 
 
 def test_the_same_model_offers_nothing_and_goes_on_in_its_place(edited: Bench) -> None:
@@ -62,7 +62,7 @@ def test_the_same_model_offers_nothing_and_goes_on_in_its_place(edited: Bench) -
     edited.again("one", text=TEXT)
     assert not offered(edited), "the kernel knows better"
     edited.again("two")
-    edited.page.get_by_role("button", name="Take it back").click()
+    edited.page.get_by_role("button", name="Restore it").click()
     assert text_of(edited) == TEXT + "# mine!"
 
 
@@ -73,7 +73,7 @@ def test_what_is_forgotten_is_not_offered_again(edited: Bench) -> None:
     edited.page.get_by_role("button", name="Forget").click()
     assert not offered(edited)
     assert text_of(edited) == TEXT
-    edited.said("The text from before is forgotten.")
+    edited.said("The earlier text was discarded.")
     edited.again("three")
     assert not offered(edited)
 
@@ -83,7 +83,7 @@ def test_a_newer_edit_takes_the_place_of_the_kept_text(edited: Bench) -> None:
     append(edited, "# newer")
     assert not offered(edited)
     edited.again("three")
-    edited.page.get_by_role("button", name="Take it back").click()
+    edited.page.get_by_role("button", name="Restore it").click()
     assert text_of(edited) == TEXT + "# newer"
 
 
@@ -95,7 +95,7 @@ def test_texts_of_the_kernel_are_kept_and_another_source_finds_nothing(edited: B
     edited.again("three", text=TEXT + "# dragged")
     assert not offered(edited)
     edited.again("four")
-    edited.page.get_by_role("button", name="Take it back").click()
+    edited.page.get_by_role("button", name="Restore it").click()
     assert text_of(edited) == TEXT + "# dragged"
 
 
@@ -130,6 +130,6 @@ def test_where_nothing_may_be_kept_the_banner_says_copy(page: Any) -> None:
     bench.frame(design())
     append(bench, "#")
     page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
-    late = "No answer from the kernel: run the cell again to go on; copy your text before"
+    late = "No answer from the kernel: run the cell again to go on; copy your text first"
     assert page.locator(".tm-banner [role=alert]").inner_text() == late
     assert bench.wrong == []

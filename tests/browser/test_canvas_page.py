@@ -274,7 +274,7 @@ def test_without_an_answer_a_banner_says_so_and_the_text_is_sent_again(drawn: Be
     page.keyboard.type("#")
     assert page.locator(".tm-banner").is_hidden()
     page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
-    late = "No answer from the kernel: run the cell again to go on; your text is kept in this page"
+    late = "No answer from the kernel: run the cell again to go on; your text is saved in this page"
     assert page.locator(".tm-banner [role=alert]").inner_text() == late
     page.keyboard.type("x")
     assert page.locator(".tm-area").input_value() == TEXT + "#x"

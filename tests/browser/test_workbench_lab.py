@@ -145,7 +145,7 @@ def test_after_a_restart_the_text_is_taken_back_and_nothing_is_out_of_place(benc
     run_all(bench)
     wait_until_drawn(bench)
     shot("lab-text-kept")
-    bench.get_by_role("button", name="Take it back").click()
+    bench.get_by_role("button", name="Restore it").click()
     expect(root(bench)).to_have_attribute("data-icon", "nigh")
     expect(editor(bench)).to_have_value(typed)
     save(bench)

@@ -142,7 +142,7 @@ def test_without_a_place_it_is_compiled_in_memory_and_said_once(sources: Path, t
     (tmp_path / "file").write_text("")
     value, hits, said = run(sources, tmp_path / "file" / "cache")
     assert (value, hits) == (7.0, 0)
-    assert said.startswith("compiled code is not kept, so that every run compiles it anew: ")
+    assert said.startswith("compiled code cannot be stored, so that every run compiles it again: ")
     assert len(said.splitlines()) == 1
 
 

@@ -31,7 +31,7 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
         "TEST_S": c_float(must.test_s),
         "TEST_FALL_K": c_float(must.test_fall_K),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
-        "VERDICTS": "\n".join(f"   {one.file}: {one.verdict}." for one in drives),
+        "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
     return {PLAYER: filled(PLAYER, numbers)}
 

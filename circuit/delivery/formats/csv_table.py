@@ -32,8 +32,8 @@ def write(delivery: DeliveredDrive) -> bytes:
     A device with more than 10,000 updates a second gets a row for each change of the command.
     """
     samples = samples_of(delivery)
-    kept = samples.rows()
-    times, command, codes = samples.time_s[kept], samples.command[kept], samples.codes[kept]
+    row_numbers = samples.rows()
+    times, command, codes = samples.time_s[row_numbers], samples.command[row_numbers], samples.codes[row_numbers]
     current = None if delivery.device.driven_by == "duty" else delivery.delivered.at(times)
     marks = marks_of(delivery, times)
     text = io.StringIO()

@@ -29,7 +29,17 @@ DEVICES_OF_WINDOWS = frozenset(
 
 
 class FormatError(InputError):
-    """A drive that cannot be written in a format; the text says why and what to use instead."""
+    """A drive that cannot be written in a format; the text says why and what to use instead.
+
+    Examples
+    --------
+    >>> from thermicon.circuit.delivery.formats import load_format
+    >>> try:
+    ...     load_format("cvs")
+    ... except FormatError as problem:
+    ...     print(problem)
+    cvs: no such format; ...
+    """
 
 
 @dataclass(frozen=True, slots=True)

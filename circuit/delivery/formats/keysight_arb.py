@@ -63,7 +63,7 @@ FORMAT = Format(
     takes=("volts",),
     device="keysight-33500b",
     source="public writers that agree: writeArbFile.m (Montana Tech, 2018), arbTo33500 (Agilent, N. Forcier)",
-    how="load it by MMEMory:LOAD:DATA or from a stick, output load high impedance, one cycle on a trigger",
+    how="load it by MMEMory:LOAD:DATA or from a USB stick, output load high impedance, one cycle on a trigger",
     write=write,
     columns=columns,
 )

@@ -48,12 +48,12 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     text = io.StringIO()
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
-    for one, times_by_name in zip(drives, marks, strict=True):
-        row = {"icon": one.delivery.icon.name, "drive_file": one.file, "sidecar_file": one.sidecar}
-        row |= {"safety": one.safety}
+    for played, times_by_name in zip(drives, marks, strict=True):
+        row = {"icon": played.delivery.icon.name, "drive_file": played.file, "sidecar_file": played.sidecar}
+        row |= {"safety": played.safety}
         row |= {
             name: f"{value:.9g}"
-            for name, value in zip(JUDGED[1:], (one.recovery_s, one.shortest_pause_s), strict=True)
+            for name, value in zip(JUDGED[1:], (played.recovery_s, played.shortest_pause_s), strict=True)
             if value is not None
         }
         for name, times in times_by_name.items():
@@ -95,10 +95,10 @@ def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
 
 def _marks(delivery: DeliveredDrive) -> dict[str, list[float]]:
     """Times in s of every event, by its name."""
-    found: dict[str, list[float]] = {}
+    columns: dict[str, list[float]] = {}
     for event in events_in(delivery):
-        found.setdefault(event.name, []).append(event.time_s)
-    return found
+        columns.setdefault(event.name, []).append(event.time_s)
+    return columns
 
 
 def _columns(name: str, count: int) -> list[str]:

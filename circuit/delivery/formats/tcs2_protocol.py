@@ -115,7 +115,7 @@ FORMAT = Format(
     takes=PLAYS_SETPOINTS,
     device="qst-tcs2",
     source="pytcsii (mpcoll), tcsii_protocol_generator",
-    how="copy it to the instrument on a stick; it waits for a trigger",
+    how="copy it to the instrument on a USB stick; it waits for a trigger",
     write=write,
     columns=columns,
 )

@@ -193,7 +193,7 @@ def test_a_batch_runs_the_loop_too() -> None:
     skin = [icon("cool by 3 °C at 1 °C/s\nhold for 5 s", "skin")]
     replayed = simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, probes=("skin_C",))
     assert np.abs(replayed["skin_C"][0, 0] - simulate(skin[0], LOOP, tail_s=1.0).skin_C).max() < 1e-4
-    with pytest.raises(RigError, match="cannot be solved anew through a PID loop, which sees the display alone"):
+    with pytest.raises(RigError, match="cannot be solved again through a PID loop, which measures only the display"):
         simulate_many(skin, [LOOP], nominal=LOOP, end_s=9.0, tracking="ideal")
     with pytest.raises(RigError, match="must all have a controller, or none"):
         simulate_many(cues, [Rig.load("thenar")], nominal=LOOP, end_s=9.0)

@@ -78,7 +78,7 @@ def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be()
     step, weak = load_library("six-icons")["cooling-step"], RIG.with_(**{"driver.transconductance_A_per_V": 0.1})
     found = deliver(step, weak, Device.load("dac-16"))
     assert found.device_warnings == (
-        "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design asks for up to "
+        "dac-16 plays −1 … 1 A (−10 … 10 V through driver.transconductance_A_per_V = 0.1), the design needs up to "
         "1.11 A; raise that to 0.12 if the current source can, or use a device of more volts",
     )
     assert found.delivered.current_A.max() <= 1.0
@@ -99,7 +99,7 @@ def test_the_default_converter_gives_every_shipped_rig_all_that_its_driver_can(n
 def test_a_slew_rate_holds_the_command_back() -> None:
     found = deliver(STEP, RIG, changed(Device.load("dac-16"), "slew rate", value=10.0))
     assert np.abs(np.diff(samples(found).command)).max() <= 0.1 + 1e-3
-    assert found.device_warnings == ("dac-16: its slew rate of 10 V/s holds the command back",)
+    assert found.device_warnings == ("dac-16: its slew rate of 10 V/s limits the command",)
 
 
 @pytest.mark.parametrize(
@@ -250,7 +250,7 @@ class TestSetpoints:
         found = deliver(STEP, RIG, self.THERMODE)
         assert (found.lead_s, found.end_s, found.rate_Hz, found.drives) == (0.0, 8.0, 100.0, None)
         assert not found.trace.has_current
-        with pytest.raises(DeviceError, match=r"qst-tcs2 is a thermode: it shows temperatures, and no current of it"):
+        with pytest.raises(DeviceError, match=r"qst-tcs2 is a thermode: its current is not known"):
             found.delivered  # noqa: B018
         icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
         words = r"qst-tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
@@ -268,7 +268,7 @@ class TestSetpoints:
         text = "cue 1\nset s { control skin\n baseline 32 °C }\nicon a { cool by 30 °C at 9 °C/s\n hold for 2 s }\n"
         outcome = deliver(parse(text)["a"], RIG, self.THERMODE).outcome
         assert outcome is not None
-        assert "held back by the range of the thermode" in str(outcome.reason)
+        assert "limited by the range of the thermode" in str(outcome.reason)
 
     def test_cooling_and_warming_of_equal_shape_take_equal_times(self) -> None:
         text = (
@@ -314,7 +314,7 @@ class TestSetpoints:
         assert (found.cue_s, found.closing) == (4.0, 2)
         assert closed(self.THERMODE, found) == replace(found, closing=0)
         full = Setpoints(0.01, 0.1, 320, tuple((10, 300) for _ in range(999)))
-        with pytest.raises(DeviceError, match=r"1000 segments are needed with the way back .*, it takes 999"):
+        with pytest.raises(DeviceError, match=r"1000 segments are needed with the return to baseline; it takes 999"):
             closed(self.THERMODE, full)
 
     def test_a_skin_cue_ends_where_it_began_and_may_be_played_again(self) -> None:

@@ -88,7 +88,7 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
         (('unit = "Hz"', 'unit = "kHz"'), r"record\.2 \(update rate\): unit = 'kHz': must be Hz"),
         (('"update rate"', '"updat rate"'), r"record\.2 \(updat rate\): no such quantity; did you mean update rate"),
         (('"update rate"', '"slew rate"'), r"a device driven by amperes needs a record of its update rate, in Hz"),
-        (('"update rate"\nunit = "Hz"', '"resolution"\nunit = "bit"'), r"record\.2 \(resolution\): is there twice"),
+        (('"update rate"\nunit = "Hz"', '"resolution"\nunit = "bit"'), r"record\.2 \(resolution\): appears twice"),
         (
             ("low = -2.0", "low = 2.5"),
             r"^[^\n]*record\.0 \(output range\): low = 2\.5 A is not below high = 2 A; swap them$",
@@ -137,8 +137,8 @@ SLEW = '\n[[record]]\nquantity = "slew rate"\nunit = "{}"\nvalue = 5\nsource = "
         ("amperes", "A", "V/s", r"record\.3 \(slew rate\): unit = 'V/s': must be A/s for a device"),
         (
             "duty", "A", "A/s",
-            r"record\.3 \(slew rate\): says nothing of a device driven by duty, only of one driven by volts or amperes"
-            r"; remove it$",
+            r"record\.3 \(slew rate\): does not apply to a device driven by duty, only to one driven by volts or "
+            r"amperes; remove it$",
         ),
     ],
 )  # fmt: skip

@@ -117,7 +117,7 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
         found.counts[one.verdict.colour] += 1
         if one not in safe:
             found.counts["refused: " + str(one.verdict.reason).split(" reaches")[0]] += 1
-            if "played again and again" in str(one.verdict.reason):
+            if "repeated plays" in str(one.verdict.reason):
                 found.counts["refused for repetition"] += 1
     try:
         if not safe:

@@ -74,7 +74,7 @@ def test_what_is_not_reached_is_refused_with_the_reason_and_what_it_takes() -> N
     (refusal,) = ready(rig=rig).refusals
     assert str(refusal).startswith("NOT reached: misses its target by ")
     assert refusal.forcible
-    taken = float(re.search(r"it takes ±([\d.]+) A, and driver.current_limit_A is 0.5 A: ask for ", str(refusal))[1])  # type: ignore[index]
+    taken = float(re.search(r"it takes ±([\d.]+) A, and driver.current_limit_A is 0.5 A: use ", str(refusal))[1])  # type: ignore[index]
     enough, less = (
         prepare(SIX["cooling-step"], RIG.with_(**{"driver.current_limit_A": a}), Device.load("dac-16"), CSV).refusals
         for a in (taken, taken - 0.05)
@@ -88,7 +88,7 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
     (refusal,) = one.refusals
     assert re.match(
         r"NOT reached: dac-16 plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
-        r"design asks for up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
+        r"design needs up to 1.11 A; raise that to 0.12 if .* With that it misses its target by ",
         str(refusal),
     )
     assert one.warnings == ()
@@ -101,7 +101,7 @@ def test_where_rig_and_device_are_too_weak_one_sentence_names_both() -> None:
     rig = RIG.with_(**{"driver.current_limit_A": 0.5, "driver.transconductance_A_per_V": 0.02})
     one = ready(rig=rig)
     (refusal,) = one.refusals
-    assert "driver.current_limit_A is 0.5 A and dac-16 plays at most 0.2 A: ask for " in str(refusal)
+    assert "driver.current_limit_A is 0.5 A and dac-16 plays at most 0.2 A: use " in str(refusal)
     assert not any("dac-16" in text for text in one.warnings)
 
 

@@ -101,7 +101,7 @@ class TestRefusals:
         assert refusal.count("rate of skin temperature") == 1
         assert "; also beyond hard limits: " in refusal
         assert "skin surface 4" in refusal
-        assert refusal.endswith("; ask for a slower change, a shorter hold, a smaller or shorter change")
+        assert refusal.endswith("; use a slower change, a shorter hold, a smaller or shorter change")
 
     def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
         icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")

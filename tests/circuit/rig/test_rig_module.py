@@ -134,7 +134,7 @@ def test_what_stays_from_another_module_is_said() -> None:
     wide = said("CP1.0-127-06L", **{"contact.area_cm2": 12})
     assert "contact.area_cm2 = 12 cm² is more than its face of 9 cm²; set contact.area_cm2 to at most that" in wide
     small = said("1MD04-003-08")
-    assert "its plates are not on record, so those of the rig stay, 2.6 (hot) and 2.6 J/K (cold); set " in small
+    assert "its plates are unknown, so the rig keeps its own, 2.6 (hot) and 2.6 J/K (cold); set " in small
     assert "its face is not on record, and contact.area_cm2 stays the 9 cm²" in small
     assert "driver.current_limit_A = 1.5 A is above its Imax of 1 A" in small
     known = {"module.hot_plate_J_per_K": 0.1, "module.cold_plate_J_per_K": 0.1, "contact.area_cm2": 0.2}
@@ -210,7 +210,7 @@ def test_a_sheet_that_is_not_there_is_answered_with_those_that_are() -> None:
 
 
 def test_a_file_that_names_no_module_or_one_twice(tmp_path: Path) -> None:
-    with pytest.raises(RigError, match=r"module: nothing says which module; give seebeck_V_per_K, .* shipped module"):
+    with pytest.raises(RigError, match=r"module: no module is stated; give seebeck_V_per_K, .* shipped module"):
         Rig.load(_file(tmp_path, ""))
     with pytest.raises(RigError, match=r"seebeck_V_per_K and name are two ways of giving it; keep one"):
         Rig.load(_file(tmp_path, GIVEN + 'name = "CP60340"\n'))

@@ -74,7 +74,7 @@ def test_a_ramp_rate_and_a_range_hold_it_back_and_say_so() -> None:
     assert outcome is not None
     assert not outcome.reached
     assert outcome.reason is not None
-    assert "held back by the ramp rate of the thermode from 0.00 s" in outcome.reason
+    assert "limited by the ramp rate of the thermode from 0.00 s" in outcome.reason
     narrow = simulate(STEP, RIG.with_(**{"thermode.lowest_C": 28.0}))
     assert narrow.display_C.min() >= 28.0
     assert narrow.reason is not None

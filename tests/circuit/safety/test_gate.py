@@ -192,7 +192,7 @@ def test_text_and_dictionary_tell_all() -> None:
     assert (found.reason, found.cautions, found.safe) == (None, (), True)
     lines = found.text.splitlines()
     assert lines[0].startswith("safety GREEN: 1 s on thenar and 60 s after, in 195 scenarios (contact resistance ±30 %")
-    assert lines[1].startswith("played again and again: green, ")
+    assert lines[1].startswith("repeated plays: green, ")
     assert lines[2].split() == ["rule", "worst", "limit", "at", "in", "source"]
     assert sum(line.startswith("ok ") for line in lines) == len(found.checks) == len(Limits.shipped().rules)
     assert lines[-1] == WHAT_IT_IS_NOT

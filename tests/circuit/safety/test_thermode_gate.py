@@ -8,7 +8,7 @@ from thermicon.circuit.arrays import Array
 from thermicon.circuit.packing.worstcase import ways_of, worst_case, worst_cases
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.safety.thermode import Shown, Under
+from thermicon.circuit.safety.thermode import DisplayCourse, Under
 from thermicon.circuit.safety.thermode_gate import gate_shown
 from thermicon.icons import parse
 
@@ -18,9 +18,9 @@ STEP_S = 0.01
 STUCK = (0.1, 60.0)
 
 
-def shown(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> Shown:
+def shown(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> DisplayCourse:
     rows = np.arange(round(times[-1] / STEP_S) + 1) * STEP_S
-    return Shown(way, STEP_S, np.interp(rows, times, levels), settling_s)
+    return DisplayCourse(way, STEP_S, np.interp(rows, times, levels), settling_s)
 
 
 COOL = shown([32, 26, 26, 32], [0, 1, 3, 4])

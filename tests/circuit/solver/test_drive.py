@@ -60,7 +60,7 @@ def test_a_bad_drive_file_says_where(tmp_path: Path, text: str, words: str) -> N
 def test_a_drive_past_the_driver_only_warns() -> None:
     trace = simulate_current(Drive([0, 1, 2, 3], [0, 0, 3, 3]), Rig.load("thenar"))
     asks, needs = trace.beyond
-    assert asks == "the drive asks for 3 A at 2.00 s; this driver gives -1.5 … 1.5 A (passed from 1.51 s)"
+    assert asks == "the drive needs 3 A at 2.00 s; this driver gives -1.5 … 1.5 A (passed from 1.51 s)"
     assert needs.startswith("the drive needs 20.")
     assert needs.endswith("this driver gives at most 15 V (passed from 1.77 s)")
     assert not trace.reachable
@@ -70,7 +70,7 @@ def test_a_drive_past_the_driver_only_warns() -> None:
 
 def test_a_run_that_is_not_physical_is_refused() -> None:
     with pytest.raises(
-        RigError, match=r"leaves what is physical .* under 1e\+05 A; use less current, or check the rig"
+        RigError, match=r"leaves the physical range .* under 1e\+05 A; use less current, or check the rig"
     ):
         simulate_current(Drive([0, 1, 2], [0, 1e5, 1e5], held=True), Rig.load("thenar"))
 

@@ -57,7 +57,7 @@ def test_a_miss_says_how_much_when_and_why() -> None:
     assert trace.outcome.largest_miss_K == pytest.approx(1.31, abs=0.02)
     assert trace.outcome.largest_miss_s == pytest.approx(2.0, abs=0.02)
     assert trace.outcome.reason == (
-        "misses its target by 1.31 K at 2.00 s, held back by the current limit from 0.00 s "
+        "misses its target by 1.31 K at 2.00 s, limited by the current limit from 0.00 s "
         "and lower current limit from 6.00 s"
     )
     for limit, miss in ((SHANI.driver.current_max_A, 2.12), (1.5, 0.73)):

@@ -115,7 +115,7 @@ def test_reached_has_a_stated_tolerance() -> None:
     assert judge(target, np.full(100, -0.1), 0.01, ()).reached
     brief[0] = -0.26
     outcome = judge(target, brief, 0.01, (("current limit", 0.0),))
-    assert outcome.reason == "misses its target by 0.26 K at 0.01 s, held back by the current limit from 0.00 s"
+    assert outcome.reason == "misses its target by 0.26 K at 0.01 s, limited by the current limit from 0.00 s"
 
 
 def test_every_limit_has_a_source() -> None:

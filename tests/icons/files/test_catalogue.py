@@ -48,7 +48,7 @@ def test_the_codes_without_an_example_are_those_of_the_door(tmp_path: Path) -> N
 
 def test_explain_gives_the_section() -> None:
     text = explain(" e102 ")
-    assert text.startswith("E102 missing unit\nEvery number has a unit")
+    assert text.startswith("E102 missing unit\nEvery number needs a unit")
     assert "\n  alerts.cue:3:11  E102 missing unit\n" in text
     assert explain("102") == text
     assert "Split the set" in explain("E004")

@@ -70,7 +70,7 @@ FAMILY = '"parameters": [{"name": "x", "unit": "K", "values": [1, 2]}], '
         ),
         (
             '{"do": "cool", "by_K": "6 K", "duration_s": 1}',
-            f'{PATH}.by_K: "6 K": a number is needed in K|without quotat',
+            f'{PATH}.by_K: "6 K": a number is needed in K|no quotation',
         ),
         ('{"do": "cool", "by_K": true, "duration_s": 1}', "true: a number is needed in K"),
         ('{"do": "cool", "by_K": -6, "duration_s": 1}', f"E202|{PATH}.by_K: -6: a change has a positive size"),
@@ -158,7 +158,7 @@ def test_what_a_statement_cannot_be(statement: str, words: str) -> None:
         (
             FAMILY.replace("2]", "1]"),
             '{"do": "warm", "by_K": {"parameter": "x"}, "duration_s": 1}',
-            "E213|icons[0].parameters[0].values: 1 stands in this list already",
+            "E213|icons[0].parameters[0].values: 1 is already in this list",
         ),
         (FAMILY.replace("K", "kelvin"), '{"do": "hold", "duration_s": 1}', "E103|'kelvin' is not a unit"),
         (
@@ -174,7 +174,7 @@ def test_what_a_statement_cannot_be(statement: str, words: str) -> None:
         (
             FAMILY.replace("}]", '}, {"name": "x", "values": [1]}]'),
             '{"do": "warm", "by_K": {"parameter": "x"}, "duration_s": 1}',
-            'E213|"x" stands in this list already',
+            'E213|"x" is already in this list',
         ),
         (
             FAMILY.replace('"values": [1, 2]', '"low": 1, "high": 50000001, "step": 1').replace("K", "s"),
@@ -248,7 +248,7 @@ def test_icons_that_cannot_be_together() -> None:
     )
     text = f"{head}{family}, {icon.replace('NAME', 'p')}]}}"
     assert from_json(text.replace("PLAYED", "f_x=3"))["p"].corners().duration_s == 3
-    assert "this is none of them\n  play one of its members, such as f_x=2" in error(text.replace("PLAYED", "f_x=4"))
+    assert "this is not one of them\n  play one of its members, such as f_x=2" in error(text.replace("PLAYED", "f_x=4"))
     assert "f is a family of 2 icons" in error(text.replace("PLAYED", "f"))
     clash = icon.replace("NAME", "f_x=2").replace("PLAYED", "f_x=3")
     assert "E211 duplicate icon" in error(f"{head}{family}, {clash}]}}")

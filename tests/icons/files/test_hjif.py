@@ -165,7 +165,7 @@ def ids_of(icons: IconSet) -> list[str]:
 def test_shipped_sets_play_as_they_are_written(name: str) -> None:
     icons = load_library(name)
     if len(icons) > 128:
-        with pytest.raises(HjifError, match=r"128 icons a file at most \(profile Main, level 1\)"):
+        with pytest.raises(HjifError, match=r"128 icons per file at most \(profile Main, level 1\)"):
             to_hjif(icons)
     else:
         follow(icons)

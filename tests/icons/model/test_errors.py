@@ -129,7 +129,7 @@ def test_of_many_errors_a_hundred_are_shown() -> None:
         (b"", r"a\.cue  E005 empty file"),
         (" \n", r"E005 empty file\n  nothing but white space"),
         (b"cue 1\n\0", "E006 binary file\n  a zero byte at byte offset 6"),
-        ("cue 1\n\0", "E006 binary file\n  a zero byte stands on line 2"),
+        ("cue 1\n\0", "E006 binary file\n  a zero byte is on line 2"),
         (b"cue 1\n# caf\xe9\n", "E007 not UTF-8\n  byte 0xE9 at byte offset 11, on line 2"),
         ("cue 1 # \ud800", "E007 not UTF-8\n  half a character"),
         (b"#" * 250_001, "E004 file too large\n  250,001 bytes"),

@@ -125,7 +125,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: sawtooth(by_A=3, every=4, duration=4, starting="cool"), r"starting='cool'\): \"up\" or \"down\""),
         (lambda: triangle(by=3, every=4, duration=4, cut=1), r"triangle\(cut=1\): True or False is needed"),
         (lambda: triangle(by=3, every=0, duration=4), r"triangle\(every=0\): a time is positive"),
-        (lambda: repeat(3), r"repeat\(\) needs statements behind the count"),
+        (lambda: repeat(3), r"repeat\(\) needs statements after the count"),
         (lambda: repeat(2.5, hold(1)), r"repeat\(count=2.5\): 2.5 is not a positive whole number"),
         (lambda: repeat("3", hold(1)), r"repeat\(count='3'\): a number is needed$"),
         (lambda: repeat(3, [hold(1)]), r"repeat\(\): \[Hold.* is not a statement"),

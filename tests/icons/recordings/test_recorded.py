@@ -155,7 +155,7 @@ ROWS = "0,32\n1,31\n"
             "rec.csv:1",
             "target_C, display_C and skin_C are all temperatures\n  say which: --column target_C",
         ),
-        ("time_s,skin_C,time_s\n", "rec.csv:1", "the column time_s is there twice\n  rename or remove one of them"),
+        ("time_s,skin_C,time_s\n", "rec.csv:1", "the column time_s appears twice\n  rename or remove one of them"),
         ("time_s,skin_C\n0,00,32,5\n", "rec.csv:2", "4 cells, where the first line names 2\n  write decimal points"),
         (
             "time_s,skin_C\n0,32\n1\n",

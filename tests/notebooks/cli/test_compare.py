@@ -26,7 +26,7 @@ def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
     assert lines[:4] == [
         "cooling-step",
         "A  thenar: 8 s, reached (everywhere within 1 mK)",
-        "B  shani2021: 8 s, NOT reached: misses its target by 0.42 K at 2.00 s, held back",
+        "B  shani2021: 8 s, NOT reached: misses its target by 0.42 K at 2.00 s, limited",
         "by the current limit from 0.92 s",
     ]
     assert lines[5].split() == ["B", "−", "A", "largest", "at", "rms", "mean"]
@@ -154,7 +154,7 @@ LOGS = [
     ("time_s,skin_C\n0,30\n\n2,31\n1,31\n", ":5: time_s 1 s does not come after 2 s; times must increase"),
     ("time_s,skin_C\n0,30\n,31\n", ":3: time_s is empty"),
     ("time_s,skin_C\n0,30\n", "1 rows; at least two are needed"),
-    ("time_s,skin_C,skin_C\n0,30,1\n1,30,1\n", ":1: the column skin_C is there twice; remove one of them"),
+    ("time_s,skin_C,skin_C\n0,30,1\n1,30,1\n", ":1: the column skin_C appears twice; remove one of them"),
     ("time_s,display_C\n0,30\n1,30\n", "no column with values in both: bad.csv has display_C; good.csv has skin_C"),
     ("time_s,skin_C\n5,30\n9,30\n", "no two rows at a common time: bad.csv 5–9 s and good.csv 0–2 s; shift time_s"),
     ("time_s,skin_C\n0,30,4,5\n1,30\n2,3,4,5,6\n", "not a table of comma-separated values"),

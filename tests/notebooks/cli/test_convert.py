@@ -119,7 +119,7 @@ def test_a_recording_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
         (("two.cue", "-o", "a.json", "--control", "skin"), "'--control': applies only to a recording, a .csv file", 2),
         (("a.csv", "-o", "a.json", "--tolerance", "0"), "'--tolerance': 0 is not a difference in K above 0", 2),
         (("a.csv", "-o", "a.json", "--control", "amps"), "'--control': 'amps' is not one of skin, display", 2),
-        (("search-space", "-o", "a.hjif"), "HJIF takes 128 icons a file at most", 1),
+        (("search-space", "-o", "a.hjif"), "HJIF takes 128 icons per file at most", 1),
         (
             ("bare.cue", "-o", "a.hjif"),
             "icon a has no baseline, from which HJIF counts temperatures; say it in the set",

@@ -43,7 +43,7 @@ def test_the_notebooks_are_put_into_a_folder(cli: Cli, tmp_path: Path) -> None:
     assert ALL[0] == FIRST
     assert "workbench.ipynb" in ALL
     again = cli("lab", tmp_path / "mine", "--files-only")
-    assert again.stderr == f"{tmp_path / 'mine'}: nothing to write, all notebooks are there\n"
+    assert again.stderr == f"{tmp_path / 'mine'}: nothing to write, all notebooks exist\n"
 
 
 def test_without_a_folder_they_get_one_of_their_own(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,7 +67,7 @@ def test_what_was_only_run_is_kept_with_its_outputs(cli: Cli, tmp_path: Path) ->
     cli("lab", tmp_path, "--files-only")
     change(tmp_path / FIRST, "an output", "outputs")
     before = (tmp_path / FIRST).read_bytes()
-    assert cli("lab", tmp_path, "--files-only").stderr.endswith("nothing to write, all notebooks are there\n")
+    assert cli("lab", tmp_path, "--files-only").stderr.endswith("nothing to write, all notebooks exist\n")
     assert (tmp_path / FIRST).read_bytes() == before
 
 
@@ -111,7 +111,7 @@ def test_an_unwritable_folder_is_told(cli: Cli, tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     said = cli("lab", tmp_path, "--files-only")
     assert said.exit_code == 1
-    assert "is not writable for you" in said.stderr
+    assert "is not writable" in said.stderr
 
 
 def test_a_full_disk_leaves_nothing(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,7 +137,7 @@ def test_without_voila_the_cure_is_told_and_nothing_written(
 
 @pytest.mark.parametrize(
     ("words", "told"),
-    [(("--page", "--files-only"), "there is no page to serve"), (("--port", "70000"), "70000 is outside 1 to 65535")],
+    [(("--page", "--files-only"), "no page can be served"), (("--port", "70000"), "70000 is outside 1 to 65535")],
 )
 def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple[str, ...], told: str) -> None:
     said = cli("lab", tmp_path / "mine", *words)

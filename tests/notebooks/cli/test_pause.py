@@ -48,7 +48,7 @@ class TestCommand:
         assert said.exit_code == 3
         (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]
         assert line.startswith("refused: glow is NOT SAFE: skin surface reaches 4")
-        assert "played again and again with 5 s of pause" in line
+        assert "repeated plays with 5 s of pause" in line
         told = re.search(r"the shortest safe pause is (\S+) s \(--pause (\S+)\)$", line)
         assert told is not None
         assert told[1] == told[2]
@@ -119,7 +119,7 @@ class TestWords:
 
     def test_a_set_in_two_lines(self, glow: PreparedExport) -> None:
         (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
-        assert (again, hardware) == ("played again and again, in any order", "the hardware must provide")
+        assert (again, hardware) == ("repeated plays, in any order", "the hardware must provide")
         assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
         assert re.search(r"; back within 0.1 K of rest after \S+ s \(dip\) to \S+ s \(glow\)$", repeated)
         strictest = min((verdict(glow, k).demands.watchdog_s, name) for k, name in enumerate(("glow", "dip")))
@@ -145,5 +145,5 @@ class TestWords:
         source = verdict(ready).checks[0].source
         assert shown.count(f"1 {source}") == 1
         delivered = delivered_html(ready)
-        assert "<th>played again and again</th><td>green, 12 plays" in delivered
+        assert "<th>repeated plays</th><td>green, 12 plays" in delivered
         assert delivered.count("the hardware must provide") == 1

@@ -165,7 +165,7 @@ def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Pat
     )
     words = " ".join(cli("rank", path, "--people", 1).stdout.split())
     assert "burn is NOT SAFE and not reached: " in words
-    assert "jolt is not reached: the drive asks for 1.6 A" in words
+    assert "jolt is not reached: the drive needs 1.6 A" in words
 
 
 def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ class TestWell:
             {**pair, name: changed(pair[name], rig={**rig, "content_hash": known, "changes": []}, rig_sha256=known)}
         )
         assert found.well
-        assert "a rig called thenar that is not the shipped one of today" in str(found.findings[0])
+        assert "a rig called thenar that differs from the rig that is shipped now" in str(found.findings[0])
 
 
 class TestTampered:
@@ -146,13 +146,13 @@ class TestTampered:
     def test_any_file_missing(self, pair: dict[str, bytes]) -> None:
         for name in pair:
             files = {other: content for other, content in pair.items() if other != name}
-            words = "has no sidecar, so nothing says what it is" if name.endswith(".json") else f"{name}: is missing"
+            words = "has no sidecar, so its content is unknown" if name.endswith(".json") else f"{name}: is missing"
             assert words in said(files)
 
     def test_sidecars_swapped(self, pair: dict[str, bytes]) -> None:
         one, other = "warming-step.json", "cooling-step.json"
         text = said({**pair, one: pair[other], other: pair[one]})
-        assert "warming-step.json: describes cooling-step.csv, which this name does not go with; rename it" in text
+        assert "warming-step.json: describes cooling-step.csv, which does not match this name; rename it" in text
 
     def test_drives_swapped(self, pair: dict[str, bytes]) -> None:
         one, other = "warming-step.csv", "cooling-step.csv"
@@ -168,7 +168,7 @@ class TestTampered:
     def test_a_pair_renamed_together(self, pair: dict[str, bytes]) -> None:
         files = dict(pair)
         files["other.csv"], files["other.json"] = files.pop("warming-step.csv"), files.pop("warming-step.json")
-        assert "other.json: describes warming-step.csv, which this name does not go with" in said(files)
+        assert "other.json: describes warming-step.csv, which does not match this name" in said(files)
 
     def test_a_copy_of_a_sidecar(self, pair: dict[str, bytes]) -> None:
         files = {**pair, "warming-step.csv.json": pair["warming-step.json"]}
@@ -187,11 +187,11 @@ class TestTampered:
     @pytest.mark.parametrize(
         ("keys", "words"),
         [
-            ({"rig_sha256": "0"}, r"holds another rig than the one of its digest \(rig_sha256\)"),
-            ({"device_sha256": "0"}, "holds another device than the one of its digest"),
-            ({"device": {"name": "x"}}, "holds another device than the one of its digest"),
+            ({"rig_sha256": "0"}, r"contains another rig than the one of its digest \(rig_sha256\)"),
+            ({"device_sha256": "0"}, "contains another device than the one of its digest"),
+            ({"device": {"name": "x"}}, "contains another device than the one of its digest"),
             ({"icon": None}, "holds no icon"),
-            ({"drive_sha256": None}, "holds no digest of warming-step.csv; export the icon again"),
+            ({"drive_sha256": None}, "contains no digest of warming-step.csv; export the icon again"),
             ({"rig": {"document": {}}}, "holds another rig"),
         ],
     )
@@ -201,7 +201,7 @@ class TestTampered:
     def test_another_icon_under_the_hash(self, pair: dict[str, bytes]) -> None:
         icon = json.loads(pair["warming-step.json"])["icon"]
         icon["text"] = icon["text"].replace("4 °C", "5 °C")
-        assert "holds another icon than the one of its content_hash" in said(
+        assert "contains another icon than the one of its content_hash" in said(
             {**pair, "warming-step.json": changed(pair["warming-step.json"], icon=icon)}
         )
 
@@ -252,7 +252,7 @@ class TestCommand:
         assert done.exit_code == 0, done.stderr
         assert "warming-step.csv   warming-step.json" in done.stdout
         assert f"{out}: 2 drives and their sidecars belong together" in " ".join(done.stdout.split())
-        assert done.stderr == "note: README.txt: does not belong to an export and is not looked into\n"
+        assert done.stderr == "note: README.txt: does not belong to an export and was not checked\n"
 
     def test_what_is_wrong_is_named_with_the_cure(self, cli: Cli, out: Path) -> None:
         text = (out / "warming-step.csv").read_text()
@@ -317,7 +317,7 @@ class TestCommand:
         (tmp_path / ".out.thermicon-part" / "old").mkdir(parents=True)
         done = cli("export", "--verify", tmp_path / "out")
         assert done.exit_code == 1
-        assert "there is no such folder; an export was ended half way, and the next one into" in done.stderr
+        assert "there is no such folder; an export was interrupted, and the next one into" in done.stderr
 
 
 def test_verifying_is_quick(pair: dict[str, bytes]) -> None:

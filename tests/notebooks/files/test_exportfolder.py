@@ -118,9 +118,9 @@ class TestFolders:
     @pytest.mark.parametrize(
         ("prepare", "words"),
         [
-            (lambda at: (at / "sub").mkdir(), r"it holds a folder, sub, .*give a folder of its own, such as -o drives"),
-            (lambda at: (at / "link").symlink_to("a"), "it holds a link, link"),
-            (lambda at: os.mkfifo(at / "pipe"), "it holds a device or pipe, pipe"),
+            (lambda at: (at / "sub").mkdir(), r"it contains a folder, sub, .*give a folder of its own, such as -o"),
+            (lambda at: (at / "link").symlink_to("a"), "it contains a link, link"),
+            (lambda at: os.mkfifo(at / "pipe"), "it contains a device or pipe, pipe"),
         ],
     )
     def test_what_is_no_plain_file_is_told(self, tmp_path: Path, prepare: Callable[[Path], None], words: str) -> None:
@@ -183,7 +183,7 @@ class TestFiles:
 
     def test_a_drive_is_kept_unless_forced(self, tmp_path: Path) -> None:
         publish(drive("a", b"1"), tmp_path)
-        with pytest.raises(OutputError, match=r"a\.json and 1 more exists already and is kept; --force replaces it"):
+        with pytest.raises(OutputError, match=r"a\.json and 1 more already exists and was kept; --force replaces it"):
             publish(drive("a", b"2"), tmp_path)
         assert held(tmp_path) == drive("a", b"1")
         publish(drive("a", b"2"), tmp_path, replace=True)
@@ -204,7 +204,7 @@ class TestFiles:
     def test_an_older_drive_that_was_edited_does_not_go(self, tmp_path: Path) -> None:
         publish(drive("a", b"1"), tmp_path)
         (tmp_path / "a.csv").write_bytes(b"edited")
-        with pytest.raises(OutputError, match=r"a\.csv is not what its sidecar a\.json says any more"):
+        with pytest.raises(OutputError, match=r"a\.csv no longer matches its sidecar a\.json"):
             publish(drive("a", b"2", ".tdms"), tmp_path, replace=True)
         assert (tmp_path / "a.csv").read_bytes() == b"edited"
 
@@ -334,7 +334,7 @@ class TestTwoAtOnce:
         for turn, said in enumerate(race(tmp_path, 30, "same")):
             assert sorted(word == "done" for word in said) == [False, True], said
             loser = next(word for word in said if word != "done")
-            assert "exists already and is kept" in loser or "another export is writing into" in loser
+            assert "already exists and was kept" in loser or "another export is writing into" in loser
             winner = "xy"[said.index("done")]
             assert (tmp_path / f"out{turn}" / "a.csv").read_text() == winner
             assert json.loads((tmp_path / f"out{turn}" / "a.json").read_text())["drive_sha256"] == digest(
@@ -379,5 +379,5 @@ class TestTwoAtOnce:
         said = [run.communicate()[1] for run in runs]
         assert sorted(run.returncode for run in runs) == [0, 1]
         loser = next(text for run, text in zip(runs, said, strict=True) if run.returncode)
-        assert "exists already and is kept" in loser or "another export is writing into out" in loser
+        assert "already exists and was kept" in loser or "another export is writing into out" in loser
         assert len(names(tmp_path / "out")) == 2

@@ -138,7 +138,7 @@ def test_a_device_that_would_fill_the_memory_is_refused(tmp_path: Path) -> None:
     with pytest.raises(DeviceError, match="are 800,000,000 samples, at most 10,000,000 are computed; shorten the icon"):
         rate_of(fast, 100.0, 8.0)
     wide = device(tmp_path / "d.toml", least=1e9)
-    with pytest.raises(DeviceError, match="the fewest that it plays are 999,999,999 samples"):
+    with pytest.raises(DeviceError, match="the minimum that it plays are 999,999,999 samples"):
         deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), wide)
 
 

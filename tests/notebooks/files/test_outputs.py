@@ -65,7 +65,7 @@ def test_a_file_is_no_folder_for_figures(tmp_path: Path) -> None:
 def test_a_read_only_folder_is_told(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
-        with pytest.raises(OutputError, match="is not writable for you"):
+        with pytest.raises(OutputError, match="is not writable"):
             check_output(tmp_path / "out.csv", TRACE_SUFFIXES, "a trace")
     finally:
         tmp_path.chmod(0o700)

@@ -35,7 +35,7 @@ def test_all_are_there_with_their_bytes(tmp_path: Path) -> None:
 
 def test_what_is_there_is_kept(tmp_path: Path) -> None:
     (tmp_path / "b.csv").write_text("mine")
-    with pytest.raises(OutputError, match=r"b\.csv exists already and is kept; --force replaces it"):
+    with pytest.raises(OutputError, match=r"b\.csv already exists and was kept; --force replaces it"):
         write_together(FILES, tmp_path)
     assert names(tmp_path) == ["b.csv"]
     write_together(FILES, tmp_path, replace=True)

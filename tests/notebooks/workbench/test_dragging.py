@@ -17,7 +17,7 @@ HEAD = "cue 1\n"
 
 
 def text_of(body: str, head: str = HEAD) -> str:
-    """A text with one icon, one statement a line."""
+    """A text with one icon, one statement per line."""
     return f"{head}icon dip {{\n  {body}\n}}\n"
 
 
@@ -97,7 +97,7 @@ def test_in_a_repeat_all_rounds_follow_and_the_corner_comes_under_the_pointer() 
         ("cool by 4 °C over 2 s; total 2 s", 0, (3.0, 28.0), "total not kept: this icon lasts 3 s, not 2 s"),
         ("cool by 4 °C over 2 s; warm to 30 °C over 1 s", 0, (2.0, 31.0), "target on the wrong side"),
         ("cool by 4 °C over 2 s", 5, (2.0, 31.0), "dip has 1 corners now, so there is none to move at 6"),
-        ("cool by 4 °C over 2 s", 0, (float("nan"), 31.0), "a place to drag it to is missing"),
+        ("cool by 4 °C over 2 s", 0, (float("nan"), 31.0), "the message has no target position"),
     ],
 )
 def test_a_drag_that_cannot_be_is_refused_in_a_sentence(
@@ -131,7 +131,7 @@ def test_corners_of_a_played_icon_say_where_they_are_moved() -> None:
     handles = handles_of(parse(text)["two"])
     assert [(handle.line, handle.moves_time) for handle in handles] == [(3, True)] + 4 * [(3, False)]
     refused = drag(text, "two", 1, 3.0, 30.0).refused
-    assert refused == "this is played from dip; choose that icon to move its corners"
+    assert refused == "this is played from dip; select that icon to move its corners"
 
 
 def test_handles_of_a_long_repeat_are_capped() -> None:

@@ -84,8 +84,8 @@ def test_empty_cells_are_told(shell: InteractiveShell, capsys: pytest.CaptureFix
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("two-icons", "%%cue: 'two-icons' is no name for a variable; two_icons would do\nusage: %%cue [NAME] [--rig"),
-        ("class", "%%cue: 'class' is no name for a variable\nusage"),
+        ("two-icons", "%%cue: 'two-icons' is not a valid variable name; try two_icons\nusage: %%cue [NAME] [--rig"),
+        ("class", "%%cue: 'class' is not a valid variable name\nusage"),
         ("a b", "%%cue: unrecognized arguments: b\nusage"),
         ("--rigs x", "%%cue: unrecognized arguments: --rigs"),
         ("--rig", "%%cue: argument --rig: expected one argument\nusage"),
@@ -112,12 +112,12 @@ def test_a_rig_may_be_a_file_with_blanks_in_its_name(
     path = tmp_path / "my rig.toml"
     path.write_text(resources.files("thermicon.circuit").joinpath("rigs/thenar.toml").read_text(encoding="utf-8"))
     assert shell.run_cell(f'%%cue dips --rig "{path}"\n{GOOD}').success
-    assert "can do what dips asks for" in capsys.readouterr().out
+    assert "can hold every level of dips" in capsys.readouterr().out
 
 
 def test_a_rig_tells_what_it_cannot_do(shell: InteractiveShell, capsys: pytest.CaptureFixture[str]) -> None:
     shell.run_cell("%%cue --rig thenar\n" + GOOD)
-    assert "thenar can do what cues asks for, taken statically" in capsys.readouterr().out
+    assert "thenar can hold every level of cues (static check)" in capsys.readouterr().out
     result = shell.run_cell(
         "%%cue hot --rig thenar\nset { control current }\nicon hot { to 5 A at 1 A/s; return over 1 s }"
     )
@@ -135,7 +135,7 @@ def test_the_line_magic_shows_again(shell: InteractiveShell, capsys: pytest.Capt
     assert len(shell.run_cell("%cue six-icons").result) == 6
     assert "E001 no such file" in failed(shell, "%cue seven-icons", capsys)
     assert failed(shell, "%cue", capsys).startswith(
-        "%cue: say what to show: a variable, a shipped set or a file\nusage"
+        "%cue: name what to show: a variable, a shipped set or a file\nusage"
     )
 
 

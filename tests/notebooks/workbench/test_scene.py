@@ -122,7 +122,7 @@ def test_a_suggestion_taken_mends_its_line_and_no_other() -> None:
     [
         ("", "empty file: nothing but white space"),
         ("cue 1\n", "no icons: the file ends without an icon"),
-        ("\0", "binary file: a zero byte stands on line 1"),
+        ("\0", "binary file: a zero byte is on line 1"),
     ],
 )
 def test_a_text_with_nothing_in_it_is_a_scene_that_says_so(text: str, headline: str, rig: Rig) -> None:
@@ -145,7 +145,7 @@ def test_an_icon_that_is_renamed_is_followed(dip: Scene, rig: Rig) -> None:
     before = scene(two, rig, "rise")
     made = scene(two.replace("rise", "swell"), rig, "rise", before=before)
     assert made.icon == "swell"
-    assert made.notes[0] == "rise is called swell now"
+    assert made.notes[0] == "rise is now called swell"
     gone = scene(DIP, rig, "rise", before=before)
     assert gone.icon == "dip"
     assert gone.notes[0] == "no icon is called rise; dip is shown"
@@ -172,7 +172,7 @@ def test_what_is_not_reached_says_why_and_when(rig: Rig) -> None:
     made = scene("cue 1\nicon deep { cool by 9 °C at 10 °C/s; hold for 4 s; return at 1 °C/s }\n", rig)
     assert made.drawing is not None
     assert made.notes[0].startswith("deep is not reached: it misses its target by ")
-    assert made.notes[0].endswith("held back by the current limit from 0.00 s")
+    assert made.notes[0].endswith("limited by the current limit from 0.00 s")
     (missed,) = made.drawing.missed
     assert missed.label == "unreachable: current limit"
     assert missed.from_s < 0.1
@@ -195,7 +195,7 @@ def test_a_current_beyond_the_driver_is_not_played_as_written(rig: Rig) -> None:
     text = "cue 1\nset { control current }\nicon push { to 2 A over 1 s; hold for 1 s; return over 1 s }\n"
     made = scene(text, rig)
     assert made.drawing is not None
-    assert made.notes[0].startswith("push is not played as written: the drive asks for 2 A at 1.00 s")
+    assert made.notes[0].startswith("push is not played as written: the drive needs 2 A at 1.00 s")
     (span,) = made.drawing.missed
     assert span.from_s == pytest.approx(0.74, abs=0.03)
     assert span.label == "unreachable: driver's limits"
@@ -272,4 +272,4 @@ def test_whatever_is_typed_on_the_way_is_a_scene(name: str, rig: Rig) -> None:
 
 def test_a_stroke_behind_a_parameter_is_an_error_and_no_crash(rig: Rig) -> None:
     made = scene("cue 1\nicon dip(size in [1, 2] K) {\n  cool by size/\n  return over 2 s\n}\n", rig)
-    assert made.troubles[0].headline == 'number expected: "size/" is no number: there is no arithmetic'
+    assert made.troubles[0].headline == 'number expected: "size/" is not a number: there is no arithmetic'

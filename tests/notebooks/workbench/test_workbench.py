@@ -138,7 +138,7 @@ def test_another_icon_is_shown_and_an_unknown_one_is_said(bench: Workbench, send
     [{"type": "nonsense"}, {"type": "drag"}, {"type": "drag", "handle": "x"}, {"type": "text", "text": None}, {}],
 )
 def test_a_message_that_makes_no_sense_is_a_note_and_the_page_goes_on(send: Send, message: dict[str, Any]) -> None:
-    assert "could not be done" in send(**message)["notes"][0]
+    assert "the action failed" in send(**message)["notes"][0]
     assert send(type="text", text=DIP)["troubles"] == []
 
 

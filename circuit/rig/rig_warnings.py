@@ -1,0 +1,60 @@
+"""What is unusual about a rig: sentences for people who did not write its file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from .modules import module_names, unlike_before
+from .uncertainty import tightened
+
+if TYPE_CHECKING:
+    from .rig import Rig
+
+LIVING_C = (28.0, 38.5)
+"""Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
+
+HIGH_RESTING_FLUX_W_PER_M2 = 150.0
+"""Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
+
+
+def rig_warnings(rig: Rig) -> tuple[str, ...]:
+    """Return a sentence for everything unusual: heat loss, blood, loosened limits, origin of the module's numbers.
+
+    >>> from thermicon.circuit import Rig
+    >>> rig_warnings(Rig.load("thenar").with_(**{"ambient.film_W_per_m2K": 30}))[0]
+    'skin at rest loses ... W/m², over the 150 W/m² that bare skin in room air can lose'
+    """
+    sentences = []
+    loss_W_per_m2 = -rig.resting_flux_W_per_m2
+    if loss_W_per_m2 > HIGH_RESTING_FLUX_W_PER_M2:
+        sentences.append(
+            f"skin at rest loses {loss_W_per_m2:.0f} W/m², over the {HIGH_RESTING_FLUX_W_PER_M2:g} W/m² "
+            f"that bare skin in room air can lose"
+        )
+    if rig.deep_C < rig.skin.rest_C:
+        sentences.append(f"blood at {rig.deep_C:.2f} °C is colder than the resting surface at {rig.skin.rest_C:g} °C")
+    if not LIVING_C[0] <= rig.deep_C <= LIVING_C[1]:
+        sentences.append(
+            f"blood at {rig.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
+            f"check skin.rest_C and the ambient"
+        )
+    if loosened := rig.limits.loosened:
+        sentences.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {rig.limits.reason}")
+    if claims := tightened(rig.uncertainty):
+        sentences.append(
+            f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {rig.uncertainty.reason}"
+        )
+    sentences += rig.limits.hidden
+    if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
+        sentences.append(resting)
+    origin = () if rig.pump is None else rig.pump.origin.warnings
+    return (*sentences, *origin, *_left_from_another_module(rig))
+
+
+def _left_from_another_module(rig: Rig) -> list[str]:
+    """Sentences on what still fits the former module, where a change names another one."""
+    changed = dict(text.split("=", 1) for text in rig.changes)
+    if (name := changed.get("module.name")) not in module_names():
+        return []
+    plates = (rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K)
+    return unlike_before(str(name), 1e4 * rig.contact.area_m2, rig.driver.current_max_A, plates, [*changed])
