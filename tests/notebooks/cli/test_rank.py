@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from thermicon.icons.number_text import percent_span
+
 Cli = Callable[..., Any]
 TOP = {
     *("thermicon", "rig", "rig_changes", "seed", "people", "tracking", "by", "norm", "content_hash"),
@@ -238,7 +240,7 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
     (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("proportion_correct", "information_bits"))
-    assert f"     model uncertainty (95 %): {100 * low:.0f}–{100 * high:.0f} %\n" in said.stdout
+    assert f"     model uncertainty (95 %): {percent_span(low, high)}\n" in said.stdout
     assert f"     model uncertainty (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
 
