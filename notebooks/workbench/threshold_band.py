@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 DT_S = 0.01
-ROUNDS = 4
+SMALLEST_K, LARGEST_K = 1e-3, 12.0
+CLOSE = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,28 +55,30 @@ def threshold_bands(trace: Trace, observer: Observer) -> tuple[ThresholdBand, ..
         return ()
     starts = (trace.cold_receptor_C, trace.warm_receptor_C)
     return tuple(
-        ThresholdBand(channel, float(start[0]), threshold_change_K(observer, channel, trace.area_m2, trace.site))
+        ThresholdBand(
+            channel, float(start[0]), threshold_change_K(observer, channel, trace.area_m2, trace.site, float(start[0]))
+        )
         for channel, start in zip(CHANNELS, starts, strict=True)
     )
 
 
 @lru_cache(maxsize=256)
-def threshold_change_K(observer: Observer, channel: Channel, area_m2: float, site: str) -> float:
-    """Size (K) of the ramp at receptor depth with d′ = 1, for an observer adapted to its start.
+def threshold_change_K(observer: Observer, channel: Channel, area_m2: float, site: str, level_C: float) -> float:
+    """Size (K) of the ramp at receptor depth with d′ = 1, for an observer adapted to the level (°C) it starts from.
 
-    The ramp has the rate and hold of the step that the observer's unit of sensation was calibrated with; thresholds
-    depend on area and site as everywhere else.
+    The ramp has the rate and hold of the published threshold step; thresholds depend on area and site as everywhere
+    else, and on the level: warm skin must cool further before it is cold. LARGEST_K where no ramp does.
     """
     from thermicon.perception.sensation.sensation import sensitivity
 
     known = load_thresholds()
     rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
     wanted = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
-    middle = 0.5 * sum(observer.neutral(channel))
     sign = -1.0 if channel == "cold" else 1.0
-    size = wanted
-    for _ in range(ROUNDS):  # drive is in proportion to size, but for the gain that it lowers itself
+    low, high = SMALLEST_K, LARGEST_K
+    while high > low * (1.0 + CLOSE):
+        size = (low * high) ** 0.5
         time = np.arange(0.0, size / rate + held, DT_S)
-        felt = receptor_drive(middle + sign * np.minimum(rate * time, size), DT_S, channel, observer)
-        size *= wanted / float(felt.max())
-    return size
+        drive = receptor_drive(level_C + sign * np.minimum(rate * time, size), DT_S, channel, observer)
+        low, high = (low, size) if float(drive.max()) >= wanted else (size, high)
+    return high

@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from thermicon.circuit.records import Record, Table, load_records
+from thermicon.circuit.rig.skin import STRATUM_CORNEUM
 from thermicon.icons.number_text import significant
 
 from ..observer.observer import CHANNELS, DATA, Channel
@@ -151,7 +152,9 @@ def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
     for channel in CHANNELS:
         record = table.one("depth", channel=channel)
         depth_m = rig.skin.cold_receptor_m if channel == "cold" else rig.skin.warm_receptor_m
-        result = _inside(record, channel, depth_m * 1e3)
+        layer = rig.skin.layers[0]
+        dead_m = layer.thickness_m if layer.name == STRATUM_CORNEUM else 0.0
+        result = _inside(record, channel, round((depth_m - dead_m) * 1e3, 9))
         where = f"{result.text}; on this rig that is inside the {_layer(rig, depth_m)}"
         found.append(replace(result, text=where))
     return tuple(found)

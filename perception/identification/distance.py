@@ -4,7 +4,7 @@ At each instant the difference is d(t) = √(Δψ_cold² + Δψ_warm²), after b
 smoothed by the uncertainty of a remembered onset. A norm makes one number of it: `max` its
 largest value, `rms` its root mean square, `integral` its integral over time (per second).
 Back to back only sensory noise limits it; from memory, memory noise is added, which is constant
-in log units: ψ is about 2a·ln u, so σ_m log units are 2aσ_m of sensation.
+in log units: ψ is about a·p·ln u far above threshold, so σ_m log units are a·p·σ_m of sensation.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def identification_dprime(
 def identification_noise(observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0) -> Array:
     """Noise in the units of a norm when one of two comes from memory, shaped as `memory`."""
     log_noise = observer.memory_noise(norm) * np.asarray(memory, dtype=np.float64)
-    noise: Array = np.hypot(sensory_noise(norm, observer, duration_s), 2.0 * observer.a * log_noise)
+    noise: Array = np.hypot(sensory_noise(norm, observer, duration_s), observer.a * observer.p * log_noise)
     return noise
 
 
@@ -131,7 +131,7 @@ def memory_from_task(difference: float, proportion: float, observer: Observer, n
     """
     noise = difference / (math.sqrt(2.0) * NormalDist().inv_cdf(proportion))
     sensory = sensory_noise(norm, observer, duration_s)
-    return math.sqrt(max(noise * noise - sensory * sensory, 0.0)) / (2.0 * observer.a)
+    return math.sqrt(max(noise * noise - sensory * sensory, 0.0)) / (observer.a * observer.p)
 
 
 def _common(a: Percept, b: Percept) -> tuple[Array, Array, float]:

@@ -77,8 +77,8 @@ def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> 
         dt,
         observer,
         path_m=observer.path_m(played.site) * crowd.path[:, None],
-        velocity_cold_m_per_s=crowd.velocity_cold_m_per_s[:, None],
-        velocity_warm_m_per_s=crowd.velocity_warm_m_per_s[:, None],
+        criterion_cold=crowd.criterion_cold[:, None],
+        criterion_warm=crowd.criterion_warm[:, None],
         decision_s=crowd.decision_s[:, None],
     )
     peaks = (cold.max(axis=-1), warm.max(axis=-1))

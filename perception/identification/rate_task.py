@@ -1,8 +1,7 @@
-"""The rate task: what it says of gain control, and of the noise of memory.
+"""The rate task: what it says of the noise of memory.
 
-Bergmann Tiest & Kappers (2009) found that people tell two rates apart when they differ by a fixed
-fraction, whatever the rate and nearly whatever the span. Simulated through this observer's own
-distance, the independence sets the strength of gain control, the fraction sets memory noise.
+Bergmann Tiest & Kappers (2009) found that people distinguish two rates when they differ by a fixed fraction, whatever
+the rate and nearly whatever the span. Simulated through this observer's own distance, the fraction sets memory noise.
 """
 
 from __future__ import annotations
@@ -24,43 +23,11 @@ from ..observer.channels import CHANNELS, NORMS, Norm
 from ..observer.observer import Observer
 from ..observer.variants import source_of
 from ..sensation.bench import Bench, Stimulus, ramp
-from ..sensation.fits import RIG, with_unit_drives
+from ..sensation.fits import RIG
 from ..sensation.percept import perceive_many
 from .distance import memory_from_task, percept_distances
 
 TAIL_S = 10.0
-STRENGTHS = np.round(np.linspace(0.0, 1.0, 51), 2)
-EVEN = 1.02
-"""Strengths whose task is within 2 % of the most even one are not distinguished by it."""
-
-
-def gain_strength(known: Table, observer: Observer) -> Record:
-    """Strength of gain control at which the rate task depends least on rate and span, as published."""
-    fraction = known.one("rate Weber fraction")
-    spread = []
-    for strength in STRENGTHS.tolist():
-        trial = with_unit_drives(known, with_gain(observer, strength))
-        sizes = [case.size["max"] for case in rate_task(known, trial)]
-        spread.append(max(sizes) / min(sizes))
-    best = int(np.argmin(spread))
-    alike = STRENGTHS[np.array(spread) <= max(EVEN * spread[best], spread[0])]
-    return Record(
-        quantity=f"gain control strength{source_of(observer.variable, observer.model)}",
-        unit="1",
-        source=f"calibrated on: {fraction.source}, that the fraction hardly depends on rate and span",
-        value=float(STRENGTHS[best]),
-        low=float(alike.min()),
-        high=float(alike.max()),
-        channel="both",
-        site=fraction.site,
-        method="least spread of the rate task over its conditions, norm max",
-        conditions=(
-            f"largest over smallest condition {spread[best]:.3f}, without gain control {spread[0]:.3f}; "
-            f"interval: strengths no worse than none, so that the data pin down only its upper end"
-        ),
-        confidence="low",
-        use="calibrate",
-    )
 
 
 def memory_noise(known: Table, observer: Observer) -> list[Record]:
@@ -134,12 +101,6 @@ def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, floa
         played = _pair(span, rate, rate * (1.0 + fraction))
         at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
         yield *perceive_many(at_cold, at_warm, played.dt_s, observer), played.dt_s
-
-
-def with_gain(observer: Observer, strength: float) -> Observer:
-    """The observer with gain control of this strength in both channels."""
-    cold, warm = (replace(observer.receptor(channel), gain_strength=strength) for channel in CHANNELS)
-    return replace(observer, cold=cold, warm=warm)
 
 
 @lru_cache(maxsize=64)

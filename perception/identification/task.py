@@ -106,7 +106,7 @@ USUAL = Task()
 def range_of(psi_cold: Array, psi_warm: Array, observer: Observer) -> Array:
     """Range of a set (people,) in log units: of the peaks (people, icons) in the channel where they differ more.
 
-    Sensation is about 2a·ln of the drive. An icon that a channel does not feel (peak under 1 d′) is not in its range.
+    Sensation is about a·p·ln of the drive. An icon that a channel does not feel (peak under 1 d′) is not in its range.
     """
     spans = []
     for psi in (psi_cold, psi_warm):
@@ -114,7 +114,7 @@ def range_of(psi_cold: Array, psi_warm: Array, observer: Observer) -> Array:
         low = np.where(felt, psi, math.inf).min(axis=1)
         high = np.where(felt, psi, -math.inf).max(axis=1)
         spans.append(np.where(high > low, high - low, 0.0))
-    widest: Array = np.maximum(*spans) / (2.0 * observer.a)
+    widest: Array = np.maximum(*spans) / (observer.a * observer.p)
     return widest
 
 

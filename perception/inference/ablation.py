@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..observer.mechanisms import MECHANISMS, Without
 from ..observer.variants import VARIANTS, Model, Variable
 from .maximum import Maximum, maximise
-from .mechanisms import MECHANISMS, Without
 from .posterior import Posterior
 
 Progress = Callable[[int, int, str], None]

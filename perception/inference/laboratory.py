@@ -17,12 +17,12 @@ from ..arrays import Array
 from ..kernels import passage as first_passage
 from ..kernels.adapted_drive import adapted_drive
 from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.delays import LEG_M_PER_S, Conduction
+from ..observer.mechanisms import Without
+from ..observer.transducer import Transducer
 from ..observer.variants import Model, Variable
-from ..sensation.delays import Conduction
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
-from ..sensation.transducer import Transducer
 from .crowd import SHARES, TRIALS, Crowd, draw_crowd
-from .mechanisms import Without
 from .skin_modes import Corner, SkinModes, skin_modes
 
 DT_S = 0.025
@@ -34,8 +34,6 @@ NEUTRAL_C = (30.0, 36.0)
 PATH_M = {"hand": 0.7, "forearm": 0.55}
 """To the cord, adult; assumed, 0.6 to 0.8 and 0.45 to 0.65 m."""
 FEEBLE = 1e-9
-FIRST_CONDUCTION: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
-"""Conduction at the leg (Fowler et al. 1988), which the first model took for the arm."""
 SURFACE_DEPTH_M: dict[Channel, float] = {"cold": 0.15e-3, "warm": 0.30e-3}
 
 
@@ -138,7 +136,7 @@ class Laboratory:
     def delay_s(self, channel: Channel, site: str) -> float:
         """Conduction from a site to the brain, s."""
         if "delays" in self.without:
-            return PATH_M[site] / FIRST_CONDUCTION[channel]
+            return PATH_M[site] / LEG_M_PER_S[channel]
         return Conduction(channel, self.values[f"{channel} conduction velocity"], PATH_M[site]).delay_s
 
     def passages(self, drive: Array, channel: Channel, gain: float, criterion: float) -> tuple[Array, Array]:

@@ -11,10 +11,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS
+from ..observer.mechanisms import Without, find_mechanism
 from ..observer.variants import Model, Variable
 from .experiments import Predictions, predict
 from .laboratory import Laboratory
-from .mechanisms import Without, find_mechanism
 from .prior_file import load_priors
 from .priors import Prior, Priors
 from .rows import Row, load_rows

@@ -13,54 +13,15 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-SQRT_HALF = math.sqrt(0.5)
-INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
+from .passage import log_not_passed
 
 
-def _drive(
-    x: Any, step: Any, sign: float, low: float, high: float, weight: float, scale: float, strength: float, drive: Any
-) -> None:
-    """Receptor drive; `step` holds decay and time constants of integration, slow part, fast part and gain."""
-    decay_i, from_i, to_i, tau_i = step[0, 0], step[0, 1], step[0, 2], step[0, 3]
-    decay_s, from_s, to_s, tau_s = step[1, 0], step[1, 1], step[1, 2], step[1, 3]
-    decay_f, from_f, to_f, tau_f = step[2, 0], step[2, 1], step[2, 2], step[2, 3]
-    decay_g, from_g, to_g = step[3, 0], step[3, 1], step[3, 2]
-    gain_s = 1.0 / (tau_s - tau_i)
-    gain_f = tau_f / (tau_f - tau_i)
-    for row in range(x.shape[0]):
-        x0 = x[row, 0]
-        c0 = min(max(x0, low), high)
-        input_i, input_f, clip_i, clip_s = x0, x0, c0, c0
-        size0 = abs(x0 - c0) * (1.0 - weight)
-        recent = size0
-        for t in range(x.shape[1]):
-            x1 = x[row, t]
-            c1 = min(max(x1, low), high)
-            if t > 0:
-                input_i = decay_i * input_i + from_i * x0 + to_i * x1
-                input_f = decay_f * input_f + from_f * x0 + to_f * x1
-                clip_i = decay_i * clip_i + from_i * c0 + to_i * c1
-                clip_s = decay_s * clip_s + from_s * c0 + to_s * c1
-            slow = input_i - (tau_s * clip_s - tau_i * clip_i) * gain_s
-            fast = gain_f * (input_i - input_f)
-            y = sign * (slow + weight * (fast - slow))
-            if strength > 0.0:
-                if t > 0:
-                    recent = decay_g * recent + from_g * size0 + to_g * abs(y)
-                size0 = abs(y)
-                if y > 0.0:
-                    y *= (1.0 + recent / scale) ** -strength
-            drive[row, t] = max(0.0, y)
-            x0, c0 = x1, c1
-
-
-def _sensation(drive: Any, scale: Any, a: float, b: float, psi: Any) -> None:
-    """ψ = a·ln(1 + u²/b) of u = scale·drive."""
+def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
+    """ψ = a·ln(1 + u^p/b) of u = scale·drive."""
     for row in range(drive.shape[0]):
-        factor = scale[row] * scale[row] / b
         for t in range(drive.shape[1]):
-            x = drive[row, t]
-            psi[row, t] = a * math.log1p(factor * x * x) if x > 0.0 else 0.0
+            u = scale[row] * drive[row, t]
+            psi[row, t] = a * math.log1p(u**p / b) if u > 0.0 else 0.0
 
 
 def _blur(psi: Any, decay: float, blurred: Any) -> None:
@@ -102,35 +63,46 @@ def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
                 pair += 1
 
 
-def _cumulative(x: float) -> float:
-    return 0.5 * math.erfc(-x * SQRT_HALF)
+def _detect(
+    cold: Any, warm: Any, dt: float, criterion: Any, tau: float, a: float, raised: Any, crossing: Any, missed: Any
+) -> None:
+    """First crossing of each channel by the mean (s, NaN when never), and log probability of no detection.
 
-
-def _detect(cold: Any, warm: Any, dt: float, criterion: float, tau: float, crossing: Any, missed: Any) -> None:
-    """First crossing of each channel (s, NaN when never) and the log probability of no detection."""
+    `criterion` (rows, 2) in d′; `raised` (gains,) are the sizes of gain of a presentation to the power p: a drive that
+    is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Probabilities are averaged over the gains.
+    """
+    louder = np.empty(cold.shape[1])
     for row in range(cold.shape[0]):
-        log_missed = 0.0
         for channel in range(2):
             psi = cold[row] if channel == 0 else warm[row]
-            start = psi[0]
-            crossing[row, channel] = math.nan
-            log_missed += math.log(cumulative(criterion))
-            x0 = 0.0
-            for t in range(1, psi.shape[0]):
-                x1 = abs(psi[t] - start)
-                if math.isnan(crossing[row, channel]) and x1 >= criterion:
-                    crossing[row, channel] = dt * (t - 1 + (criterion - x0) / (x1 - x0))
-                if log_missed > -40.0:
-                    h = criterion - 0.5 * (x0 + x1)
-                    speed = (x1 - x0) / dt
-                    z = speed * tau
-                    mean_rise = INV_SQRT_2PI * math.exp(-0.5 * z * z) / tau + speed * cumulative(z)
-                    below = cumulative(max(h, -8.0))
-                    log_missed -= dt * mean_rise * INV_SQRT_2PI * math.exp(-0.5 * max(h, -8.0) ** 2) / below
-                elif not math.isnan(crossing[row, channel]):
-                    break
-                x0 = x1
-        missed[row] = log_missed
+            crossing[row, channel] = first_crossing(psi, criterion[row, channel], dt)
+        unfelt = 0.0
+        for gain in range(raised.size):
+            log_missed = 0.0
+            for channel in range(2):
+                psi = cold[row] if channel == 0 else warm[row]
+                c = criterion[row, channel]
+                if raised[gain] == 1.0:
+                    louder[:] = psi
+                else:
+                    for t in range(psi.size):
+                        louder[t] = 0.0 if psi[t] == 0.0 else a * math.log1p(raised[gain] * math.expm1(psi[t] / a))
+                log_missed += log_not_passed(louder, dt, c, tau)
+            unfelt += math.exp(log_missed) / raised.size
+        missed[row] = math.log(max(unfelt, 1e-300))
+
+
+def _first_crossing(psi: Any, criterion: float, dt: float) -> float:
+    """When the change from the first sample reaches a criterion, s; NaN where it never does."""
+    if criterion <= 0.0:
+        return 0.0
+    before = 0.0
+    for t in range(1, psi.size):
+        now = abs(psi[t] - psi[0])
+        if now >= criterion:
+            return float(dt * (t - 1 + (criterion - before) / (now - before)))
+        before = now
+    return math.nan
 
 
 def _nearest(gram: Any, projected: Any, counts: Any) -> None:
@@ -172,8 +144,7 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
 Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
-cumulative: Callable[[float], float] = _compile(_cumulative)
-drive: Loop = _compile(_drive)
+first_crossing: Callable[..., float] = _compile(_first_crossing)
 sensation: Loop = _compile(_sensation)
 blur: Loop = _compile(_blur)
 differences: Loop = _vector(_differences)

@@ -15,9 +15,12 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-from .kernels import cumulative
-
+SQRT_HALF = math.sqrt(0.5)
 INV_SQRT_2PI = 1.0 / math.sqrt(2.0 * math.pi)
+
+
+def _cumulative(x: float) -> float:
+    return 0.5 * math.erfc(-x * SQRT_HALF)
 
 
 def _passage(
@@ -57,6 +60,25 @@ def _passage(
     return passed
 
 
+def _log_not_passed(psi: Any, dt: float, criterion: float, tau: float) -> float:
+    """Log probability that the change of a sensation (n_time,) from its first sample never passes the criterion."""
+    log_left = math.log(cumulative(criterion))
+    silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
+    last = 0.0
+    for t in range(1, psi.size):
+        now = abs(psi[t] - psi[0])
+        if now == 0.0 and last == 0.0:
+            log_left -= dt * silent
+            continue
+        z = (now - last) / dt * tau
+        rise = z if z > Z_TO else looked_up(RISE, z, Z_FROM, Z_STEP)
+        log_left -= dt * rise / tau * looked_up(MILLS, criterion - 0.5 * (now + last), GAP_FROM, GAP_STEP)
+        last = now
+        if log_left < CERTAIN:
+            break
+    return log_left
+
+
 def _looked_up(table: Any, x: float, start: float, step: float) -> float:
     place = (x - start) / step
     if place <= 0.0:
@@ -70,6 +92,8 @@ def _looked_up(table: Any, x: float, start: float, step: float) -> float:
 LOG_U_FROM, LOG_U_STEP, LOG_U_POINTS = -8.0, 0.04, 401
 GAP_FROM, GAP_STEP, GAP_POINTS = -6.0, 0.01, 1401
 Z_FROM, Z_STEP, Z_TO = -4.0, 0.01, 4.0
+Z_MIDDLE = 400
+CERTAIN = -16.0
 SURE = -5.0
 """Log probability of not having answered below which an answer is certain."""
 
@@ -92,5 +116,7 @@ MILLS, RISE = _mills_table(), _rise_table()
 
 
 _compile: Any = kernel(nogil=True)
+cumulative: Any = _compile(_cumulative)
 looked_up: Any = _compile(_looked_up)
+log_not_passed: Any = _compile(_log_not_passed)
 passage: Any = _compile(_passage)

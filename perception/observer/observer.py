@@ -6,14 +6,21 @@ says what it was calibrated on, or that it is assumed, and carries its interval.
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from thermicon.circuit.records import RecordError, Table, load_records
 
+from ..arrays import Array
 from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
+from .delays import LEG_M_PER_S, Conduction
+from .mechanisms import check_without
+from .transducer import Transducer
 from .variants import Model, Variable, check_variant, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
@@ -25,36 +32,28 @@ FOREARM_SITES = ("forearm", "wrist", "arm")
 class Receptor:
     """Constants of one channel: times s, velocity m/s, exponents and factors 1.
 
-    `threshold_drive` is the drive that feels like a threshold, in K, W/m² or impulses as the
-    observer's variant has it. `gain_scale` is in multiples of it. `forearm_factor` multiplies
-    thresholds at sites of the forearm. `neutral_flux` (W/m² into the skin) bounds complete
-    adaptation where heat flow is what is felt; static and dynamic gain are those of Ring & de Dear.
+    `limit_C` is the temperature above which there is no cold, or below which there is no warmth, and `softness_K` how
+    gradually it sets in (None: no limit). `threshold_drive` is the drive that feels like a threshold, in K, W/m² or
+    impulses as the observer's variant has it. `forearm_factor` multiplies thresholds at sites of the forearm.
+    `neutral_flux` (W/m² into the skin) bounds complete adaptation where heat flow is what is felt; static and dynamic
+    gain are those of Ring & de Dear.
     """
 
-    slow_s: float
-    fast_s: float
-    fast_weight: float
+    adaptation_s: float
     threshold_drive: float
     velocity_m_per_s: float
     area_exponent: float
-    gain_strength: float = 0.0
-    gain_s: float = 5.0
-    gain_scale: float = 1.0
+    limit_C: float | None = None
+    softness_K: float = 0.5
     forearm_factor: float = 1.0
     neutral_flux: tuple[float, float] | None = None
     static_Hz_per_K: float = 2.0
     dynamic_Hz_s_per_K: float = 60.0
 
     def __post_init__(self) -> None:
-        if not 0.0 <= self.fast_weight <= 1.0:
-            raise ValueError(f"fast_weight = {self.fast_weight:g} must lie in 0 to 1")
-        if not self.gain_strength >= 0.0:
-            raise ValueError(f"gain_strength = {self.gain_strength:g} must be 0 or more")
-        for name in ("slow_s", "fast_s", "threshold_drive", "velocity_m_per_s", "gain_s", "gain_scale"):
+        for name in ("adaptation_s", "threshold_drive", "velocity_m_per_s", "softness_K", "forearm_factor"):
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} = {getattr(self, name):g} must be above 0")
-        if not self.forearm_factor > 0.0:
-            raise ValueError(f"forearm_factor = {self.forearm_factor:g} must be above 0")
         if self.neutral_flux is not None and not self.neutral_flux[0] < self.neutral_flux[1]:
             raise ValueError(
                 f"the neutral heat flow {self.neutral_flux[0]:g} to {self.neutral_flux[1]:g} W/m² is empty"
@@ -65,15 +64,19 @@ class Receptor:
 class Observer:
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
-    `a` is the slope of sensation, `criterion` the yes/no criterion in d′, `memory_noise` the noise
-    of identification in log units of sensation for each norm of distance. `variable` says what
-    the receptors go by, temperature or heat flow, and `model` how.
+    `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
+    presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
+    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable`
+    says what the receptors go by, temperature or heat flow, and `model` how; `without` names the mechanisms that are
+    turned off.
 
     >>> person = Observer.load()
-    >>> person.receptor("cold").velocity_m_per_s
-    2.1
+    >>> 0.5 < person.receptor("warm").velocity_m_per_s < 2.5
+    True
     >>> Observer.load(variable="heat flow").drive_unit
     'W/m²'
+    >>> Observer.load(without=["cold limit"]).cold.limit_C is None
+    True
     """
 
     cold: Receptor
@@ -93,14 +96,22 @@ class Observer:
     memory_max: float
     memory_rms: float
     memory_integral: float
+    p: float = 1.0
+    gain_noise: float = 0.0
+    choice_s: float = 0.0
+    decision_noise: float = 0.0
     variable: Variable = "temperature"
     model: Model = "adapting"
+    without: frozenset[str] = frozenset()
     count_s: float = 20.0
     static_from_C: float = 33.0
 
     def __post_init__(self) -> None:
-        if not self.a > 0.0:
-            raise ValueError(f"the slope of sensation a = {self.a:g} must be above 0")
+        for name in ("a", "p"):
+            if not getattr(self, name) > 0.0:
+                raise ValueError(f"the sensation needs {name} above 0, not {getattr(self, name):g}")
+        if not self.gain_noise >= 0.0:
+            raise ValueError(f"gain_noise = {self.gain_noise:g} must be 0 or more")
         if not self.neutral_low_C < self.neutral_high_C:
             raise ValueError(f"the neutral zone {self.neutral_low_C:g} to {self.neutral_high_C:g} °C is empty")
         if not 0.0 <= self.lapse < 1.0:
@@ -113,39 +124,80 @@ class Observer:
 
     @classmethod
     def load(
-        cls, path: Path | str | None = None, *, variable: Variable = "temperature", model: Model = "adapting"
+        cls,
+        path: Path | str | None = None,
+        *,
+        variable: Variable = "temperature",
+        model: Model = "adapting",
+        without: Iterable[str] = (),
     ) -> Observer:
         """The shipped observer, or one from another parameter file, in one of its variants.
 
-        Raises `RecordError` for a file without what is needed, `ValueError` for a variant that is not there.
+        Parameters
+        ----------
+        path
+            A parameter file; None for the shipped one.
+        variable, model
+            The variant.
+        without
+            Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
+
+        Raises
+        ------
+        RecordError
+            For a file without what is needed.
+        ValueError
+            For a variant or a mechanism that does not exist.
+
         """
-        if path is None:
-            return _shipped(variable, model)
-        return cls.from_table(load_records(Path(path)), variable=variable, model=model)
+        table = None if path is None else load_records(Path(path))
+        whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
+        off = check_without(without)
+        return whole.with_mechanisms_off(off) if off else whole
+
+    def with_mechanisms_off(self, names: frozenset[str]) -> Observer:
+        """The observer without some mechanisms, all else the same."""
+        changes: dict[str, Any] = {"without": self.without | names}
+        for channel in CHANNELS:
+            receptor = self.receptor(channel)
+            if f"{channel} limit" in names:
+                receptor = replace(receptor, limit_C=None)
+            if "delays" in names:
+                receptor = replace(receptor, velocity_m_per_s=LEG_M_PER_S[channel])
+            changes[channel] = receptor
+        if "transducer" in names:
+            changes["p"] = 2.0
+        if "gain noise" in names:
+            changes["gain_noise"] = 0.0
+        if "decision between trials" in names:
+            changes["decision_noise"] = 0.0
+        if "choice time" in names:
+            changes["choice_s"] = 0.0
+        return replace(self, **changes)
 
     @classmethod
     def from_table(cls, table: Table, *, variable: Variable = "temperature", model: Model = "adapting") -> Observer:
-        """Build from calibrated records; a missing one is a `RecordError` that names it."""
+        """Build from calibrated records; a missing one is a `RecordError` that names it.
+
+        A variant's own number stands under the quantity's name with the variant's ending, where it has one.
+        """
         check_variant(variable, model)
-        variant = source_of(variable, model)
+        variant, known = source_of(variable, model), {record.quantity for record in table}
 
         def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
-            return table.one(quantity, channel=channel, site=site, method=method).central
+            own = f"{quantity}{variant}"
+            return table.one(own if own in known else quantity, channel=channel, site=site, method=method).central
 
         def receptor(channel: Channel) -> Receptor:
-            fast = channel == "cold"
             flux = table.one("neutral heat flow", channel=channel).interval if variable == "heat flow" else None
             return Receptor(
-                slow_s=number("slow adaptation time constant", channel),
-                fast_s=number("fast adaptation time constant", channel) if fast else 1.0,
-                fast_weight=number("fast adaptation weight", channel) if fast else 0.0,
-                threshold_drive=number(f"drive of a threshold step{variant}", channel),
+                adaptation_s=number("slow adaptation time"),
+                threshold_drive=number("threshold drive", channel),
                 velocity_m_per_s=number("conduction velocity", channel),
                 area_exponent=number("area exponent", channel),
-                gain_strength=number(f"gain control strength{variant}") if model == "adapting" else 0.0,
-                gain_s=number("gain control time constant"),
-                gain_scale=number("gain control scale"),
-                forearm_factor=number(f"threshold at the wrist{variant}", channel),
+                limit_C=None if variable == "heat flow" else number("limit", channel),
+                softness_K=number("softness of the limits"),
+                forearm_factor=number("threshold on the forearm", channel),
                 neutral_flux=flux,
                 static_Hz_per_K=abs(number("static gain", channel)),
                 dynamic_Hz_s_per_K=abs(number("dynamic gain", channel)),
@@ -155,21 +207,25 @@ class Observer:
         return cls(
             cold=receptor("cold"),
             warm=receptor("warm"),
-            integration_s=number("integration time constant"),
+            integration_s=number("integration time"),
             neutral_low_C=low,
             neutral_high_C=high,
             a=number("slope of sensation"),
+            p=number("transducer exponent"),
+            gain_noise=number("gain noise"),
             reference_area_m2=number("reference area") * 1e-4,
-            criterion=number("criterion"),
+            criterion=number("criterion of speeded answers"),
             noise_correlation_s=number("noise correlation time"),
             path_hand_m=number("path length to the cord", site="hand"),
             path_forearm_m=number("path length to the cord", site="forearm"),
             decision_s=number("decision time"),
+            choice_s=number("choice time"),
+            decision_noise=number("decision time between trials"),
             onset_uncertainty_s=number("onset uncertainty"),
             lapse=number("lapse rate"),
-            memory_max=number(f"memory noise{variant}", method="max"),
-            memory_rms=number(f"memory noise{variant}", method="rms"),
-            memory_integral=number(f"memory noise{variant}", method="integral"),
+            memory_max=number("memory noise", method="max"),
+            memory_rms=number("memory noise", method="rms"),
+            memory_integral=number("memory noise", method="integral"),
             variable=variable,
             model=model,
             count_s=number("window of counted impulses"),
@@ -177,14 +233,24 @@ class Observer:
         )
 
     @property
-    def b(self) -> float:
-        """Second constant of sensation, so that a threshold-size fast step gives d′ = 1."""
-        return 1.0 / math.expm1(1.0 / self.a)
+    def transducer(self) -> Transducer:
+        """How drive in multiples of threshold becomes sensation."""
+        return Transducer(self.a, self.p)
+
+    def delay_s(self, channel: Channel, path_m: float) -> float:
+        """Conduction over a path to the cord, and from there to the brain, s."""
+        velocity = self.receptor(channel).velocity_m_per_s
+        return path_m / velocity if "delays" in self.without else Conduction(channel, velocity, path_m).delay_s
 
     @property
     def drive_unit(self) -> str:
         """Unit of receptor drive and of `threshold_drive`: K, W/m² or impulses."""
         return drive_unit(self.variable, self.model)
+
+    def delays_s(self, channel: Channel, path_m: Array) -> Array:
+        """The same for many paths."""
+        delays = [self.delay_s(channel, path) for path in np.asarray(path_m, dtype=np.float64).reshape(-1).tolist()]
+        return np.array(delays).reshape(np.shape(path_m))
 
     def receptor(self, channel: Channel) -> Receptor:
         """Constants of one channel."""
@@ -214,7 +280,7 @@ class Observer:
             "" if (self.variable, self.model) == ("temperature", "adapting") else f"{self.variable}, {self.model}; "
         )
         return (
-            f"Observer({variant}a {self.a:.3g}, criterion {self.criterion:.3g} d′, "
+            f"Observer({variant}a {self.a:.3g}, p {self.p:.3g}, criterion {self.criterion:.3g} d′, "
             f"memory noise {self.memory_max:.3g} log units, "
             f"threshold drive cold {self.cold.threshold_drive:.3g} {self.drive_unit}, "
             f"warm {self.warm.threshold_drive:.3g} {self.drive_unit})"
@@ -230,6 +296,7 @@ def on_forearm(site: str) -> bool:
     return any(name in site.lower() for name in FOREARM_SITES)
 
 
+@lru_cache(maxsize=1)
 def load_thresholds() -> Table:
     """The shipped table of published numbers.
 
@@ -240,7 +307,8 @@ def load_thresholds() -> Table:
 
 
 @lru_cache(maxsize=1)
-def _file() -> Table:
+def observer_records() -> Table:
+    """The records of the shipped observer and of how people differ."""
     path = DATA / "observer.toml"
     if not path.exists():
         raise RecordError("observer.toml: not there: write it with python -m thermicon.perception.validation.calibrate")
@@ -249,4 +317,4 @@ def _file() -> Table:
 
 @lru_cache(maxsize=8)
 def _shipped(variable: Variable, model: Model) -> Observer:
-    return Observer.from_table(_file(), variable=variable, model=model)
+    return Observer.from_table(observer_records(), variable=variable, model=model)

@@ -13,25 +13,23 @@ import numpy as np
 from thermicon.circuit.records import Record
 
 from ..arrays import Array
-from .observer import load_thresholds
+from .channels import CHANNELS, Channel
+from .observer import load_thresholds, observer_records
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 STANDARD = NormalDist()
-VELOCITY_SPAN = 1.5
-"""Conduction velocities are cut off at this many SD: slower fibres would not reach the cord in a trial."""
-
 YOUNG_YEARS, OLD_YEARS = 25.0, 65.0
+"""Age at which thresholds are the observer's, and an age at which they are old."""
 
 
 @dataclass(frozen=True, slots=True)
 class People:
     """Persons as columns of shape (n,); multipliers are relative to the nominal observer or rig.
 
-    Multipliers of thresholds (median 1), of memory noise, of contact resistance, of the thickness
-    of the outermost layer and of the path to the cord; conduction velocities in m/s, decision time
-    in s, lapse 0–1.
+    Multipliers of thresholds and of criteria (median 1), of memory noise, of contact resistance, of the thickness of
+    the outermost layer and of the path to the cord; decision time in s, lapse 0–1.
     """
 
     threshold_cold: Array
@@ -39,8 +37,8 @@ class People:
     memory: Array
     contact_resistance: Array
     outer_layer: Array
-    velocity_cold_m_per_s: Array
-    velocity_warm_m_per_s: Array
+    criterion_cold: Array
+    criterion_warm: Array
     path: Array
     decision_s: Array
     lapse: Array
@@ -69,7 +67,7 @@ class People:
         return (
             f"People({len(self)}: threshold multipliers cold {_span(self.threshold_cold)}, "
             f"warm {_span(self.threshold_warm)}, memory noise {_span(self.memory)} of nominal, "
-            f"velocity warm {_span(self.velocity_warm_m_per_s)} m/s)"
+            f"criterion cold {_span(self.criterion_cold)})"
         )
 
 
@@ -85,11 +83,10 @@ def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
 
 
 def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> People:
-    """Draw n virtual people; person i is the same whatever n is, and channels are independent.
+    """Draw n virtual people; person i is the same whatever n is.
 
-    `age_years` raises both thresholds of a person by a factor for which there is no data: at 65 years
-    anything from none to a doubling, in proportion (of logarithms) before and after, none by 25.
-    None leaves age out, which is people of 20 to 30 years.
+    Sensitivities and criteria of the two channels are correlated, as people's thresholds are. `age_years` raises the
+    thresholds as `age_factor` says; None leaves age out, which is people of 20 to 30 years.
 
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
@@ -100,30 +97,35 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> Peo
     record = people_records()
     streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
-
-    aged = 1.0 if age_years is None else _aged(np.random.default_rng(np.random.SeedSequence([seed, 4])), n, age_years)
+    shared = observer_records().one("correlation of cold and warm").central
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * _normal(column[name]))
 
-    def velocity(name: str) -> Array:
-        spread = record[name].interval[1] - record[name].central
-        return record[name].central + spread * _normal_within(column[name], VELOCITY_SPAN)
+    def both(what: str) -> tuple[Array, Array]:
+        cold, own = (_normal(column[f"{what}_{channel}"]) for channel in CHANNELS)
+        warm = shared * cold + math.sqrt(1.0 - shared**2) * own
+        spreads = [record[f"{what}_{channel}"].central for channel in CHANNELS]
+        return np.exp(spreads[0] * cold), np.exp(spreads[1] * warm)
 
     def triangular(name: str) -> Array:
         low, high = record[name].interval
         return _triangular(column[name], low, record[name].central, high)
 
+    aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
+    threshold_cold, threshold_warm = both("threshold")
+    criterion_cold, criterion_warm = both("criterion")
     return People(
-        threshold_cold=aged * lognormal("threshold_cold", math.log(10.0) * record["threshold_cold"].central),
-        threshold_warm=aged * lognormal("threshold_warm", math.log(10.0) * record["threshold_warm"].central),
+        threshold_cold=aged[0] * threshold_cold,
+        threshold_warm=aged[1] * threshold_warm,
+        criterion_cold=criterion_cold,
+        criterion_warm=criterion_warm,
         memory=_uniform(column["memory"], *record["memory"].interval) / record["memory"].central,
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
-        velocity_cold_m_per_s=velocity("velocity_cold_m_per_s"),
-        velocity_warm_m_per_s=velocity("velocity_warm_m_per_s"),
         path=triangular("path") / record["path"].central,
-        decision_s=triangular("decision_s"),
+        decision_s=observer_records().one("decision time").central
+        * lognormal("decision_s", record["decision_s"].central),
         lapse=triangular("lapse"),
     )
 
@@ -134,52 +136,37 @@ def people_records() -> dict[str, Record]:
     >>> people_records()["memory"].use
     'assumed'
     """
-    table = load_thresholds()
-    spread = table.one("between-person spread")
+    table, inferred = load_thresholds(), observer_records()
+    criterion = inferred.one("criterion between people")
     return {
-        "threshold_cold": spread,
-        "threshold_warm": spread,
+        "threshold_cold": inferred.one("sensitivity between people", channel="cold"),
+        "threshold_warm": inferred.one("sensitivity between people", channel="warm"),
+        "criterion_cold": criterion,
+        "criterion_warm": criterion,
         "memory": table.one("spread of memory noise between people"),
         "contact_resistance": table.one("contact resistance spread"),
-        "outer_layer": table.one("horny layer thickness spread"),
-        "velocity_cold_m_per_s": table.one("conduction velocity", channel="cold", site="leg"),
-        "velocity_warm_m_per_s": table.one("conduction velocity", channel="warm", site="leg"),
+        "outer_layer": table.one("stratum corneum thickness spread"),
         "path": table.one("path length to the cord", site="hand"),
-        "decision_s": table.one("decision and motor time"),
+        "decision_s": inferred.one("decision time between people"),
         "lapse": table.one("lapse rate"),
     }
 
 
-def age_factor(age_years: float, share: float = 0.5) -> float:
-    """Threshold at an age over that at 25 years; `share` (0–1) places it in the assumed interval.
+def age_factor(age_years: float, channel: Channel) -> float:
+    """Threshold of a channel at an age over that at 25 years.
 
-    >>> age_factor(25.0), age_factor(65.0, share=0.0)
-    (1.0, 1.0)
+    >>> age_factor(25.0, "cold"), 1.3 < age_factor(65.0, "cold") < 4.0
+    (1.0, True)
     """
     if not 18.0 <= age_years <= 100.0:
         raise ValueError(f"an age of {age_years:g} years is not covered: give 18 to 100")
-    low, high = _old_age()
-    old = (max(age_years, YOUNG_YEARS) - YOUNG_YEARS) / (OLD_YEARS - YOUNG_YEARS)
-    return math.exp(old * (math.log(low) + share * math.log(high / low)))
-
-
-@lru_cache(maxsize=1)
-def _old_age() -> tuple[float, float]:
-    return load_thresholds().one("threshold in old age").interval
-
-
-def _aged(rng: np.random.Generator, n: int, age_years: float) -> Array:
-    return np.array([age_factor(age_years, share) for share in rng.random(n).tolist()], dtype=np.float64)
+    lost = observer_records().one("sensitivity lost per decade", channel=channel).central
+    return math.exp(lost * (age_years - YOUNG_YEARS) / 10.0)
 
 
 def _normal(uniform: Array) -> Array:
     within = np.clip(uniform, 1e-12, 1.0 - 1e-12)
     return np.array([STANDARD.inv_cdf(p) for p in within.tolist()], dtype=np.float64)
-
-
-def _normal_within(uniform: Array, span: float) -> Array:
-    tail = 0.5 * math.erfc(span / math.sqrt(2.0))
-    return _normal(tail + uniform * (1.0 - 2.0 * tail))
 
 
 def _uniform(uniform: Array, low: float, high: float) -> Array:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
 from ..observer.observer import CHANNELS, Channel, Observer
+from .first_passage import quarters
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,15 +40,15 @@ def detect(
     observer: Observer,
     *,
     path_m: ArrayLike | None = None,
-    velocity_cold_m_per_s: ArrayLike | None = None,
-    velocity_warm_m_per_s: ArrayLike | None = None,
+    criterion_cold: ArrayLike = 1.0,
+    criterion_warm: ArrayLike = 1.0,
     decision_s: ArrayLike | None = None,
 ) -> Detection:
     """Run the yes/no procedure on sensations of shape (..., n_time).
 
-    What is detected is the change of sensation from the first sample. `probability` is corrected
-    for false alarms of the same length: 0 when there is nothing to feel. The four keywords
-    replace the observer's values, one number or one for each leading index.
+    What is detected is the change of sensation from the first sample, whose gain differs from presentation to
+    presentation. `probability` is corrected for false alarms of the same length: 0 when there is nothing to feel.
+    The criteria are multiples of the observer's; the four keywords are one number or one for each leading index.
     """
     from ..kernels import kernels
 
@@ -57,24 +58,25 @@ def detect(
         raise ValueError(f"cold and warm sensation differ in shape: {shape} and {warm_shape}")
     crossing = np.empty((cold.shape[0], 2))
     log_missed = np.empty(cold.shape[0])
+    multiples = [np.broadcast_to(each, shape[:-1]).reshape(-1) for each in (criterion_cold, criterion_warm)]
+    criteria = observer.criterion * np.stack(multiples, axis=-1)
+    tau, raised = observer.noise_correlation_s, np.exp(observer.p * quarters(observer.gain_noise))
 
     def work(part: slice) -> None:
-        tau = observer.noise_correlation_s
-        kernels.detect(cold[part], warm[part], dt_s, observer.criterion, tau, crossing[part], log_missed[part])
+        kernels.detect(
+            cold[part], warm[part], dt_s, criteria[part], tau, observer.a, raised, crossing[part], log_missed[part]
+        )
 
     over_rows(work, cold.shape[0], cold.size)
     wait = dt_s * (cold.shape[1] - 1)
-    silent = 2.0 * log_no_crossing(observer.criterion, observer.noise_correlation_s, wait)
+    silent = log_no_crossings(criteria, tau, wait).sum(axis=-1)
     probability = np.clip(-np.expm1(log_missed - silent), 0.0, 1.0).reshape(shape[:-1])
 
     crossing = crossing.reshape(*shape[:-1], 2)
     path = np.asarray(observer.path_hand_m if path_m is None else path_m, dtype=np.float64)
-    speeds = (
-        observer.cold.velocity_m_per_s if velocity_cold_m_per_s is None else velocity_cold_m_per_s,
-        observer.warm.velocity_m_per_s if velocity_warm_m_per_s is None else velocity_warm_m_per_s,
-    )
     delay = observer.decision_s if decision_s is None else np.asarray(decision_s, dtype=np.float64)
-    felt = np.stack([crossing[..., k] + path / np.asarray(speeds[k]) + delay for k in range(2)], axis=-1)
+    conduction = [observer.delays_s(channel, path) for channel in CHANNELS]
+    felt = np.stack([crossing[..., k] + conduction[k] + delay for k in range(2)], axis=-1)
     first = np.where(np.isnan(felt), np.inf, felt)
     onset = first.min(axis=-1)
     channel = np.where(np.isinf(onset), -1, first.argmin(axis=-1)).astype(np.int64)
@@ -112,6 +114,14 @@ def log_no_crossing(criterion: float, correlation_s: float, wait_s: float) -> fl
     The noise is unit Gaussian with autocorrelation e^(−t²/2τ²); crossings of a level not yet
     passed come at Rice's rate over the probability of being below.
     """
-    below = 0.5 * math.erfc(-criterion / math.sqrt(2.0))
-    rate = math.exp(-0.5 * criterion * criterion) / (2.0 * math.pi * correlation_s)
-    return math.log(below) - wait_s * rate / below
+    return float(log_no_crossings(np.array(criterion), correlation_s, wait_s))
+
+
+def log_no_crossings(criteria: Array, correlation_s: float, wait_s: float) -> Array:
+    """The same for criteria (...,)."""
+    from scipy.special import ndtr
+
+    below = ndtr(criteria)
+    rate = np.exp(-0.5 * criteria * criteria) / (2.0 * np.pi * correlation_s)
+    logs: Array = np.log(below) - wait_s * rate / below
+    return logs

@@ -1,12 +1,7 @@
-"""The parts of the calibration that play stimuli: each sets one constant and says on what.
-
-Skin, receptors and stimuli are those of the bench; the constants of one receptor model are set by
-the same steps as those of another. `calibrate` puts the parts in order.
-"""
+"""Constants that follow from others by playing a stimulus: neutral heat flow, threshold drives of drawn observers."""
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 from functools import lru_cache
 
@@ -15,14 +10,13 @@ from thermicon.circuit.records import Record, Table
 from thermicon.circuit.solver.network import network_of
 
 from ..observer.channels import CHANNELS, Channel
-from ..observer.observer import Observer, Receptor
-from ..observer.variants import drive_unit, receptor_column, source_of
+from ..observer.observer import Observer, load_thresholds
+from ..observer.variants import receptor_column
 from .bench import Bench, Stimulus, ramp
 from .receptors import receptor_drive
 
 RIG = "thenar"
 SITE = "thenar"
-WRIST_RIG = "forearm"
 
 
 def neutral_flux(known: Table, channel: Channel) -> Record:
@@ -46,95 +40,33 @@ def neutral_flux(known: Table, channel: Channel) -> Record:
     )
 
 
-def threshold_drive(known: Table, channel: Channel, observer: Observer) -> Record:
-    """Peak receptor drive of a fast step as large as the forced-choice threshold."""
-    record = known.one("detection threshold", channel=channel, site=SITE)
-    rate, held = known.one("rate of the threshold step"), known.one("duration of the threshold step")
-    depth = known.one("receptor depth", channel=channel)
+def anchored(observer: Observer, shipped: Observer) -> Observer:
+    """The observer whose threshold drives leave the published thresholds at as many multiples as the shipped one's.
 
-    def drive(rate_K_per_s: float, hold_s: float) -> float:
-        return peak_drive(_step(RIG, channel, record.central, rate_K_per_s, hold_s), channel, observer)
-
-    value = drive(rate.central, held.central)
-    ends = [drive(r, h) for r, h in itertools.product(rate.interval, held.interval)]
-    return Record(
-        quantity=f"drive of a threshold step{source_of(observer.variable, observer.model)}",
-        unit=drive_unit(observer.variable, observer.model),
-        source=f"calibrated on: {record.source}; depth {depth.central:g} mm: {depth.source}",
-        value=value,
-        low=min(*ends, value),
-        high=max(*ends, value),
-        channel=channel,
-        site=SITE,
-        method=f"skin-surface ramp of {record.central:g} K at {rate.central:g} K/s, held, on the {RIG} rig",
-        conditions=(
-            f"interval: rate of {rate.interval[0]:g} to {rate.interval[1]:g} K/s, "
-            f"hold of {held.interval[0]:g} to {held.interval[1]:g} s (assumed)"
-        ),
-        confidence=record.confidence,
-        use="calibrate",
-    )
-
-
-def wrist_factor(known: Table, channel: Channel, observer: Observer) -> Record:
-    """How much larger the drive of a threshold step is at the wrist; one area of contact is assumed for both."""
-    record = known.one("detection threshold", channel=channel, site="wrist")
-    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
-    unit = observer.receptor(channel).threshold_drive
-
-    def factor(size_K: float) -> float:
-        return peak_drive(_step(WRIST_RIG, channel, size_K, rate, held), channel, observer, fixed=True) / unit
-
-    low, high = (factor(size) for size in record.interval)
-    return Record(
-        quantity=f"threshold at the wrist{source_of(observer.variable, observer.model)}",
-        unit="multiple of the drive at the thenar",
-        source=f"calibrated on: {record.source}",
-        value=factor(record.central),
-        low=low,
-        high=high,
-        channel=channel,
-        site="wrist",
-        method=f"skin-surface ramp of {record.central:g} K at {rate:g} K/s, held, on the {WRIST_RIG} rig",
-        conditions="mean ± SD over people; the whole forearm is taken to be like the wrist (assumed)",
-        confidence="medium",
-        use="calibrate",
-    )
-
-
-def with_unit_drives(known: Table, observer: Observer) -> Observer:
-    """The observer whose sensation of the threshold step is 1 in both channels."""
-    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
-    made = []
-    for channel in CHANNELS:
-        size = known.one("detection threshold", channel=channel, site=SITE).central
-        drive = peak_drive(_step(RIG, channel, size, rate, held), channel, observer)
-        made.append(replace(observer.receptor(channel), threshold_drive=drive))
-    return replace(observer, cold=made[0], warm=made[1])
-
-
-def peak_drive(played: Stimulus, channel: Channel, observer: Observer, *, fixed: bool = False) -> float:
-    """Largest drive of the first stimulus; unless `fixed`, with a threshold drive that is this very drive.
-
-    Gain control starts at a multiple of the threshold drive, so that the two are found together.
+    What adaptation and integration do to a threshold-size fast step changes with their constants; thresholds do not.
     """
-    received = played.received(observer.variable, channel)[0]
-    receptor = observer.receptor(channel)
-    found = 0.0
-    for _ in range(1 if fixed or receptor.gain_strength == 0.0 else 60):
-        drive = receptor_drive(received, played.dt_s, channel, _with(observer, channel, receptor))
-        last, found = found, float(drive.max())
-        if abs(found - last) <= 1e-12 * found:
-            break
-        receptor = replace(receptor, threshold_drive=found)
-    return found
+    cold, warm = (
+        replace(
+            observer.receptor(channel),
+            threshold_drive=shipped.receptor(channel).threshold_drive
+            * peak_drive(channel, observer)
+            / peak_drive(channel, shipped),
+        )
+        for channel in CHANNELS
+    )
+    return replace(observer, cold=cold, warm=warm)
 
 
-def _with(observer: Observer, channel: Channel, receptor: Receptor) -> Observer:
-    return replace(observer, cold=receptor) if channel == "cold" else replace(observer, warm=receptor)
+def peak_drive(channel: Channel, observer: Observer) -> float:
+    """Peak receptor drive of a fast step as large as the forced-choice threshold of the thenar."""
+    played = _threshold_step(channel)
+    return float(receptor_drive(played.received(observer.variable, channel)[0], played.dt_s, channel, observer).max())
 
 
-@lru_cache(maxsize=64)
-def _step(rig: str, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimulus:
-    end = round(size_K / rate_K_per_s + hold_s, 2)
-    return Bench(Rig.load(rig)).play([ramp(channel, size_K, rate_K_per_s)], end)
+@lru_cache(maxsize=2)
+def _threshold_step(channel: Channel) -> Stimulus:
+    known = load_thresholds()
+    size = known.one("detection threshold", channel=channel, site=SITE).central
+    rate, held = known.one("rate of the threshold step").central, known.one("duration of the threshold step").central
+    end = round(size / rate + held, 2)
+    return Bench(Rig.load(RIG)).play([ramp(channel, size, rate)], end)

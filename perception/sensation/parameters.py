@@ -1,7 +1,7 @@
 """The observer's parameters as intervals, and observers drawn from within them.
 
 A parameter is a record of `data/observer.toml` whose interval has two different ends. What is drawn
-per person (conduction, decision, lapse) belongs to the spread between people and is left alone here.
+per person (path, decision, lapse) belongs to the spread between people and is left alone here.
 The drive of a threshold step is not a free number: it is set again for every draw, so that the published
 thresholds stay what they are whatever adaptation and integration do.
 """
@@ -11,19 +11,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
-from thermicon.circuit.records import Record, Table, load_records
+from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.observer import CHANNELS, DATA, NORMS, Channel, Norm, Observer, load_thresholds, on_forearm
-from .receptors import receptor_drive
+from ..observer.observer import CHANNELS, NORMS, Norm, Observer, observer_records, on_forearm
+from .fits import anchored
 
-PER_PERSON = ("conduction velocity", "path length to the cord", "decision time", "lapse rate")
-ANCHORED = "drive of a threshold step"
-ROUNDS, CLOSE = 12, 1e-9
+PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
+ANCHORED = "threshold drive"
 LOG_FROM = 1.5
 """An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
 
@@ -64,15 +62,9 @@ class ObserverParameter:
         return f"ObserverParameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
 
 
-@lru_cache(maxsize=1)
-def observer_table() -> Table:
-    """The records of the shipped observer."""
-    return load_records(DATA / "observer.toml")
-
-
 def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[ObserverParameter, ...]:
     """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
-    known = observer_table()
+    known = observer_records()
     return tuple(_parameter(record) for record in known if _free(record, norm, site, known))
 
 
@@ -97,16 +89,14 @@ def observer_at(values: Mapping[str, float]) -> Observer:
     >>> slow.noise_correlation_s, slow.a == Observer.load().a
     (0.5, True)
     """
-    known = observer_table()
+    known = observer_records()
     names = {parameter_name(record) for record in known}
     if unknown := sorted(set(values) - names):
         raise ValueError(f"the observer has no parameter {unknown[0]!r}: it has {', '.join(sorted(names))}")
-    moved = Observer.from_table(Table(known.name, tuple(_moved(record, values) for record in known)))
     if not values:
-        return moved
-    for channel in CHANNELS:
-        moved = _anchored(moved, channel)
-    return moved
+        return Observer.load()
+    moved = Observer.from_table(Table(known.name, tuple(_moved(record, values) for record in known)))
+    return anchored(moved, Observer.load())
 
 
 def parameter_name(record: Record) -> str:
@@ -150,43 +140,3 @@ def _parameter(record: Record) -> ObserverParameter:
 def _moved(record: Record, values: Mapping[str, float]) -> Record:
     value = values.get(parameter_name(record))
     return record if value is None else replace(record, value=value, low=None, high=None)
-
-
-def _anchored(observer: Observer, channel: Channel) -> Observer:
-    """The observer whose threshold drive is as far above a threshold step's peak as the shipped one's.
-
-    Gain control makes the peak depend on the threshold drive itself, so that it takes a few rounds.
-    """
-    goal = _in_thresholds(Observer.load(), channel)
-    for _ in range(ROUNDS):
-        receptor, off = observer.receptor(channel), _in_thresholds(observer, channel) / goal
-        if abs(off - 1.0) < CLOSE:
-            break
-        receptor = replace(receptor, threshold_drive=receptor.threshold_drive * off)
-        observer = replace(observer, cold=receptor) if channel == "cold" else replace(observer, warm=receptor)
-    return observer
-
-
-def _in_thresholds(observer: Observer, channel: Channel) -> float:
-    """Peak drive of a threshold-size fast step in multiples of the threshold drive."""
-    dt, temperature_C = _threshold_steps()[channel]
-    peak = float(receptor_drive(temperature_C, dt, channel, observer).max())
-    return peak / observer.receptor(channel).threshold_drive
-
-
-@lru_cache(maxsize=1)
-def _threshold_steps() -> Mapping[Channel, tuple[float, Array]]:
-    """Step in s and temperature at its receptor of a threshold-size fast step of the skin, in each channel."""
-    from thermicon.circuit import Rig, simulate
-    from thermicon.icons import parse
-
-    table, rig, found = load_thresholds(), Rig.load("thenar"), {}
-    rate = table.one("rate of the threshold step").central
-    for channel in CHANNELS:
-        size = table.one("detection threshold", channel=channel, site="thenar").central
-        verb = "cool" if channel == "cold" else "warm"
-        body = f"{verb} by {size:.9g} °C at {rate:.9g} °C/s; hold for 5 s"
-        (icon,) = parse(f"cue 1\nset anchor {{ control skin; baseline 32 °C }}\nicon {channel} {{ {body} }}")
-        trace = simulate(icon, rig, rate_Hz=100.0)
-        found[channel] = (0.01, trace.cold_receptor_C if channel == "cold" else trace.warm_receptor_C)
-    return found

@@ -129,7 +129,7 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
         channel=channel_name(int(found.channel)),
         detected_probability=float(found.probability),
         icon=trace.icon,
-        conduction_s=(path / person.cold.velocity_m_per_s, path / person.warm.velocity_m_per_s),
+        conduction_s=(person.delay_s("cold", path), person.delay_s("warm", path)),
         outside_data=outside_data(trace),
     )
 

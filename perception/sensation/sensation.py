@@ -1,8 +1,4 @@
-"""Receptor drive → sensation: expansive near threshold, logarithmic above it.
-
-ψ = a·ln(1 + u²/b), where u is the drive in multiples of that of a threshold-size fast step and
-b = 1/(e^{1/a} − 1), so ψ(1) = 1. Sensory noise is the unit: ψ = 1 is d′ = 1.
-"""
+"""Receptor drive → sensation, through area, site and transducer. Sensory noise is the unit: ψ = 1 is d′ = 1."""
 
 from __future__ import annotations
 
@@ -15,6 +11,10 @@ from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
 from ..observer.channels import Channel
 from ..observer.observer import Observer
+from .summation import END_CM2, FIELD_CM2, area_factor
+
+CM2 = 1e-4
+"""A square centimetre in m²."""
 
 
 def sensation(
@@ -62,13 +62,13 @@ def sense(
     scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
 
     def work(part: slice) -> None:
-        kernels.sensation(rows[part], scale[part], observer.a, observer.b, felt[part])
+        kernels.sensation(rows[part], scale[part], observer.a, observer.p, observer.transducer.b, felt[part])
 
     over_rows(work, rows.shape[0], rows.size)
 
 
 def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, site: str | None = None) -> float:
-    """How much smaller thresholds are than on the thenar at the reference area: (A/A_ref)^exponent over the site's.
+    """How much smaller thresholds are than on the hand at the reference area, by summation and site.
 
     >>> person = Observer.load()
     >>> sensitivity("cold", person, None, "thenar")
@@ -79,19 +79,6 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
         return 1.0 / factor
     if not area_m2 > 0.0:
         raise ValueError(f"the area of contact must be above 0 m², not {area_m2:g} m²")
-    return math.pow(area_m2 / observer.reference_area_m2, observer.receptor(channel).area_exponent) / factor
-
-
-def psi_of_multiple(u: float, a: float) -> float:
-    """ψ of a drive in multiples of the threshold drive.
-
-    >>> round(psi_of_multiple(1.0, 12.0), 12)
-    1.0
-    """
-    return a * math.log1p(u * u * math.expm1(1.0 / a))
-
-
-def amplitude_jnd(pedestal: float, a: float) -> float:
-    """Increment that adds d′ = 1 to a pedestal; both in multiples of the threshold."""
-    raised = math.exp((psi_of_multiple(pedestal, a) + 1.0) / a) - 1.0
-    return math.sqrt(raised / math.expm1(1.0 / a)) - pedestal
+    ends = (0.0, math.inf) if "ends of summation" in observer.without else (FIELD_CM2, END_CM2)
+    exponent = observer.receptor(channel).area_exponent
+    return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent, *ends) / factor

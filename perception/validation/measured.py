@@ -61,10 +61,11 @@ class Measurement:
 
 @dataclass(frozen=True, slots=True)
 class Crowd:
-    """Columns (n,) that procedures need: threshold multipliers, conduction of each channel s, decision s."""
+    """Columns (n,) of people: multipliers of thresholds and criteria, conduction of each channel s, decision s."""
 
     threshold_cold: Array
     threshold_warm: Array
+    criterion: tuple[Array, Array]
     conduction_s: tuple[Array, Array]
     decision_s: Array
 
@@ -81,12 +82,13 @@ def crowd_of(observer: Observer, site: str, people: People | None) -> Crowd:
     path = observer.path_m(site)
     if people is None:
         one = np.ones(1)
-        velocities = observer.cold.velocity_m_per_s, observer.warm.velocity_m_per_s
-        return Crowd(one, one, (path / velocities[0] * one, path / velocities[1] * one), observer.decision_s * one)
+        conduction = observer.delay_s("cold", path) * one, observer.delay_s("warm", path) * one
+        return Crowd(one, one, (one, one), conduction, observer.decision_s * one)
     own = path * people.path
     return Crowd(
         people.threshold_cold,
         people.threshold_warm,
-        (own / people.velocity_cold_m_per_s, own / people.velocity_warm_m_per_s),
+        (people.criterion_cold, people.criterion_warm),
+        (observer.delays_s("cold", own), observer.delays_s("warm", own)),
         people.decision_s,
     )

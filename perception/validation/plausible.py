@@ -1,8 +1,7 @@
 """Observers that the data and the assumptions leave possible, to carry their intervals to predictions.
 
-Every constant that has an interval is drawn from it, half of the draws below its value and half
-above, and every interval is filled evenly. What was calibrated through others is calibrated again
-for each draw: the criterion from its false alarms, the drive of a threshold step from that step.
+Every constant that has an interval is drawn from it, half of the draws below its value and half above, and every
+interval is filled evenly. Threshold drives follow, so that published thresholds stay where they are.
 Unlike `parameters`, which varies one nominal person for a ranking, this serves every variant, and
 takes in what differs between people as well, since a published mean is one of few people.
 """
@@ -14,48 +13,33 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermicon.circuit.records import Record, Table, load_records
+from thermicon.circuit.records import Record, Table
 
-from ..observer.observer import DATA, Observer, load_thresholds
-from ..observer.variants import Model, Variable, source_of
-from ..sensation.detection import criterion_of
-from ..sensation.fits import with_unit_drives
-from ..sensation.parameters import latin
-
-SHARED = (
-    "integration time constant",
-    "slow adaptation time constant",
-    "fast adaptation time constant",
-    "fast adaptation weight",
-    "gain control time constant",
-    "gain control scale",
-    "area exponent",
-    "reference area",
-    "noise correlation time",
-    "conduction velocity",
-    "path length to the cord",
-    "decision time",
-    "onset uncertainty",
-    "lapse rate",
-    "slope of sensation",
-)
-OWN = ("gain control strength", "memory noise")
-STEP = ("rate of the threshold step", "duration of the threshold step")
-ALARMS = "false-alarm rate of a cautious criterion"
+from ..observer.observer import Observer, observer_records
+from ..observer.variants import VARIANTS, Model, Variable, source_of
+from ..sensation.fits import anchored
+from ..sensation.parameters import ANCHORED, latin
 
 
 def uncertain_records(variable: Variable = "temperature", model: Model = "adapting") -> tuple[Record, ...]:
-    """Every record with an interval that draws are made from, for one variant.
+    """Every record with an interval that draws are made from, for one variant: what changes its observer.
 
     >>> {record.use for record in uncertain_records()} == {"assumed", "calibrate"}
     True
     """
-    table, known, variant = load_records(DATA / "observer.toml"), load_thresholds(), source_of(variable, model)
-    own = OWN if model == "adapting" else OWN[1:]
-    names = (*SHARED, *(f"{name}{variant}" for name in own))
-    found = [r for r in table if r.quantity in names]
-    found += [r for r in known if r.quantity in (*STEP, ALARMS)]
-    return tuple(r for r in found if r.interval[0] < r.interval[1])
+    table, variant = observer_records(), source_of(variable, model)
+    whole = Observer.from_table(table, variable=variable, model=model)
+    others = [source_of(*each) for each in VARIANTS if source_of(*each) not in ("", variant)]
+
+    def matters(record: Record) -> bool:
+        low, high = record.interval
+        fixed = record.value is None or low == high or record.quantity.startswith(ANCHORED)
+        if fixed or record.quantity.endswith(tuple(others)):
+            return False
+        moved = _swapped(table, {record: low if low != record.central else high})
+        return Observer.from_table(moved, variable=variable, model=model) != whole
+
+    return tuple(record for record in table if matters(record))
 
 
 @lru_cache(maxsize=8)
@@ -69,17 +53,13 @@ def plausible_observers(
     """
     if n < 2:
         raise ValueError(f"at least two observers are needed to show an interval, not {n}")
-    table, known = load_records(DATA / "observer.toml"), load_thresholds()
-    records = uncertain_records(variable, model)
-    shares = latin(len(records), n, seed)
+    table, records = observer_records(), uncertain_records(variable, model)
+    shipped = Observer.load(variable=variable, model=model)
     made = []
-    for row in shares.tolist():
+    for row in latin(len(records), n, seed).tolist():
         drawn = {record: _within(record, share) for record, share in zip(records, row, strict=True)}
-        own, others = _swapped(table, drawn), _swapped(known, drawn)
-        person = Observer.from_table(own, variable=variable, model=model)
-        wait = known.one("wait of a cautious observer").central
-        criterion = criterion_of(others.one(ALARMS).central, person.noise_correlation_s, wait)
-        made.append(with_unit_drives(others, replace(person, criterion=criterion)))
+        person = Observer.from_table(_swapped(table, drawn), variable=variable, model=model)
+        made.append(anchored(person, shipped))
     return tuple(made)
 
 

@@ -127,7 +127,7 @@ def choice_reaction_time(
     people: People | None = None,
 ) -> ResponseTimes:
     """Distributions, one a person, of the time from the start of a ramp to the answer warm or cold."""
-    return _responses(observer, bench, channel, rate_K_per_s, size_K, people)[1]
+    return _responses(observer, bench, channel, rate_K_per_s, size_K, people, observer.choice_s)[1]
 
 
 def method_of_levels(
@@ -183,7 +183,9 @@ def _said_yes(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array
     found = []
     for one in played:
         cold, warm = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
-        found.append(detect(cold, warm, one.dt_s, observer).probability[:, 0])
+        multiples = [own[:, None] for own in crowd.criterion]
+        report = detect(cold, warm, one.dt_s, observer, criterion_cold=multiples[0], criterion_warm=multiples[1])
+        found.append(report.probability[:, 0])
     return np.stack(found, axis=1)
 
 
@@ -233,12 +235,24 @@ def _ramp(bench: Bench, channel: Channel, rate_K_per_s: float, size_K: float) ->
 
 
 def _responses(
-    observer: Observer, bench: Bench, channel: Channel, rate: float, size_K: float, people: People | None
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    rate: float,
+    size_K: float,
+    people: People | None,
+    choice_s: float = 0.0,
 ) -> tuple[Stimulus, ResponseTimes]:
     played = _ramp(bench, channel, rate, size_K)
     crowd = crowd_of(observer, bench.rig.site, people)
     cold, warm = played.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
     found = response_times(
-        cold[:, 0], warm[:, 0], played.dt_s, observer, conduction_s=crowd.conduction_s, decision_s=crowd.decision_s
+        cold[:, 0],
+        warm[:, 0],
+        played.dt_s,
+        observer,
+        conduction_s=crowd.conduction_s,
+        decision_s=crowd.decision_s + choice_s,
+        criterion=crowd.criterion,
     )
     return played, found

@@ -137,7 +137,7 @@ def published_for(row: Row, table: Table) -> Published:
         cold, warm = (_record(row, table, channel) for channel in ("cold", "warm"))
         if cold.channel != "both":
             value = combined(apply, cold.central, warm.central)
-            return Published(_said(row, _digits(value)), cold.source, _under(cold), "1", value)
+            return Published(_said(row, _digits(value)) + _fitted(cold), cold.source, _under(cold), "1", value)
     record = _record(row, table, row.channel if row.channel in ("cold", "warm") else "")
     unit = "" if record.unit in ("1", "sign") else f" {record.unit}"
     low, high = record.low, record.high
@@ -146,7 +146,8 @@ def published_for(row: Row, table: Table) -> Published:
         number = "−" if record.central < 0 else "+"
     span = f"{_digits(low)} to {_digits(high)}" if low is not None and high is not None else ""
     text = f"{number} [{span}]" if number and span else number or span
-    return Published(_said(row, f"{text}{unit}"), record.source, _under(record), record.unit, record.value, low, high)
+    said = _said(row, f"{text}{unit}") + _fitted(record)
+    return Published(said, record.source, _under(record), record.unit, record.value, low, high)
 
 
 def combined(apply: str, cold: float, warm: float) -> float:
@@ -166,6 +167,11 @@ def _digits(value: float) -> str:
 
 def _said(row: Row, number: str) -> str:
     return row.says.replace("{}", number) if row.says else number
+
+
+def _fitted(record: Record) -> str:
+    """A mark for what the constants were inferred from, which is no prediction."""
+    return ", fitted" if record.use == "calibrate" else ""
 
 
 def _under(record: Record) -> str:

@@ -31,12 +31,13 @@ Cue = Callable[..., FakeTrace]
 def observer() -> Observer:
     """Round numbers of nobody: tests of mathematics must not depend on the calibration."""
     return Observer(
-        cold=Receptor(20.0, 2.0, 0.5, 0.08, 2.0, 0.7),
-        warm=Receptor(14.0, 1.0, 0.0, 0.15, 0.5, 0.9),
+        cold=Receptor(20.0, 0.08, 2.0, 0.7),
+        warm=Receptor(14.0, 0.15, 0.5, 0.9),
         integration_s=0.1,
         neutral_low_C=30.0,
         neutral_high_C=36.0,
         a=12.0,
+        p=2.0,
         reference_area_m2=9e-4,
         criterion=3.34,
         noise_correlation_s=0.3,

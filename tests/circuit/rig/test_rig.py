@@ -82,7 +82,7 @@ def test_settings_from_the_command_line_are_toml_values() -> None:
         (
             "skin.cold_receptor_mm",
             50.0,
-            r"skin\.cold_receptor_mm = 50 mm: must lie inside the skin, which is 19\.47 mm",
+            r"skin\.cold_receptor_mm = 50 mm below the stratum corneum: must lie inside the skin, which is 19\.3 mm",
         ),
         ("skin.elements", [1, 2], r"must give one number for each of the 5 layers"),
         ("driver.current_min_A", 3.0, r"driver\.current_min_A = 3 A: must be 0 \(a drive that only cools\) or below"),

@@ -78,14 +78,13 @@ def test_receptors_are_nodes_of_the_mesh(name: str) -> None:
 
 def test_receptor_depths_in_both_conventions() -> None:
     depths = THENAR.receptor_depths()
-    assert (depths.cold_mm, depths.warm_mm) == (0.15, 0.30)
-    assert (depths.cold_below_corneum_mm, depths.warm_below_corneum_mm) == (-0.02, 0.13)
-    base = THENAR.with_(**{"skin.depth_from": "stratum corneum"})
-    assert base.receptor_depths() == type(depths)(0.32, 0.47, 0.15, 0.30)
-    assert base.skin.cold_receptor_m == pytest.approx(0.32e-3)
-    thick = base.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
+    assert depths == type(depths)(0.27, 0.38, 0.10, 0.21)
+    assert THENAR.skin.cold_receptor_m == pytest.approx(0.27e-3)
+    surface = THENAR.with_(**{"skin.depth_from": "surface"}).receptor_depths()
+    assert (surface.cold_mm, surface.warm_mm) == (0.10, 0.21)
+    assert (surface.cold_below_corneum_mm, surface.warm_below_corneum_mm) == (-0.07, 0.04)
+    thick = THENAR.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
     assert thick.receptor_depths() == Rig.load("fingertip").receptor_depths()
-    assert base.with_(**{"skin.depth_from": "surface"}).receptor_depths() == depths
     assert SHANI.receptor_depths().cold_below_corneum_mm is None
 
 
@@ -107,7 +106,7 @@ def test_receptor_depths_in_both_conventions() -> None:
             {"skin.depth_from": "stratum corneum", "skin.warm_receptor_mm": 19.4},
             r"skin\.warm_receptor_mm = 19\.4 mm below the stratum corneum: must lie inside the skin, which is 19\.3 mm",
         ),
-        (THENAR, {"skin.warm_receptor_mm": 19.47}, r"warm_receptor_mm = 19\.47 mm: must lie inside the skin, which is"),
+        (SHANI, {"skin.warm_receptor_mm": 19.47}, r"warm_receptor_mm = 19\.47 mm: must lie inside the skin, which is"),
         (THENAR, {"contact.area_cm2": 0.0}, r"contact\.area_cm2 = 0\.0 cm²: must be at least 0\.01 cm²"),
         (
             THENAR,

@@ -157,9 +157,9 @@ def test_a_batch_does_not_mix_thermodes_and_modules() -> None:
 
 
 def test_depths_and_probes_are_read_as_on_a_module() -> None:
-    rig = RIG.with_(probe=[{"name": "deep", "place": "skin", "depth_mm": 0.15}])
+    rig = RIG.with_(probe=[{"name": "deep", "place": "skin", "depth_mm": 0.122}])
     assert simulate(STEP, rig).probe("deep") == pytest.approx(simulate(STEP, RIG).cold_receptor_C, abs=1e-9)
-    seen = probe_depths(STEP, RIG, [0.0, 0.15e-3])
+    seen = probe_depths(STEP, RIG, [0.0, 0.122e-3])
     assert seen.temperature_C[0] == pytest.approx(seen.trace.skin_C, abs=1e-9)
     assert seen.temperature_C[1] == pytest.approx(seen.trace.cold_receptor_C, abs=1e-9)
 

@@ -74,9 +74,9 @@ def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Driv
          "below the hard limit of 15 °C from 0.00 s on"),
         (HOT_SIDE, "skin", 41.0, 1, "skin surface reaches 41 °C at 0.00 s, with the rig as given, "
          "above the soft limit of 40 °C"),
-        (HOT_SIDE, "skin", 42.5, 1, "cold-receptor depth reaches 42.32 °C at 0.00 s, with the rig as given, "
+        (HOT_SIDE, "skin", 42.5, 1, "cold-receptor depth reaches 42.2 °C at 0.00 s, with the rig as given, "
          "above the hard limit of 42 °C"),
-        (COLD_SIDE, "skin", 13.0, 1, "cold-receptor depth reaches 13.48 °C at 0.00 s, with the rig as given, "
+        (COLD_SIDE, "skin", 13.0, 1, "cold-receptor depth reaches 13.82 °C at 0.00 s, with the rig as given, "
          "below the hard limit of 15 °C"),
         (LIGHT_TOUCH, "display", 46.0, 1, "display reaches 46 °C at 0.00 s, with the rig as given, "
          "above the hard limit of 45 °C"),
@@ -131,7 +131,7 @@ def test_the_hot_plate_and_the_rate_trip_theirs() -> None:
     assert "≤ 60 °C hard" in told
     reason = pulsed().reason
     assert reason is not None
-    assert reason.startswith("rate of skin temperature reaches −14.98 K/s at 1.22 s, with contact −30 %")
+    assert reason.startswith("rate of skin temperature reaches −14.97 K/s at 1.22 s, with contact −30 %")
     assert "below the hard limit of −10 K/s" in reason
 
 

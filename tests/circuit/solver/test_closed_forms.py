@@ -38,7 +38,12 @@ ONLY_JOULE = {
 def uniform(perfusion: float = 0.0, thickness_mm: float = 30.0, deep_C: float = 0.0, **changes: float) -> Rig:
     layer = {"name": "dermis", "thickness_mm": thickness_mm, "perfusion_per_s": perfusion}
     layer |= {key: BODY[key] for key in ("conductivity_W_per_mK", "density_kg_per_m3", "heat_capacity_J_per_kgK")}
-    depths = {"skin.cold_receptor_mm": 0.5, "skin.warm_receptor_mm": 1.0, "contact.resistance_m2K_per_W": 1e-3}
+    depths: dict[str, Any] = {
+        "skin.depth_from": "surface",
+        "skin.cold_receptor_mm": 0.5,
+        "skin.warm_receptor_mm": 1.0,
+        "contact.resistance_m2K_per_W": 1e-3,
+    }
     return THENAR.with_(**{"skin.layer": [layer], "skin.deep_C": deep_C, **depths, **changes})
 
 

@@ -28,8 +28,8 @@ def trace() -> Trace:
         probe("slow", "display", lag_s=0.4),
         probe("between", "interface"),
         probe("face"),
-        probe("at-cold", depth_mm=0.15),
-        probe("at_warm", depth_mm=0.30),
+        probe("at-cold", depth_mm=0.27),
+        probe("at_warm", depth_mm=0.38),
         probe("deep", depth_mm=19.47),
         probe("pad", "insulated skin"),
     ]

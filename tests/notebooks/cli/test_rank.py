@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from thermicon.icons.number_text import percent_span
+
 Cli = Callable[..., Any]
 TOP = {
     *("thermicon", "rig", "rig_changes", "seed", "people", "tracking", "by", "norm", "content_hash"),
@@ -238,7 +240,7 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
     (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("proportion_correct", "information_bits"))
-    assert f"     model uncertainty (95 %): {100 * low:.0f}–{100 * high:.0f} %\n" in said.stdout
+    assert f"     model uncertainty (95 %): {percent_span(low, high)}\n" in said.stdout
     assert f"     model uncertainty (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
 
@@ -267,7 +269,7 @@ def test_by_rules_the_table_has_no_number_of_the_model(cli: Cli, tmp_path: Path)
         assert word not in words
     assert "icon score rules passed distinct pairs margin fails" in words
     assert "Set: 15 of 15 pairs distinguishable by the rules" in words
-    assert "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes" in words
+    assert "depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes" in words
     assert "Worst pair by rules: warming-step and linear-warming, distinguishable - " in words
     assert "Scored by rules of thumb alone on the thenar rig: the share of rules passed" in words
     assert "Rules on latency and felt peak need the model and are not counted" in words

@@ -182,7 +182,9 @@ class TestTampered:
 
     def test_a_sidecar_that_is_only_laid_out_anew(self, pair: dict[str, bytes]) -> None:
         neat = json.dumps(json.loads(pair["warming-step.json"]), ensure_ascii=False).encode()
-        assert "says the same but is laid out differently" in said({**pair, "warming-step.json": neat})
+        assert "has the same content, but not the layout in which it was exported" in said(
+            {**pair, "warming-step.json": neat}
+        )
 
     @pytest.mark.parametrize(
         ("keys", "words"),
@@ -192,7 +194,7 @@ class TestTampered:
             ({"device": {"name": "x"}}, "contains another device than the one of its digest"),
             ({"icon": None}, "holds no icon"),
             ({"drive_sha256": None}, "contains no digest of warming-step.csv; export the icon again"),
-            ({"rig": {"document": {}}}, "holds another rig"),
+            ({"rig": {"document": {}}}, "contains another rig"),
         ],
     )
     def test_a_sidecar_sealed_anew(self, pair: dict[str, bytes], keys: dict[str, Any], words: str) -> None:

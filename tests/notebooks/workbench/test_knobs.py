@@ -76,7 +76,6 @@ def test_depths_counted_from_the_horny_layer_come_with_the_fingertip(rig: Rig) -
 
 def test_an_aged_observer_feels_what_a_drawn_person_of_that_age_feels(rig: Rig) -> None:
     trace = simulate(load_library("six-icons")["cold-to-warm"], rig)
-    factor = age_factor(70.0)
     old = perceive(trace, aged(Observer.load(), 70.0))
     cold, warm = perceive_many(
         trace.cold_receptor_C,
@@ -85,8 +84,8 @@ def test_an_aged_observer_feels_what_a_drawn_person_of_that_age_feels(rig: Rig) 
         Observer.load(),
         area_m2=trace.area_m2,
         site=trace.site,
-        threshold_cold=factor,
-        threshold_warm=factor,
+        threshold_cold=age_factor(70.0, "cold"),
+        threshold_warm=age_factor(70.0, "warm"),
     )
     assert np.allclose(old.psi_cold, cold, rtol=1e-9)
     assert np.allclose(old.psi_warm, warm, rtol=1e-9)
@@ -98,7 +97,7 @@ def test_age_raises_thresholds_and_onset(rig: Rig) -> None:
     assert young is not None
     assert old is not None
     assert old > young
-    assert apply(rig, {"age": 20}).observer == Observer.load()
+    assert apply(rig, {"age": 25}).observer == Observer.load()
 
 
 @pytest.mark.parametrize(

@@ -68,7 +68,7 @@ def test_an_icon_of_both_directions_has_peaks_of_both(rig: Rig) -> None:
 @pytest.mark.parametrize("channel", ["cold", "warm"])
 def test_a_change_at_the_edge_of_the_band_has_a_sensation_of_one(channel: str) -> None:
     person = Observer.load()
-    size = threshold_change_K(person, channel, 4e-4, "forearm")  # type: ignore[arg-type]
+    size = threshold_change_K(person, channel, 4e-4, "forearm", 33.0)  # type: ignore[arg-type]
     ramp = 33.0 + (-1 if channel == "cold" else 1) * np.minimum(np.arange(0.0, size + 3.0, 0.01), size)
     drive = receptor_drive(ramp, 0.01, channel, person)  # type: ignore[arg-type]
     felt = sensation(drive, channel, person, area_m2=4e-4, site="forearm")  # type: ignore[arg-type]

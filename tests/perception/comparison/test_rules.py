@@ -129,7 +129,7 @@ def test_rules_are_records_that_say_whose_they_are() -> None:
         assert record.get("basis") in ("trace", "rig", "model")
         assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
-    assert {r.quantity for r in ours} == {"direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
+    assert {r.quantity for r in ours} == {"depth", "direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
 
 
 def test_every_rule_of_the_design_is_there() -> None:
@@ -142,7 +142,7 @@ def test_every_rule_of_the_design_is_there() -> None:
     assert said["amplitude difference", "cold"] == (0.02, 0.07, 0.07)
     assert said["amplitude difference", "warm"] == (0.03, 0.09, 0.09)
     assert said["neutral zone", "both"] == (30.0, None, 36.0)
-    assert (said["depth", "cold"][1], said["depth", "warm"][1]) == (0.15, 0.3)
+    assert (said["depth", "cold"][1], said["depth", "warm"][1]) == (0.10, 0.21)
     assert ("felt peak", "cold") in said
     assert ("felt peak", "warm") in said
     assert (said["peak", "cold"][1], said["peak", "warm"][1], said["rate ratio", "both"][1]) == (0.07, 0.09, 1.43)
@@ -181,11 +181,13 @@ def test_depths_are_a_rule_on_the_rig() -> None:
     cold, warm = rig_rules(Rig.load("thenar"))
     assert (cold.passed, warm.passed) == (True, True)
     assert cold.text == (
-        "depth (cold): 0.15 mm against 0.145 to 0.155 mm: passes; on this rig that is inside the stratum corneum"
+        "depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the viable epidermis"
     )
     deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
-    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.195))
-    assert deep.text.endswith("0.5 mm against 0.295 to 0.305 mm: fails; on this rig that is inside the dermis")
+    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.08))
+    assert deep.text.endswith("0.5 mm against 0.11 to 0.42 mm: fails; on this rig that is inside the dermis")
+    surface = Rig.load("thenar").with_(**{"skin.depth_from": "surface", "skin.cold_receptor_mm": 0.15})
+    assert rig_rules(surface)[0].text.startswith("depth (cold): -0.02 mm against 0.046 to 0.21 mm: fails")
 
 
 def test_margins_are_compared_in_shares_of_their_threshold(cue: Any, observer: Observer) -> None:

@@ -44,14 +44,14 @@ def test_range_is_that_of_the_channel_with_the_larger_one() -> None:
     observer = Observer.load()
     cold = np.array([[10.0, 30.0, 0.2], [10.0, 10.0, 10.0]])
     warm = np.array([[0.0, 5.0, 0.0], [0.0, 0.0, 0.9]])
-    assert range_of(cold, warm, observer) == pytest.approx([20.0 / (2 * observer.a), 0.0])
+    assert range_of(cold, warm, observer) == pytest.approx([20.0 / (observer.a * observer.p), 0.0])
 
 
 def test_context_multiplies_memory_noise_by_the_range_in_the_calibrating_task() -> None:
     own, reference, observer = np.array([1.0, 2.0]), reference_range(), Observer.load()
     assert 0.2 < reference < 2.0
     low = 5.0
-    wide = np.array([[low, low + 2.0 * reference * 2.0 * observer.a]] * 2), np.zeros((2, 2))
+    wide = np.array([[low, low + 2.0 * reference * observer.a * observer.p]] * 2), np.zeros((2, 2))
     narrow = np.full((2, 2), low), np.zeros((2, 2))
     assert Task(context=1.0).memory(own, wide, observer) == pytest.approx([2.0, 4.0])
     assert Task(context=0.5).memory(own, wide, observer) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
@@ -139,7 +139,7 @@ def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -
     edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
     after = rank(edited, RIG, people=20, parameters=0, task=task)
     pair = next(p for p in after.pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
-    assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6) and pair.d_prime >= wanted
+    assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-3) and pair.d_prime >= wanted
     before = {(p.a, p.b): p.d_prime for p in rank(SIX, RIG, people=20, parameters=0, task=task).pairs}
     for other in after.pairs:
         if {other.a, other.b} != {"warming-step", "linear-warming"}:
@@ -175,7 +175,7 @@ def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
         for bias in (0.0, 3.0)
     )
     assert plain is not None and biased is not None
-    assert biased.value < plain.value - 0.005
+    assert biased.value < plain.value - 0.001
     assert biased.value == pytest.approx(biased.at_own_range.proportion_correct, abs=0.02)
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from thermicon.perception import Observer
 from thermicon.perception.inference.crowd import SHARES
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.adapted_drive import adapted_drive
+from thermicon.perception.observer.transducer import Transducer
 from thermicon.perception.sensation.first_passage import log_survival
-from thermicon.perception.sensation.transducer import Transducer
 
 DT = 0.025
 TRANSDUCER = Transducer(11.0, 1.2)
@@ -56,12 +58,14 @@ def test_a_rise_of_cool_skin_is_not_warm() -> None:
 def test_first_passage_agrees_with_the_other_implementation() -> None:
     time = DT * np.arange(200)
     course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
+    observer = replace(Observer.load(), noise_correlation_s=0.3)
     gains, criteria = np.array([0.5, 1.0, 2.0, 4.0]), np.array([2.5, 2.5, 3.5, 2.0])
     times, passed = passage(np.log(course), np.log(gains), criteria)
     for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
         psi = TRANSDUCER.psi(gain * course)
         # The other implementation counts the change from the first sample; here that is as good as none.
-        logs = log_survival(np.concatenate([[0.0], psi - psi[0]])[None, 1:], DT, criterion - float(psi[0]), 0.3)[0]
+        change = np.concatenate([[0.0], psi - psi[0]])[None, 1:]
+        logs = log_survival(change, DT, criterion - float(psi[0]), observer)[0]
         answered = 1.0 - np.exp(logs)
         assert passed[lane] == pytest.approx(answered[-1], abs=0.01)
         for share, when in zip(SHARES.tolist(), times[lane].tolist(), strict=True):

@@ -9,11 +9,11 @@ import pytest
 
 from thermicon.perception.inference.experiments import predict
 from thermicon.perception.inference.laboratory import Laboratory
-from thermicon.perception.inference.mechanisms import MECHANISMS, find_mechanism
 from thermicon.perception.inference.posterior import Posterior
-from thermicon.perception.sensation.delays import Conduction
+from thermicon.perception.observer.delays import Conduction
+from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
+from thermicon.perception.observer.transducer import Transducer
 from thermicon.perception.sensation.summation import area_factor, summed_area_cm2
-from thermicon.perception.sensation.transducer import Transducer
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from thermicon.perception.inference.evidence import DATA
-from thermicon.perception.inference.mechanisms import MECHANISMS
 from thermicon.perception.inference.posterior import Posterior
 from thermicon.perception.inference.results import (
     ABLATION,
@@ -22,6 +21,7 @@ from thermicon.perception.inference.results import (
     load_predictions,
 )
 from thermicon.perception.inference.rows import load_rows
+from thermicon.perception.observer.mechanisms import MECHANISMS
 
 
 @pytest.fixture(scope="module")

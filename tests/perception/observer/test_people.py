@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import draw_people
+from thermicon.perception import CHANNELS, Observer, draw_people
+from thermicon.perception.observer.observer import observer_records
 from thermicon.perception.observer.people import People, age_factor, people_records
 
 
@@ -18,13 +19,18 @@ def test_the_first_people_are_the_same_whatever_the_number() -> None:
 
 def test_spreads_are_those_of_the_records() -> None:
     crowd = draw_people(20_000, seed=0)
-    assert np.log10(crowd.threshold_cold).std() == pytest.approx(0.23, rel=0.02)
-    assert np.log10(crowd.threshold_warm).mean() == pytest.approx(0.0, abs=0.01)
+    records = people_records()
+    for name in ("threshold_cold", "threshold_warm", "criterion_cold", "criterion_warm"):
+        logs = np.log(getattr(crowd, name))
+        assert logs.std() == pytest.approx(records[name].central, rel=0.03)
+        assert logs.mean() == pytest.approx(0.0, abs=0.02)
+    shared = observer_records().one("correlation of cold and warm").central
+    for what in ("threshold", "criterion"):
+        both = [np.log(getattr(crowd, f"{what}_{channel}")) for channel in ("cold", "warm")]
+        assert np.corrcoef(both[0], both[1])[0, 1] == pytest.approx(shared, abs=0.02)
     assert (crowd.memory.min(), crowd.memory.max()) == pytest.approx((0.5, 1.5), abs=0.01)
     assert np.log(crowd.contact_resistance).std() == pytest.approx(np.log(1.3), rel=0.02)
-    assert crowd.velocity_warm_m_per_s.min() == pytest.approx(0.2, abs=0.01)
-    assert crowd.velocity_cold_m_per_s.mean() == pytest.approx(2.1, abs=0.02)
-    assert crowd.decision_s.min() >= 0.15
+    assert np.median(crowd.decision_s) == pytest.approx(Observer.load().decision_s, rel=0.03)
     assert crowd.lapse.max() <= 0.03
 
 
@@ -33,6 +39,7 @@ def test_every_field_names_its_record() -> None:
     assert set(records) == {field.name for field in fields(People)}
     assert {record.use for record in records.values()} <= {"calibrate", "assumed"}
     assert records["threshold_cold"].use == "calibrate"
+    assert "no source" in records["criterion_cold"].source
 
 
 def test_people_change_the_rig() -> None:
@@ -43,15 +50,17 @@ def test_people_change_the_rig() -> None:
         assert own.module == rig.module
 
 
-def test_age_raises_thresholds_within_the_assumed_interval() -> None:
+def test_age_raises_the_thresholds_of_each_channel_by_its_own_loss() -> None:
     young, old = draw_people(300, seed=2), draw_people(300, seed=2, age_years=65.0)
-    ratio = old.threshold_cold / young.threshold_cold
-    assert ratio == pytest.approx(old.threshold_warm / young.threshold_warm)
-    assert (ratio.min(), ratio.max()) == (pytest.approx(1.0, abs=0.02), pytest.approx(2.0, abs=0.02))
+    for channel in CHANNELS:
+        ratio = getattr(old, f"threshold_{channel}") / getattr(young, f"threshold_{channel}")
+        lost = observer_records().one("sensitivity lost per decade", channel=channel).central
+        assert ratio == pytest.approx(np.exp(4.0 * lost))
+        assert 1.2 < age_factor(65.0, channel) < 3.0
     assert np.array_equal(draw_people(9, seed=2, age_years=25.0).threshold_cold, young.threshold_cold[:9])
     assert np.array_equal(draw_people(9, seed=2, age_years=65.0).threshold_cold, old.threshold_cold[:9])
     assert np.array_equal(old.memory, young.memory)
-    assert age_factor(45.0) == pytest.approx(2.0**0.25)
+    assert np.array_equal(old.criterion_warm, young.criterion_warm)
 
 
 def test_messages() -> None:

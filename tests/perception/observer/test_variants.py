@@ -7,6 +7,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
+from thermicon.perception.observer.mechanisms import MECHANISMS
 from thermicon.perception.observer.observer import Receptor
 from thermicon.perception.observer.variants import (
     VARIANTS,
@@ -21,15 +22,29 @@ from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)
-def test_every_variant_loads_and_finds_the_threshold_it_was_set_on(variable: Variable, model: Model) -> None:
+def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(variable: Variable, model: Model) -> None:
+    """Published for 0.11 and 0.20 K on the thenar; laboratories differ by 20 to 40 %."""
     person = Observer.load(variable=variable, model=model)
     assert (person.variable, person.model) == (variable, model)
     bench = Bench(Rig.load("thenar"))
-    cold = forced_choice(person, bench, "cold").value
-    warm = forced_choice(person, bench, "warm").value
-    assert (cold, warm) == (pytest.approx(0.11, rel=0.01), pytest.approx(0.20, rel=0.01))
-    wrist = Bench(Rig.load("forearm").with_(**{"skin.site": "wrist"}))
-    assert forced_choice(person, wrist, "cold").value == pytest.approx(0.15, rel=0.01)
+    for channel, published in (("cold", 0.11), ("warm", 0.20)):
+        found = forced_choice(person, bench, channel).value
+        assert found is not None
+        assert 0.5 * published < found < 2.0 * published
+
+
+def test_every_mechanism_can_be_turned_off_and_unknown_ones_are_named() -> None:
+    whole = Observer.load()
+    for mechanism in MECHANISMS:
+        off = Observer.load(without=[mechanism.name])
+        assert off.without == {mechanism.name}
+        assert off != whole
+    both = Observer.load(without=["cold limit", "gain noise"])
+    assert both.cold.limit_C is None
+    assert both.gain_noise == 0.0
+    assert both.warm == whole.warm
+    with pytest.raises(ValueError, match=r"no mechanism 'gain nose'.*gain noise"):
+        Observer.load(without=["gain nose"])
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)
@@ -43,14 +58,14 @@ def test_every_variant_feels_a_cooling_cold_and_a_warming_warm(variable: Variabl
 
 @pytest.mark.parametrize("variable", ["temperature", "heat flow"])
 def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
-    """From the base of the horny layer (0.17 mm on the thenar) receptors are deeper, felt later and less."""
+    """From the base of the stratum corneum (0.17 mm on the thenar) receptors are deeper, felt later and less."""
     person, icon = Observer.load(variable=variable), load_library("six-icons")["warming-step"]
-    surface = Rig.load("thenar")
-    base = surface.with_(**{"skin.depth_from": "stratum corneum"})
-    assert surface.receptor_depths().warm_mm == pytest.approx(0.30)
-    assert base.receptor_depths().warm_mm == pytest.approx(0.47)
+    base = Rig.load("thenar")
+    surface = base.with_(**{"skin.depth_from": "surface"})
+    assert surface.receptor_depths().warm_mm == pytest.approx(0.21)
+    assert base.receptor_depths().warm_mm == pytest.approx(0.38)
     traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, base)]
-    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.32, "skin.warm_receptor_mm": 0.47}), tail_s=3.0)
+    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.27, "skin.warm_receptor_mm": 0.38}), tail_s=3.0)
     felt = [perceive(trace, person) for trace in (*traces, same)]
     assert felt[1].psi_warm == pytest.approx(felt[2].psi_warm, abs=1e-6)
     assert felt[0].onset_s is not None
@@ -90,15 +105,15 @@ def test_messages(observer: Observer) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"gain_strength": -0.1}, r"gain_strength = -0.1 must be 0 or more"),
-        ({"gain_s": 0.0}, r"gain_s = 0 must be above 0"),
+        ({"adaptation_s": 0.0}, r"adaptation_s = 0 must be above 0"),
+        ({"softness_K": 0.0}, r"softness_K = 0 must be above 0"),
         ({"forearm_factor": 0.0}, r"forearm_factor = 0 must be above 0"),
         ({"neutral_flux": (3.0, 3.0)}, r"neutral heat flow 3 to 3 W/m² is empty"),
     ],
 )
 def test_a_receptor_proves_itself(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        replace(Receptor(20.0, 2.0, 0.5, 0.1, 2.0, 0.5), **change)
+        replace(Receptor(20.0, 0.1, 2.0, 0.5), **change)
 
 
 def test_repr_says_the_variant() -> None:

@@ -3,9 +3,9 @@ import pytest
 
 from thermicon.circuit.records import Record
 from thermicon.perception import CHANNELS, Observer
+from thermicon.perception.sensation.fits import peak_drive
 from thermicon.perception.sensation.parameters import (
     ObserverParameter,
-    _in_thresholds,
     latin,
     observer_at,
     observer_parameters,
@@ -20,7 +20,14 @@ def test_what_is_uncertain_is_what_the_file_says() -> None:
     assert "memory noise (rms)" not in names
     assert "memory noise (rms)" in [p.name for p in observer_parameters("rms")]
     # What differs between people is their spread; a neutral zone is a range, not an uncertain number.
-    for left in ("conduction velocity", "decision time", "lapse rate", "neutral zone", "drive of a threshold step"):
+    for left in (
+        "path length",
+        "decision time (",
+        "lapse rate",
+        "neutral zone",
+        "threshold drive",
+        "neutral heat flow",
+    ):
         assert not [name for name in names if name.startswith(left)]
     assert all(p.source and p.use in ("calibrate", "assumed") for p in observer_parameters())
 
@@ -28,7 +35,7 @@ def test_what_is_uncertain_is_what_the_file_says() -> None:
 def test_other_sites_bring_other_parameters() -> None:
     here, there = ({p.name for p in observer_parameters("max", site)} for site in ("thenar", "forearm"))
     assert here < there
-    assert there - here == {"threshold at the wrist (cold)", "threshold at the wrist (warm)"}
+    assert there - here == {"threshold on the forearm (cold)", "threshold on the forearm (warm)"}
 
 
 def test_nothing_moved_is_the_shipped_observer() -> None:
@@ -42,11 +49,13 @@ def test_every_parameter_moves_the_observer() -> None:
         assert observer_at({parameter.name: parameter.low}) != Observer.load(), parameter
 
 
-def test_published_thresholds_stay_what_they_are() -> None:
-    for values in ({"slow adaptation time constant (warm)": 40.0}, {"fast adaptation weight (cold)": 0.75}):
-        moved, shipped = observer_at(values), Observer.load()
-        for channel in CHANNELS:
-            assert _in_thresholds(moved, channel) == pytest.approx(_in_thresholds(shipped, channel), rel=1e-8)
+@pytest.mark.parametrize("values", [{"slow adaptation time": 40.0}, {"limit (cold)": 31.5}, {"integration time": 0.3}])
+def test_published_thresholds_stay_what_they_are(values: dict[str, float]) -> None:
+    moved, shipped = observer_at(values), Observer.load()
+    assert moved != shipped
+    for channel in CHANNELS:
+        multiples = [peak_drive(channel, each) / each.receptor(channel).threshold_drive for each in (moved, shipped)]
+        assert multiples[0] == pytest.approx(multiples[1], rel=1e-9)
 
 
 def test_an_unknown_parameter_is_named() -> None:

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from statistics import NormalDist
 
 import numpy as np
@@ -11,16 +12,16 @@ from thermicon.perception.sensation.first_passage import ResponseTimes, log_surv
 
 def test_nothing_is_answered_as_often_as_false_alarms_say(observer: Observer) -> None:
     flat = np.zeros(501)
-    survived = 2.0 * log_survival(flat, 0.01, 2.5, 0.3)[-1]
+    survived = 2.0 * log_survival(flat, 0.01, 2.5, observer)[-1]
     assert -math.expm1(survived) == pytest.approx(false_alarms(2.5, 0.3, 5.0), rel=1e-9)
-    assert log_survival(flat, 0.01, 2.5, 0.3)[0] == pytest.approx(math.log(NormalDist().cdf(2.5)))
+    assert log_survival(flat, 0.01, 2.5, observer)[0] == pytest.approx(math.log(NormalDist().cdf(2.5)))
 
 
 def test_the_end_agrees_with_the_compiled_detection(observer: Observer) -> None:
     t = np.arange(0.0, 3.0, 0.01)
     psi = np.stack([np.minimum(0.8 * t, 1.5), 2.5 * np.sin(t)])
-    missed = log_survival(psi, 0.01, observer.criterion, 0.3)[:, -1]
-    silent = log_survival(np.zeros_like(psi), 0.01, observer.criterion, 0.3)[:, -1]
+    missed = log_survival(psi, 0.01, observer.criterion, observer)[:, -1]
+    silent = log_survival(np.zeros_like(psi), 0.01, observer.criterion, observer)[:, -1]
     found = detect(psi, np.zeros_like(psi), 0.01, observer)
     assert found.probability == pytest.approx(-np.expm1(missed - silent), abs=2e-3)
 
@@ -63,6 +64,25 @@ def test_conduction_and_decision_come_on_top_and_decide_who_is_first(observer: O
     assert found.cold_share[:2] == pytest.approx([1.0, 1.0], abs=1e-3)
     assert found.time_s[-1] > 2.0 + 1.4
     assert "3 rows" in repr(found)
+
+
+def test_trials_differ_in_gain_and_decision(observer: Observer) -> None:
+    t = np.arange(0.0, 3.0, 0.01)
+    psi, plain = 4.0 * t, replace(observer, p=1.0)
+    noisy = replace(plain, gain_noise=0.4, decision_noise=0.6)
+    spread = []
+    for person in (plain, noisy):
+        found = response_times(psi, 0 * psi, 0.01, person, conduction_s=(0.1, 0.1), decision_s=0.3)
+        spread.append(float(found.quantile(0.84)[0] - found.quantile(0.16)[0]))
+    assert spread[1] > 1.5 * spread[0]
+
+
+def test_a_persons_criterion_delays_the_answer(observer: Observer) -> None:
+    psi = np.stack([4.0 * np.arange(0.0, 3.0, 0.01)] * 2)
+    found = response_times(
+        psi, 0 * psi, 0.01, observer, conduction_s=(0.1, 0.1), decision_s=0.2, criterion=([0.8, 1.6], 1.0)
+    )
+    assert found.quantile()[1] > found.quantile()[0] + 0.4
 
 
 def test_messages(observer: Observer) -> None:

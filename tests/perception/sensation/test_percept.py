@@ -47,8 +47,8 @@ def test_felt_peaks_are_later_by_conduction(cue: Any, observer: Observer) -> Non
     peak, felt = percept.peak_s("cold"), percept.felt_peak_s("cold")
     assert peak is not None
     assert 1.9 < peak < 2.1
-    assert felt == pytest.approx(peak + 0.7 / 2.0)
-    assert percept.conduction_s == (pytest.approx(0.35), pytest.approx(1.4))
+    assert felt == pytest.approx(peak + 0.7 / 2.0 + 0.225 / 12.0)
+    assert percept.conduction_s == (pytest.approx(0.35 + 0.225 / 12.0), pytest.approx(1.4 + 0.225 / 2.0))
     assert perceive(cue(change=0.0), observer).felt_peak_s("warm") is None
 
 

@@ -5,35 +5,27 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Channel
-from thermicon.perception.sensation.sensation import amplitude_jnd, psi_of_multiple, sensation
-
-
-@pytest.mark.parametrize("a", [1.0, 5.0, 12.0, 30.0])
-def test_threshold_is_one(a: float) -> None:
-    assert psi_of_multiple(1.0, a) == pytest.approx(1.0, rel=1e-12)
+from thermicon.perception.sensation.sensation import sensation
+from thermicon.perception.sensation.summation import area_factor
 
 
 @pytest.mark.parametrize(("channel", "unit"), [("cold", 0.08), ("warm", 0.15)])
-def test_sensation_is_expansive_then_logarithmic(observer: Observer, channel: Channel, unit: float) -> None:
+def test_sensation_is_a_power_then_logarithmic(observer: Observer, channel: Channel, unit: float) -> None:
     u = np.array([0.0, 0.01, 0.02, 1.0, 100.0, 200.0])
     psi = sensation(unit * u, channel, observer)
     assert psi[0] == 0.0
     assert psi[3] == pytest.approx(1.0, rel=1e-12)
     assert psi[2] / psi[1] == pytest.approx(4.0, rel=1e-3)
     assert psi[5] - psi[4] == pytest.approx(2 * 12.0 * math.log(2.0), rel=1e-2)
-
-
-def test_jnd_adds_one(observer: Observer) -> None:
-    for pedestal in (0.0, 0.5, 2.0, 20.0):
-        raised = pedestal + amplitude_jnd(pedestal, 12.0)
-        assert psi_of_multiple(raised, 12.0) - psi_of_multiple(pedestal, 12.0) == pytest.approx(1.0, rel=1e-9)
+    assert psi == pytest.approx(observer.transducer.psi(u), rel=1e-12)
 
 
 def test_area_and_person_scale_the_drive(observer: Observer) -> None:
     drive = np.array([0.0, 0.16])
     quarter = sensation(drive, "cold", observer, area_m2=9e-4 / 4)
-    assert quarter[1] == pytest.approx(sensation(drive * 0.25**0.7, "cold", observer)[1], rel=1e-12)
+    smaller = area_factor(9.0 / 4, 9.0, 0.7)
+    assert quarter[1] == pytest.approx(sensation(drive * smaller, "cold", observer)[1], rel=1e-12)
     rows = sensation(np.stack([drive, drive]), "cold", observer, threshold=[1.0, 2.0])
-    assert rows[1, 1] == pytest.approx(psi_of_multiple(1.0, 12.0), rel=1e-12)
+    assert rows[1, 1] == pytest.approx(1.0, rel=1e-12)
     with pytest.raises(ValueError, match=r"area of contact must be above 0 m², not 0 m²"):
         sensation(drive, "cold", observer, area_m2=0.0)

@@ -5,12 +5,9 @@ import pytest
 
 from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.perception import Observer
-from thermicon.perception.identification.rate_task import rate_task, with_gain
+from thermicon.perception.inference.results import constant, load_constants
 from thermicon.perception.observer.observer import CHANNELS, DATA, NORMS, load_thresholds
 from thermicon.perception.observer.variants import VARIANTS, source_of
-from thermicon.perception.sensation.detection import false_alarms
-from thermicon.perception.sensation.fits import with_unit_drives
-from thermicon.perception.sensation.sensation import amplitude_jnd
 from thermicon.perception.validation.calibrate import MODEL_CONSTANTS, calibrate, to_toml
 
 SHIPPED = DATA / "observer.toml"
@@ -58,53 +55,27 @@ def test_every_number_of_the_observer_says_where_it_is_from() -> None:
         assert {r.method for r in found} == set(NORMS)
 
 
-def test_gain_control_makes_the_rate_task_depend_least_on_its_conditions() -> None:
-    """Its strength is what the independence of rate and span says, and no limits or icons say anything."""
-    table, shipped = load_thresholds(), load_records(SHIPPED)
-    record = shipped.one("gain control strength")
-    spread = {}
-    for strength in (0.0, record.central, record.interval[1], 0.8):
-        person = with_unit_drives(table, with_gain(Observer.load(), strength))
-        sizes = [case.size["max"] for case in rate_task(table, person)]
-        spread[strength] = max(sizes) / min(sizes)
-    assert record.interval[0] == 0.0
-    assert spread[record.central] < spread[0.0]
-    assert spread[record.interval[1]] <= spread[0.0] < spread[0.8]
-
-
-def test_the_threshold_step_is_felt_as_one_with_gain_control() -> None:
-    """Unit drive and gain scale are found together: u = 1 at the peak of the very step."""
-    for variant in VARIANTS:
-        person = Observer.load(variable=variant[0], model=variant[1])
-        again = with_unit_drives(load_thresholds(), person)
-        for channel in CHANNELS:
-            drive, own = again.receptor(channel).threshold_drive, person.receptor(channel).threshold_drive
-            assert drive == pytest.approx(own, rel=2e-4)
-
-
-def test_what_is_not_pinned_down_says_so() -> None:
+def test_constants_are_those_of_the_maximum_with_their_intervals() -> None:
     shipped = load_records(SHIPPED)
-    strength = shipped.one("gain control strength")
-    assert strength.interval[0] < strength.central < strength.interval[1]
-    assert "pin down only its upper end" in strength.conditions
-    for quantity in ("gain control time constant", "gain control scale"):
-        assert shipped.one(quantity).source.startswith("no source")
-        assert shipped.one(quantity).use == "assumed"
+    limit, record = constant("cold limit"), shipped.one("limit", channel="cold")
+    assert record.central == pytest.approx(limit.value, rel=1e-3)
+    assert record.interval == pytest.approx((limit.low, limit.high), rel=1e-3)
+    assert "Campero" in record.source
+    for variant in VARIANTS:
+        drive = shipped.one(f"threshold drive{source_of(*variant)}", channel="warm")
+        own = next(each for each in load_constants(*variant) if each.name == "warm threshold drive")
+        assert drive.central == pytest.approx(own.value, rel=1e-3)
 
 
-def test_the_slope_keeps_the_amplitude_thresholds_in_their_bands() -> None:
-    table, shipped = load_thresholds(), load_records(SHIPPED).one("slope of sensation")
-    for a in (shipped.central, *shipped.interval):
-        for channel in CHANNELS:
-            threshold = table.one("detection threshold", channel=channel, site="thenar").central
-            low, high = table.one("amplitude difference threshold", channel=channel).interval
-            for pedestal in np.linspace(1.5, 4.5, 13):
-                assert low - 1e-5 <= threshold * amplitude_jnd(float(pedestal), a) <= high + 1e-5
-
-
-def test_the_criterion_keeps_its_false_alarms() -> None:
-    person = Observer.load()
-    assert false_alarms(person.criterion, person.noise_correlation_s, 5.0) == pytest.approx(0.02, rel=5e-3)
+def test_what_the_evidence_does_not_narrow_says_so() -> None:
+    shipped = load_records(SHIPPED)
+    for each in load_constants():
+        channel, _, rest = each.name.partition(" ")
+        if each.mechanism == "laboratories":
+            continue
+        named = channel in CHANNELS
+        record = shipped.one(rest, channel=channel) if named else shipped.one(each.name)
+        assert (record.use == "assumed") == (each.narrowed > 0.9), each.name
 
 
 def test_a_table_without_what_is_needed_is_refused() -> None:
@@ -112,12 +83,6 @@ def test_a_table_without_what_is_needed_is_refused() -> None:
     without = Table(table.name, tuple(r for r in table if r.quantity != "rate Weber fraction"))
     with pytest.raises(RecordError, match=r"thresholds.toml: no quantity 'rate Weber fraction'"):
         calibrate(without)
-    impossible = Table(
-        table.name,
-        tuple(replace(r, low=1e-6, high=2e-6) if r.quantity == "amplitude difference threshold" else r for r in table),
-    )
-    with pytest.raises(RecordError, match=r"no slope of sensation gives the amplitude difference thresholds"):
-        calibrate(impossible)
 
 
 def test_all_published_numbers_load() -> None:
@@ -132,7 +97,7 @@ def test_observer_proves_itself() -> None:
     assert person.path_m("forearm") == 0.55
     assert person.path_m("thenar") == 0.7
     assert repr(person).startswith("Observer(a ")
-    with pytest.raises(ValueError, match=r"slope of sensation a = 0 must be above 0"):
+    with pytest.raises(ValueError, match=r"the sensation needs a above 0, not 0"):
         replace(person, a=0.0)
     with pytest.raises(ValueError, match=r"neutral zone 36 to 36 °C is empty"):
         replace(person, neutral_low_C=36.0)

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer import observer_records
+from thermicon.perception.observer.variants import VARIANTS, Model, Variable, source_of
 from thermicon.perception.sensation.bench import Bench
-from thermicon.perception.sensation.detection import false_alarms
 from thermicon.perception.validation.plausible import plausible_observers, uncertain_records
 from thermicon.perception.validation.procedures import forced_choice
 
@@ -13,25 +14,23 @@ from thermicon.perception.validation.procedures import forced_choice
 def test_draws_stay_in_their_intervals_and_fill_them(variable: Variable, model: Model) -> None:
     drawn = plausible_observers(16, variable=variable, model=model)
     assert {(o.variable, o.model) for o in drawn} == {(variable, model)}
+    ending = source_of(variable, model)
+    record = observer_records().one(f"noise correlation time{ending}")
     noise = np.array([o.noise_correlation_s for o in drawn])
-    assert noise.min() >= 0.1
-    assert noise.max() <= 1.0
-    assert (noise < 0.3).sum() == 8
-    strength = {o.cold.gain_strength for o in drawn}
+    assert noise.min() >= record.interval[0]
+    assert noise.max() <= record.interval[1]
+    assert (noise < record.central).sum() == 8
     known = {r.quantity for r in uncertain_records(variable, model)}
-    assert (len(strength) > 8) == any(name.startswith("gain control strength") for name in known)
+    assert ("limit" in known) == ((variable, model) == ("temperature", "adapting"))
+    assert not [name for name in known if name.startswith("threshold drive")]
 
 
-def test_every_draw_keeps_its_false_alarms() -> None:
-    for person in plausible_observers(8):
-        assert 0.01 <= false_alarms(person.criterion, person.noise_correlation_s, 5.0) <= 0.0501
-
-
-def test_every_draw_keeps_the_thresholds_within_what_their_step_leaves_open() -> None:
-    """Rate and hold of the threshold step are not known, nor the area it was applied on: a factor of about two."""
+def test_every_draw_keeps_the_thresholds_near_the_shipped_ones() -> None:
     bench = Bench(Rig.load("thenar"))
+    shipped = forced_choice(Observer.load(), bench, "cold").value or 0.0
     found = [forced_choice(person, bench, "cold").value or 0.0 for person in plausible_observers(8)]
-    assert 0.05 < min(found) < 0.11 < max(found) < 0.2
+    # What is left is the area that the published thresholds were measured on, 3 to 15 cm², and not stated.
+    assert 0.35 * shipped < min(found) < max(found) < 2.5 * shipped
 
 
 def test_the_seed_decides() -> None:

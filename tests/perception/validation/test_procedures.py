@@ -41,6 +41,7 @@ def test_one_observer_gives_the_methods_their_order(person: Observer, bench: Ben
 
 def test_limits_are_rate_times_delay_and_a_crossing(person: Observer, bench: Bench) -> None:
     """Conduction a second longer means a second more of the ramp, K for K."""
+    person = replace(person, decision_noise=0.0)
     here = method_of_limits(person, bench, "cold").value
     slow = replace(person, decision_s=person.decision_s + 1.0)
     assert here is not None
@@ -71,7 +72,8 @@ def test_people_spread_thresholds_as_their_records_do(person: Observer, bench: B
     assert np.log10(found.each).std(ddof=1) == pytest.approx(np.log10(crowd.threshold_cold).std(ddof=1), rel=0.08)
     assert found.unfelt == 0.0
     limits = method_of_limits(person, bench, "cold", people=crowd)
-    assert np.corrcoef(limits.each, crowd.threshold_cold)[0, 1] > 0.8
+    # Criteria and decisions differ more between people than sensitivities do.
+    assert np.corrcoef(np.log(limits.each), np.log(crowd.threshold_cold * crowd.criterion_cold))[0, 1] > 0.7
 
 
 def test_levels_are_drawn_from_a_seed(person: Observer, bench: Bench) -> None:
@@ -109,7 +111,7 @@ def test_what_is_not_felt_is_none_and_not_a_number(person: Observer, bench: Benc
 def test_the_nominal_person_is_the_observer(person: Observer) -> None:
     crowd = crowd_of(person, "forearm", None)
     assert len(crowd) == 1
-    assert crowd.conduction_s[1][0] == pytest.approx(0.55 / 0.5)
+    assert crowd.conduction_s[1][0] == pytest.approx(0.55 / person.warm.velocity_m_per_s + 0.225 / 2.0)
 
 
 def test_messages(person: Observer, bench: Bench) -> None:

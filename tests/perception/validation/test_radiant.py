@@ -19,7 +19,15 @@ LAYER = {
 @pytest.fixture(scope="module")
 def slab() -> Rig:
     """Uniform skin, thick enough to be endless for seconds, with hardly any loss to the air."""
-    return Rig.load("thenar").with_(**{"skin.layer": [LAYER], "ambient.film_W_per_m2K": 1e-3, "skin.deep_C": 33.0})
+    return Rig.load("thenar").with_(
+        **{
+            "skin.layer": [LAYER],
+            "ambient.film_W_per_m2K": 1e-3,
+            "skin.deep_C": 33.0,
+            "skin.depth_from": "surface",
+            "skin.warm_receptor_mm": 0.30,
+        }
+    )
 
 
 def test_the_surface_warms_as_the_square_root_of_time(slab: Rig) -> None:

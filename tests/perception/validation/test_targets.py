@@ -30,14 +30,19 @@ def test_labels_tell_rows_apart() -> None:
     assert len(labels) == len(set(labels))
 
 
-def test_published_numbers_are_those_of_records_to_be_predicted() -> None:
-    known = load_thresholds()
+def test_published_numbers_are_predicted_or_said_to_be_fitted() -> None:
+    known, fitted = load_thresholds(), 0
     for row in rows():
         if row.published:
-            assert {r.use for r in known.select(row.published, use="predict")} == {"predict"}
-            assert published_for(row, known).source
+            published = published_for(row, known)
+            assert published.source
+            uses = {r.use for r in known.select(row.published) if r.source == published.source}
+            fitted += published.text.endswith(", fitted")
+            assert published.text.endswith(", fitted") == ("calibrate" in uses)
+            assert uses & {"predict", "calibrate"}
         else:
             assert published_for(row, known).value is None
+    assert 0 < fitted < 12
 
 
 def test_another_number_published_is_another_number_shown_and_the_observer_stays() -> None:
@@ -56,12 +61,12 @@ def test_another_number_published_is_another_number_shown_and_the_observer_stays
 def test_texts_of_published_numbers() -> None:
     known = load_thresholds()
     texts = {row.label: published_for(row, known).text for row in rows()}
-    assert texts["reaction time at 10 cm², cold"] == "0.59 s"
+    assert texts["reaction time at 10 cm², cold"] == "0.77 [0.63 to 0.94] s, fitted"
     assert texts["back of the hand, men 20–30 y, warm"] == "1.62 [1.01 to 2.61] K"
     assert texts["felt peak minus the skin's, cold"] == "sign −"
-    assert texts["exponent of area, cold"] == "−0.24"
+    assert texts["exponent of area, cold"] == "−0.23 [−0.27 to −0.19], fitted"
     assert texts["rise from cold to warm"] == "0.64 proportion, the worst"
-    assert texts["reaction time, warm over cold"] == "2.47"
+    assert texts["reaction time, warm over cold"] == "2.16, fitted"
 
 
 def write(folder: Path, text: str) -> tuple[Target, ...]:

@@ -74,7 +74,7 @@ def test_published_numbers_come_from_the_records(report: ValidationReport) -> No
     was = {(row.target, row.label): published_for(row, moved) for target in targets for row in target.rows}
     other = assemble(targets, was, moved, report.evidence, 12, 8, 0, 48)
     before, after = (r.sections[2].lines[0] for r in (report, other))
-    assert (before.published.text, after.published.text) == ("0.59 s", "9 s")
+    assert (before.published.text, after.published.text) == ("0.77 [0.63 to 0.94] s, fitted", "9 s, fitted")
     assert before.judged[0].predicted == after.judged[0].predicted
     assert after.judged[0].verdict.text.startswith("−")
 
@@ -91,6 +91,8 @@ def test_which_does_better(report: ValidationReport) -> None:
         "", "both", "temperature", "heat flow", "neither", "neither, temperature nearer", "neither, heat flow nearer",
     }  # fmt: skip
     line = report.sections[3].lines[0]
+    missed = replace(line.judged[0], verdict=replace(line.judged[0].verdict, holds=False, miss=1.5))
+    line = replace(line, judged=(missed, *line.judged[1:]))
     near, far = line.judged[0], replace(line.judged[1], verdict=replace(line.judged[1].verdict, miss=9.0))
     assert replace(line, judged=(near, far, near)).nearer == "neither, temperature nearer"
     assert replace(line, judged=(near, near, near)).nearer == "neither"

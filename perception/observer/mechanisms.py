@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from thermicon.icons.near_words import did_you_mean
@@ -59,3 +59,12 @@ def find_mechanism(name: str) -> Mechanism:
         if mechanism.name == name:
             return mechanism
     raise ValueError(f"there is no mechanism {name!r}: {did_you_mean(name, {each.name for each in MECHANISMS})}")
+
+
+def check_without(names: Iterable[str]) -> Without:
+    """Names of mechanisms as a set; a ValueError for one that does not exist names the nearest.
+
+    >>> sorted(check_without(["gain noise", "cold limit"]))
+    ['cold limit', 'gain noise']
+    """
+    return frozenset(find_mechanism(name).name for name in names)

@@ -9,13 +9,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..observer.channels import Channel
+from .channels import Channel
 
 SPINE_M = 0.225
 """From the cord at the arm's segments to the brain, m; 0.2 to 0.25, assumed for an adult."""
 
 SPINAL_M_PER_S: dict[Channel, float] = {"cold": 12.0, "warm": 2.0}
 """Leone et al. 2020, evoked potentials of healthy people; 1.4 and 2.5 m/s for warmth in a study of 2011."""
+
+LEG_M_PER_S: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
+"""Conduction at the leg (Fowler et al. 1988): what is used where the mechanism of delays is turned off."""
 
 
 @dataclass(frozen=True, slots=True)
