@@ -52,7 +52,7 @@ def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     >>> from thermicon.circuit import Drive, Rig, simulate_current
     >>> low, high = (simulate_current(Drive([0, 1], [a, a]), Rig.load("thenar")) for a in (0.08, 0.081))
     >>> [round(one.largest_K, 3) for one in delivery_deviation(low, high).places]
-    [-0.082, -0.08, -0.078]
+    [-0.082, -0.078, -0.078]
     """
     if len(designed.time_s) != len(delivered.time_s):
         raise ValueError(f"traces of {len(designed.time_s)} and {len(delivered.time_s)} rows cannot be compared")

@@ -195,7 +195,7 @@ def mesh_study(
     --------
     >>> from thermicon.icons import load_library
     >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
-    MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.8 mK; reference within 0.11 mK)
+    MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.7 mK; reference within 0.09 mK)
     """
     if way not in WAYS:
         raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")

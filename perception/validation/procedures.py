@@ -48,7 +48,7 @@ def forced_choice(
     >>> from thermicon.circuit import Rig
     >>> found = forced_choice(Observer.load(), Bench(Rig.load("thenar")), "cold")
     >>> round(found.value, 3), found.unit
-    (0.11, 'K')
+    (0.121, 'K')
     """
     if not 0.5 < proportion < 1.0:
         raise ValueError(f"the proportion correct in a choice of two lies between 0.5 and 1, not {proportion:g}")
