@@ -21,7 +21,14 @@ from .rows import PEOPLE_WRIST, load_rows
 
 NARROWED = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
-UNITS = {"1": "", "degC": "°C", "m2K/W": "m²K/W", "d'": "d′", "ln per d'": "ln per d′", "multiple of the hand": "× the hand"}
+UNITS = {
+    "1": "",
+    "degC": "°C",
+    "m2K/W": "m²K/W",
+    "d'": "d′",
+    "ln per d'": "ln per d′",
+    "multiple of the hand": "× the hand",
+}
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),
     "sensation": ("sensitivity", "summation", "transducer", "compression"),
@@ -95,7 +102,13 @@ def ablation_table() -> str:
     """Every run of the ablation, most lost first."""
     rows = sorted(load_ablation(), key=lambda row: row.difference)
     lines = [
-        (_ran(row), _replaced(row), signed(row.difference, 1), f"{row.squares:.1f}", f"{row.worst} ({signed(row.worst_sd, 1)})")
+        (
+            _ran(row),
+            _replaced(row),
+            signed(row.difference, 1),
+            f"{row.squares:.1f}",
+            f"{row.worst} ({signed(row.worst_sd, 1)})",
+        )
         for row in rows
     ]
     return _table(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
