@@ -78,7 +78,7 @@ def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
     axes.set_ylim(len(rows) - 0.4, -0.6)
     axes.set_xlim(-4.0, 4.0)
     axes.set_xlabel("published minus predicted (SD of both)")
-    axes.set_title("Rows predicted without their experiment (open: missed)", loc="left", fontsize="medium")
+    axes.set_title("Left-out rows (open: missed)", loc="left", fontsize="medium")
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.tick_params(axis="y", length=0)
     return axes

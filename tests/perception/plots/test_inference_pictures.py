@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.text import Text
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
@@ -27,11 +28,12 @@ def tick_names(axes: Axes) -> list[str]:
 
 
 def inside(axes: Axes) -> bool:
-    """Whether title and labels of the axes lie inside the figure."""
+    """Whether titles, labels and numbers of the axes lie inside the figure."""
     figure = axes.figure
     figure.draw_without_rendering()
-    texts = [axes.xaxis.label, axes.yaxis.label, axes.title, *axes.get_yticklabels()]
-    boxes = [text.get_window_extent() for text in texts if text.get_text()]
+    ticks = [*axes.get_xticklabels(), *axes.get_yticklabels(), *axes.get_xticklabels(minor=True)]
+    texts = [text for text in axes.findobj(Text) if text not in ticks] + axes.get_yticklabels()
+    boxes = [text.get_window_extent() for text in texts if text.get_text() and text.get_visible()]
     return all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 and figure.bbox.y0 <= b.y0 for b in boxes)
 
 
