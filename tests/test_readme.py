@@ -20,6 +20,7 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
+from thermicon.perception.inference.tables import TABLES
 
 ROOT = Path(__file__).resolve().parents[1]
 README = ROOT / "README.md"
@@ -29,6 +30,9 @@ LINKING = (*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md")
 NAMES = [page.relative_to(ROOT).as_posix() for page in PAGES]
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
+
+TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
+"""Tables that are generated from data files, between comments that GitHub does not show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +90,14 @@ def run_python(text: str) -> str:
     return shown
 
 
+def with_tables(page: str) -> str:
+    """Return a page with its tables generated again from the data files."""
+    return TABLE.sub(lambda table: f"{table['mark']}{TABLES[table['name']]()}\n{table['end']}", page)
+
+
 def regenerated(page: str) -> str:
-    """Return a page with every output regenerated, in an empty folder that holds the files it says to save."""
-    here = Path.cwd()
+    """Return a page with every output and table regenerated, in an empty folder with the files that it says to save."""
+    here, page = Path.cwd(), with_tables(page)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         try:
@@ -131,6 +140,19 @@ def test_a_page_shows_what_happens(page: Path) -> None:
     assert masked(regenerated(text)) == masked(text)
 
 
+@pytest.mark.parametrize("page", PAGES, ids=NAMES)
+def test_the_tables_of_a_page_are_those_of_the_data_files(page: Path) -> None:
+    """To the last digit: the files are read, nothing is computed."""
+    text = page.read_text(encoding="utf-8")
+    assert text.count("<!-- generated: ") == len(TABLE.findall(text))
+    assert with_tables(text) == text
+
+
+def test_every_table_is_shown_on_a_page() -> None:
+    shown = {table["name"] for page in PAGES for table in TABLE.finditer(page.read_text(encoding="utf-8"))}
+    assert shown == set(TABLES)
+
+
 def test_the_readme_begins_with_the_two_commands() -> None:
     readme = README.read_text(encoding="utf-8")
     assert "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/thermicon rank six-icons\n" in readme
@@ -159,7 +181,7 @@ def test_the_index_lists_every_page() -> None:
 
 
 def draw_images(folder: Path) -> None:
-    """Draw the two pictures that README.md and docs/ show."""
+    """Draw the pictures that README.md and docs/ show."""
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import read_cue
     from thermicon.notebooks import overview, set_figure
@@ -169,6 +191,37 @@ def draw_images(folder: Path) -> None:
     set_figure(rank(read_cue("six-icons"), rig)).savefig(folder / "six-icons.png", dpi=100)
     trace = simulate(read_cue("cooling-step-skin")["cooling-step"], rig, tail_s=10.0)
     overview(trace, perceive(trace)).savefig(folder / "cooling-step.png", dpi=90)
+    draw_mechanisms(folder)
+
+
+def draw_mechanisms(folder: Path) -> None:
+    """Draw what each mechanism does, and what the inference found."""
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Rig
+    from thermicon.icons import load_library
+    from thermicon.perception.inference.effects import EFFECTS
+    from thermicon.perception.inference.onset_stages import onset_stages
+    from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
+    from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
+    from thermicon.perception.plots.draw_evidence import (
+        plot_ablation,
+        plot_left_out,
+        plot_narrowing,
+        plot_published_predicted,
+    )
+
+    drawn = {f"mechanism-{name}": plot_effect(effect()) for name, effect in EFFECTS.items()} | {
+        "mechanism-delays": plot_onset_stages(onset_stages(load_library("six-icons"), Rig.load("thenar"))),
+        "ablation": plot_ablation(load_ablation()),
+        "left-out": plot_left_out(load_predictions()),
+        "published-predicted": plot_published_predicted(load_predictions()),
+        "narrowing": plot_narrowing(load_constants()),
+    }
+    for name, axes in drawn.items():
+        figure = axes.get_figure(root=True)
+        assert isinstance(figure, Figure)
+        figure.savefig(folder / f"{name}.png", dpi=90)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Parameters of the second observer: what each one is, its prior distribution, and where the prior comes from.
+"""Parameters of the observer: what each one is, its prior distribution, and where the prior comes from.
 
 Every parameter is inferred on a scale where its prior is normal: the logarithm for positive numbers, the
 logit for shares. `to_value` goes from there to the parameter's own unit.

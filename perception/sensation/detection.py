@@ -1,8 +1,8 @@
 """Sensation → was it felt, when, and by which channel.
 
-A yes/no observer says yes when sensation plus unit noise passes a criterion. The criterion is
-set by how often noise alone passes it: both channels count, and the rate of upward crossings is
-Rice's. Onset is the mean sensation's crossing plus conduction plus decision.
+A yes/no observer says yes when the change of sensation plus unit noise passes a criterion, which is inferred from
+published answers. Crossings come at Rice's rate, as in `first_passage`; how often noise alone passes a criterion is
+`false_alarms`. Onset is the mean sensation's crossing plus conduction plus decision.
 """
 
 from __future__ import annotations

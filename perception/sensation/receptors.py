@@ -1,6 +1,6 @@
 """What reaches a receptor → receptor drive: limits of quality, integration, adaptation.
 
-There is no cold above the cold channel's limit and no warmth below the warm channel's: a fall from 44 to 38 °C is less
+There is no cold above the cold channel's limit and no warmth below the warm channel's: a fall from 36 to 34 °C is less
 warm, not cold. Adaptation is a level that follows the input clipped to the neutral zone: inside it adaptation is
 complete, outside it a hold keeps a residue. The equations stand in `kernels.adapted_drive`.
 
