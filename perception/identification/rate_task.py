@@ -42,7 +42,7 @@ def memory_noise(known: Table, observer: Observer) -> list[Record]:
             [memory_from_task(case.size[norm], proportion, observer, norm, case.duration_s) for case in cases]
             for proportion in criteria
         ]
-        ends = [_geometric_mean(values) for values in found]
+        ends = [_root_mean_square(values) for values in found]
         every = [v for values in found for v in values]
         spread = max(max(values) / max(min(values), 1e-9) for values in found)
         conditions = (
@@ -50,7 +50,7 @@ def memory_noise(known: Table, observer: Observer) -> list[Record]:
             f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
             f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
         )
-        made = memory_record(norm, observer, _geometric_mean(ends), min(ends), max(ends))
+        made = memory_record(norm, observer, _root_mean_square(ends), min(ends), max(ends))
         records.append(replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions))
     return records
 
@@ -109,5 +109,6 @@ def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
     return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
 
 
-def _geometric_mean(values: Sequence[float]) -> float:
-    return math.exp(sum(math.log(max(v, 1e-9)) for v in values) / len(values))
+def _root_mean_square(values: Sequence[float]) -> float:
+    """Noise of several conditions as one: variances are averaged, and one without memory noise counts as 0."""
+    return math.sqrt(sum(v * v for v in values) / len(values))

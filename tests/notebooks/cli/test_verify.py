@@ -182,9 +182,7 @@ class TestTampered:
 
     def test_a_sidecar_that_is_only_laid_out_anew(self, pair: dict[str, bytes]) -> None:
         neat = json.dumps(json.loads(pair["warming-step.json"]), ensure_ascii=False).encode()
-        assert "has the same content, but not the layout" in said(
-            {**pair, "warming-step.json": neat}
-        )
+        assert "has the same content, but not the layout" in said({**pair, "warming-step.json": neat})
 
     @pytest.mark.parametrize(
         ("keys", "words"),
