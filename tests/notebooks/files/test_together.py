@@ -122,8 +122,9 @@ EXPORT = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-i
 # A real export that has done all its work but the writing: for every folder it is told, a child of it writes there
 # again and again, so that signals meet it while it writes.
 SERVER = """
-import os, sys
+import os, signal, sys
 from pathlib import Path
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background shell has its children ignore it
 from thermicon.notebooks.files import export_folder as exportfolder
 real = exportfolder.publish
 def serve(files, folder, replace=False, how=""):
@@ -172,8 +173,8 @@ def kill_many(folder: Path, times: int, number: int, seed: int) -> list[int]:
             child = int(run.stdout.readline())
             time.sleep(chance.uniform(0.0, 0.06))
             os.kill(child, number)
-            while run.stdout.readline() != "ended\n":
-                pass
+            while (line := run.stdout.readline()) != "ended\n":
+                assert line, "the export ended with the child that it started"
             found.append(check_no_partial_file(folder / f"out{turn}"))
         run.stdin.close()
     return found
