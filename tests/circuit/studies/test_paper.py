@@ -33,7 +33,7 @@ def test_each_miss_is_stated() -> None:
     )
     assert repr(cue).startswith("ControlledCue(shani2021; skin control: missed, 2.1 K off at most, display control: mi")
     titles = [one.plot(control=control).get_title(loc="left") for one, control in ((cue, "skin"), (free, "display"))]
-    assert titles[0].startswith("skin control; misses its target by 2.12 K at 2.00 s, limited by the\ncurrent limit")
+    assert titles[0].startswith("skin control; misses its target by 2.12 K at 2.00 s, limited by the current\nlimit")
     assert titles[1] == "display control; reached"
 
 
