@@ -71,11 +71,13 @@ def _detect(
     `criterion` (rows, 2) in d′; `raised` (gains,) are the sizes of gain of a presentation to the power p: a drive that
     is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Probabilities are averaged over the gains.
     """
-    louder = np.empty(cold.shape[1])
+    louder, risen = np.empty(cold.shape[1]), np.empty((2, cold.shape[1]))
     for row in range(cold.shape[0]):
         for channel in range(2):
             psi = cold[row] if channel == 0 else warm[row]
             crossing[row, channel] = first_crossing(psi, criterion[row, channel], dt)
+            for t in range(psi.size):
+                risen[channel, t] = math.expm1(psi[t] / a) if psi[t] != 0.0 else 0.0
         unfelt = 0.0
         for gain in range(raised.size):
             log_missed = 0.0
@@ -86,7 +88,7 @@ def _detect(
                     louder[:] = psi
                 else:
                     for t in range(psi.size):
-                        louder[t] = 0.0 if psi[t] == 0.0 else a * math.log1p(raised[gain] * math.expm1(psi[t] / a))
+                        louder[t] = a * math.log1p(raised[gain] * risen[channel, t]) if risen[channel, t] else 0.0
                 log_missed += log_not_passed(louder, dt, c, tau)
             unfelt += math.exp(log_missed) / raised.size
         missed[row] = math.log(max(unfelt, 1e-300))
