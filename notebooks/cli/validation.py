@@ -88,8 +88,8 @@ def show_report(report: ValidationReport) -> None:
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
         "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
-        "predictions, not measurements; no parameter was fitted to these results. -o DIR writes sources, intervals, "
-        "sizes of the misses, suspected mechanisms and figures.",
+        "predictions, not measurements; constants were inferred from rows marked fitted, and from no other row. -o DIR "
+        "writes sources, intervals, sizes of the misses, suspected mechanisms and figures.",
     )
 
 

@@ -68,10 +68,10 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
 def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading(TITLE, 1)
     yield Text(
-        "Every number here is a prediction, compared with a published result that was not used to fit the model. The "
-        "experiments are simulated with the observer, which was calibrated on other results. No parameter is fitted "
-        "here, and there is no target for the number of passes: each miss is shown with its size and its suspected "
-        "mechanism."
+        "Every number here is compared with a published result. The observer's constants were inferred from the rows "
+        "marked fitted, together with other experiments, and from no other row: all others are predictions. No "
+        "parameter is fitted here, and there is no target for the number of passes: each miss is shown with its size "
+        "and its suspected mechanism."
     )
     yield Text(
         "Three variants are compared: receptors that respond to temperature and receptors that respond to heat flow, "

@@ -2,7 +2,8 @@
 
 Each function returns predictions, with the interval that unmeasured parameters leave, for one
 sensory variable and receptor model. What is not stated where an experiment was found is stated here,
-as a condition. None of these experiments was used to set a parameter. More in `experiments_timing`.
+as a condition. Constants were inferred from limits and reaction times on the forearm, and from none of the others.
+More in `experiments_timing`.
 """
 
 from __future__ import annotations
