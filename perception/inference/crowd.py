@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
+from ..sensation.first_passage import quarters
 
 PEOPLE = 48
 SEED = 7
@@ -45,4 +46,4 @@ def draw_crowd(people: int = PEOPLE, seed: int = SEED) -> Crowd:
     normal = (normal - normal.mean(axis=0)) / normal.std(axis=0)
     middles = ndtri((np.arange(TRIALS) + 0.5) / TRIALS)
     decisions = np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
-    return Crowd(normal, decisions, ndtri(SHARES))
+    return Crowd(normal, decisions, quarters(1.0))

@@ -1,4 +1,4 @@
-"""The shipped priors, and laboratory offsets added to them: one for every experiment and channel."""
+"""The shipped priors, read and checked."""
 
 from __future__ import annotations
 

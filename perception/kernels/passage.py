@@ -43,11 +43,8 @@ def _passage(
         last = looked_up(psi_table, log_gain[lane] + log_drive[0], LOG_U_FROM, LOG_U_STEP)
         for t in range(1, log_drive.size):
             psi = looked_up(psi_table, log_gain[lane] + log_drive[t], LOG_U_FROM, LOG_U_STEP)
-            z = (psi - last) / dt * tau
-            rise = z if z > Z_TO else looked_up(RISE, z, Z_FROM, Z_STEP)
-            rate = rise / tau * looked_up(MILLS, c - 0.5 * (psi + last), GAP_FROM, GAP_STEP)
             before = log_left
-            log_left -= dt * rate
+            log_left -= dt * crossing_rate(last, psi, dt, c, tau)
             while k < shares.size and log_left <= targets[k]:
                 times[lane, k] = dt * (t - 1 + (before - targets[k]) / (before - log_left))
                 k += 1
@@ -70,13 +67,18 @@ def _log_not_passed(psi: Any, dt: float, criterion: float, tau: float) -> float:
         if now == 0.0 and last == 0.0:
             log_left -= dt * silent
             continue
-        z = (now - last) / dt * tau
-        rise = z if z > Z_TO else looked_up(RISE, z, Z_FROM, Z_STEP)
-        log_left -= dt * rise / tau * looked_up(MILLS, criterion - 0.5 * (now + last), GAP_FROM, GAP_STEP)
+        log_left -= dt * crossing_rate(last, now, dt, criterion, tau)
         last = now
         if log_left < CERTAIN:
             break
     return log_left
+
+
+def _crossing_rate(last: float, now: float, dt: float, criterion: float, tau: float) -> float:
+    """Rate of first crossings in 1/s over a step in which sensation goes from `last` to `now`."""
+    z = (now - last) / dt * tau
+    rise = z if z > Z_TO else looked_up(RISE, z, Z_FROM, Z_STEP)
+    return float(rise / tau * looked_up(MILLS, criterion - 0.5 * (now + last), GAP_FROM, GAP_STEP))
 
 
 def _looked_up(table: Any, x: float, start: float, step: float) -> float:
@@ -118,5 +120,6 @@ MILLS, RISE = _mills_table(), _rise_table()
 _compile: Any = kernel(nogil=True)
 cumulative: Any = _compile(_cumulative)
 looked_up: Any = _compile(_looked_up)
+crossing_rate: Any = _compile(_crossing_rate)
 log_not_passed: Any = _compile(_log_not_passed)
 passage: Any = _compile(_passage)

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 
 from thermicon.icons.near_words import did_you_mean
 
+from .delays import LEG_M_PER_S
+
 Without = frozenset[str]
 
 
@@ -23,7 +25,7 @@ MECHANISMS = (
     Mechanism(
         "delays",
         "conduction of the leg, 2.1 and 0.5 m/s, and no way from cord to brain",
-        {"cold conduction velocity": 2.1, "warm conduction velocity": 0.5},
+        {f"{channel} conduction velocity": velocity for channel, velocity in LEG_M_PER_S.items()},
     ),
     Mechanism(
         "depth",

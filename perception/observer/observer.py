@@ -21,7 +21,7 @@ from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
 from .delays import LEG_M_PER_S, Conduction
 from .mechanisms import check_without
 from .transducer import Transducer
-from .variants import Model, Variable, check_variant, drive_unit, source_of
+from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -313,6 +313,15 @@ def observer_records() -> Table:
     if not path.exists():
         raise RecordError("observer.toml: not there: write it with python -m thermicon.perception.validation.calibrate")
     return load_records(path)
+
+
+@lru_cache(maxsize=4)
+def variant_records(variable: Variable = "temperature", model: Model = "adapting") -> Table:
+    """The shipped records without those of other variants: all that an observer of this variant makes use of."""
+    variant = source_of(variable, model)
+    others = tuple(ending for each in VARIANTS if (ending := source_of(*each)) not in ("", variant))
+    shipped = observer_records()
+    return Table(shipped.name, tuple(record for record in shipped if not record.quantity.endswith(others)))
 
 
 @lru_cache(maxsize=8)

@@ -57,6 +57,7 @@ def anchored(observer: Observer, shipped: Observer) -> Observer:
     return replace(observer, cold=cold, warm=warm)
 
 
+@lru_cache(maxsize=16)
 def peak_drive(channel: Channel, observer: Observer) -> float:
     """Peak receptor drive of a fast step as large as the forced-choice threshold of the thenar."""
     played = _threshold_step(channel)

@@ -17,7 +17,7 @@ import numpy as np
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.observer import CHANNELS, NORMS, Norm, Observer, observer_records, on_forearm
+from ..observer.observer import CHANNELS, NORMS, Norm, Observer, observer_records, on_forearm, variant_records
 from .fits import anchored
 
 PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
@@ -64,8 +64,9 @@ class ObserverParameter:
 
 def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[ObserverParameter, ...]:
     """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
-    known = observer_records()
-    return tuple(_parameter(record) for record in known if _free(record, norm, site, known))
+    known = variant_records()
+    whole = _at_site(known, site)
+    return tuple(_parameter(record) for record in known if _free(record, norm, site, known, whole))
 
 
 def latin(parameters: int, draws: int, seed: int) -> Array:
@@ -89,12 +90,12 @@ def observer_at(values: Mapping[str, float]) -> Observer:
     >>> slow.noise_correlation_s, slow.a == Observer.load().a
     (0.5, True)
     """
-    known = observer_records()
-    names = {parameter_name(record) for record in known}
+    names = {parameter_name(record) for record in observer_records()}
     if unknown := sorted(set(values) - names):
         raise ValueError(f"the observer has no parameter {unknown[0]!r}: it has {', '.join(sorted(names))}")
     if not values:
         return Observer.load()
+    known = variant_records()
     moved = Observer.from_table(Table(known.name, tuple(_moved(record, values) for record in known)))
     return anchored(moved, Observer.load())
 
@@ -112,15 +113,15 @@ def parameter_name(record: Record) -> str:
     return f"{record.quantity} ({said})" if said else record.quantity
 
 
-def _free(record: Record, norm: Norm, site: str, known: Table) -> bool:
-    """Whether a record is an uncertain number that the observer, judged by this norm at this site, makes use of."""
+def _free(record: Record, norm: Norm, site: str, known: Table, whole: Observer) -> bool:
+    """Whether a record is an uncertain number that `whole`, judged by this norm at this site, makes use of."""
     low, high = record.interval
     if record.value is None or low == high or record.quantity in PER_PERSON or record.quantity.startswith(ANCHORED):
         return False
     if record.method in NORMS and record.method != norm:
         return False
     moved = Table(known.name, tuple(replace(r, value=low) if r is record else r for r in known))
-    return low != record.value and _at_site(moved, site) != _at_site(known, site)
+    return low != record.value and _at_site(moved, site) != whole
 
 
 def _at_site(known: Table, site: str) -> Observer:

@@ -15,8 +15,8 @@ import numpy as np
 
 from thermicon.circuit.records import Record, Table
 
-from ..observer.observer import Observer, observer_records
-from ..observer.variants import VARIANTS, Model, Variable, source_of
+from ..observer.observer import Observer, variant_records
+from ..observer.variants import Model, Variable
 from ..sensation.fits import anchored
 from ..sensation.parameters import ANCHORED, latin
 
@@ -27,14 +27,12 @@ def uncertain_records(variable: Variable = "temperature", model: Model = "adapti
     >>> {record.use for record in uncertain_records()} == {"assumed", "calibrate"}
     True
     """
-    table, variant = observer_records(), source_of(variable, model)
+    table = variant_records(variable, model)
     whole = Observer.from_table(table, variable=variable, model=model)
-    others = [source_of(*each) for each in VARIANTS if source_of(*each) not in ("", variant)]
 
     def matters(record: Record) -> bool:
         low, high = record.interval
-        fixed = record.value is None or low == high or record.quantity.startswith(ANCHORED)
-        if fixed or record.quantity.endswith(tuple(others)):
+        if record.value is None or low == high or record.quantity.startswith(ANCHORED):
             return False
         moved = _swapped(table, {record: low if low != record.central else high})
         return Observer.from_table(moved, variable=variable, model=model) != whole
@@ -53,7 +51,7 @@ def plausible_observers(
     """
     if n < 2:
         raise ValueError(f"at least two observers are needed to show an interval, not {n}")
-    table, records = observer_records(), uncertain_records(variable, model)
+    table, records = variant_records(variable, model), uncertain_records(variable, model)
     shipped = Observer.load(variable=variable, model=model)
     made = []
     for row in latin(len(records), n, seed).tolist():
