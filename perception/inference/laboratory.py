@@ -19,6 +19,8 @@ from ..kernels.adapted_drive import adapted_drive
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.delays import LEG_M_PER_S, Conduction
 from ..observer.mechanisms import Without
+from ..observer.observer import load_thresholds
+from ..observer.people import YOUNG_YEARS
 from ..observer.transducer import Transducer
 from ..observer.variants import Model, Variable
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
@@ -27,12 +29,6 @@ from .skin_modes import Corner, SkinModes, skin_modes
 
 DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
-REFERENCE_CM2 = 9.0
-REFERENCE_AGE = 25.0
-NEUTRAL_C = (30.0, 36.0)
-"""Complete adaptation on the hand (Shani & Lineykin 2021)."""
-PATH_M = {"hand": 0.7, "forearm": 0.55}
-"""To the cord, adult; assumed, 0.6 to 0.8 and 0.45 to 0.65 m."""
 FEEBLE = 1e-9
 SURFACE_DEPTH_M: dict[Channel, float] = {"cold": 0.15e-3, "warm": 0.30e-3}
 
@@ -95,9 +91,9 @@ class Laboratory:
         received = skin.course(depth, baseline_C, corners, DT_S, rows, self.variable)
         if self.model == "ring-de-dear":
             return _impulses(received, channel)
-        neutral = NEUTRAL_C
+        neutral = _published().neutral_C
         if self.variable == "heat flow":
-            flows = sorted(skin.baseline(level, depth, "heat flow") for level in NEUTRAL_C)
+            flows = sorted(skin.baseline(level, depth, "heat flow") for level in neutral)
             neutral = flows[0], flows[1]
         drive = np.empty((1, rows))
         adapted_drive(
@@ -124,20 +120,20 @@ class Laboratory:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
         values = self.values
         ends = (0.0, math.inf) if "ends of summation" in self.without else (FIELD_CM2, END_CM2)
-        gain = area_factor(area_cm2, REFERENCE_CM2, values[f"{channel} area exponent"], *ends)
+        gain = area_factor(area_cm2, _published().area_cm2, values[f"{channel} area exponent"], *ends)
         gain /= values[f"{channel} threshold drive"]
         if site == "forearm":
             gain /= values[f"{channel} threshold on the forearm"]
         if "laboratories" not in self.without:
             gain *= math.exp(values["sensitivity between laboratories"] * values[f"{laboratory} {channel}"])
-        decades = (age_years - REFERENCE_AGE) / 10.0
+        decades = (age_years - YOUNG_YEARS) / 10.0
         return gain * math.exp(-values[f"{channel} sensitivity lost per decade"] * decades)
 
     def delay_s(self, channel: Channel, site: str) -> float:
         """Conduction from a site to the brain, s."""
         if "delays" in self.without:
-            return PATH_M[site] / LEG_M_PER_S[channel]
-        return Conduction(channel, self.values[f"{channel} conduction velocity"], PATH_M[site]).delay_s
+            return _published().path_m[site] / LEG_M_PER_S[channel]
+        return Conduction(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]).delay_s
 
     def passages(self, drive: Array, channel: Channel, gain: float, criterion: float) -> tuple[Array, Array]:
         """Times (people, TRIALS) at which sensation passes the criterion; probabilities (people, 4) that it does."""
@@ -172,6 +168,25 @@ class Laboratory:
         criterion = caution * self.values["criterion of speeded answers"]
         crossed, _ = self.passages(drive, channel, gain, criterion)
         return crossed + self.delay_s(channel, site) + self.decision_s(choice=choice)
+
+
+@dataclass(frozen=True, slots=True)
+class _Published:
+    """Numbers of thresholds.toml that are not inferred: reference area, neutral zone, paths to the cord by site."""
+
+    area_cm2: float
+    neutral_C: tuple[float, float]
+    path_m: Mapping[str, float]
+
+
+@lru_cache(maxsize=1)
+def _published() -> _Published:
+    known = load_thresholds()
+    return _Published(
+        known.one("thermode area of the forced-choice thresholds").central,
+        known.one("complete adaptation").interval,
+        {site: known.one("path length to the cord", site=site).central for site in ("hand", "forearm")},
+    )
 
 
 @lru_cache(maxsize=64)
