@@ -201,7 +201,7 @@ def rank_command(
         ),
     ] = 128,
     tracking: Tracking = None,
-    norm: NormName = "max",
+    norm: NormName = "episodes",
     trials: Annotated[
         int, typer.Option("--trials", metavar="N", help="Number of trials of the predicted experiment.")
     ] = 48,

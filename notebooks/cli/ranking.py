@@ -39,7 +39,7 @@ class Request:
     people: int = 200
     seed: int = 0
     tracking: str | None = None
-    norm: str = "max"
+    norm: str = "episodes"
     trials: int = 48
     by: str = "model"
     parameters: int = 128

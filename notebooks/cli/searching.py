@@ -39,7 +39,7 @@ def search_command(
     ] = 200,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
     tracking: Tracking = None,
-    norm: NormName = "max",
+    norm: NormName = "episodes",
     output: Annotated[
         Path | None,
         typer.Option(

@@ -43,7 +43,7 @@ class Request:
     people: int = 24
     seed: int = 0
     samples: int = 64
-    norm: str = "max"
+    norm: str = "episodes"
 
 
 def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:

@@ -153,7 +153,9 @@ def sensitivity_command(
         typer.Option("--method", metavar="|".join(METHODS), help="Total Sobol indices: shares of the variance."),
     ] = "sobol",
     samples: Annotated[int, typer.Option("--samples", metavar="N", help="Base samples, a power of 2.")] = 64,
-    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="max, rms or integral.")] = "max",
+    norm: Annotated[
+        str, typer.Option("--norm", metavar="NAME", help="episodes, naming, max, rms or integral.")
+    ] = "episodes",
     output: Annotated[
         Path | None,
         typer.Option(

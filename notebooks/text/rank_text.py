@@ -72,7 +72,7 @@ def caveat(result: dict[str, Any]) -> str:
     crowd = "1 virtual person" if result["people"] == 1 else f"{result['people']} virtual people"
     changes = result["rig_changes"]
     what_if = f" with {', '.join(changes)}" if changes else ""
-    norm = "" if result["norm"] == "max" else f", {result['norm']} norm"
+    norm = "" if result["norm"] == "episodes" else f", {result['norm']} norm"
     return (
         f"Predicted for {crowd} on the {result['rig']} rig{what_if} "
         f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "

@@ -16,7 +16,9 @@ from thermicon.icons.number_text import decimals, fixed, verdict
 
 from ..arrays import Array
 from ..identification.distance import difference_trace, identification_dprime, percept_distance
-from ..observer.observer import CHANNELS, Channel, Norm, Observer, check_norm
+from ..identification.episodes import remembered
+from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, TraceNorm, check_norm, trace_norm
+from ..observer.observer import Observer
 from ..sensation.features import (
     STILL_K,
     direction_words,
@@ -26,6 +28,7 @@ from ..sensation.features import (
     receptor_C,
 )
 from ..sensation.percept import Percept
+from .remembered_reasons import carrying_feature
 from .rules import load_rules
 
 if TYPE_CHECKING:
@@ -54,9 +57,9 @@ def pair_reasons(
     felt_a: Percept,
     felt_b: Percept,
     observer: Observer | None = None,
-    norm: Norm = "max",
+    norm: Norm = USUAL_NORM,
 ) -> tuple[Reason, ...]:
-    """What separates the two icons, or fails to: direction, peaks, rates, onsets, and the largest difference.
+    """What separates the two icons, or fails to: what carries the distance, then direction, peaks, rates, onsets.
 
     Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm of distance
     with which the two are distinguished from memory.
@@ -67,12 +70,12 @@ def pair_reasons(
         )
         return (Reason(text, {}, "K"),)
     shared = tuple(c for c in directions(a) if c in directions(b))
-    found = [_direction(a, b)]
+    person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
+    found = [_carrying(a, b, felt_a, felt_b, person, chosen), _direction(a, b)]
     for channel in shared:
         found.append(_peaks(a, b, channel))
         found.append(_rates(a, b, channel))
     found.append(_onsets(a, b, felt_a, felt_b))
-    found.append(_largest(a, b, felt_a, felt_b, Observer.load() if observer is None else observer, check_norm(norm)))
     return tuple(found)
 
 
@@ -141,7 +144,16 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> Reason:
     return Reason(text, {"a": felt_a.onset_s, "b": felt_b.onset_s, "difference": gap, "threshold": needed}, "s")
 
 
-def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm) -> Reason:
+def _carrying(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm) -> Reason:
+    """What carries the distance from memory: a feature of episodes, or the largest difference of traces."""
+    trace = trace_norm(norm)
+    if trace is not None:
+        return _largest(a, b, felt_a, felt_b, observer, trace)
+    episodes = remembered((felt_a, felt_b), observer)
+    return Reason(*carrying_feature((_name(a), _name(b)), episodes, (0, 1), observer, norm), "d′")
+
+
+def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: TraceNorm) -> Reason:
     """When they differ most and by how much in each channel, and the d′ that memory noise leaves of it."""
     over_time = difference_trace(felt_a, felt_b, observer)
     k = int(np.hypot(over_time[0], over_time[1]).argmax())

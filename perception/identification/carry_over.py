@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..observer.observer import NORMS, Norm, Observer
+from ..observer.channels import NORMS, TRACE_NORMS, Norm
+from ..observer.observer import Observer
 from ..sensation.percept import perceive_many, uniform_clock
 from .distance import identification_noise, percept_distances
+from .episodes import Episodes, episode_distances
 from .task import Task
 
 if TYPE_CHECKING:
@@ -29,7 +31,8 @@ RATE_HZ = 25.0
 class CarryOver:
     """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons).
 
-    In sensation units, for the nominal person, `gap_s` after the end of the icon before.
+    In sensation units, or in d′ from memory where episodes are remembered, for the nominal person, `gap_s` after the
+    end of the icon before.
     """
 
     names: tuple[str, ...]
@@ -103,9 +106,17 @@ def carry_over(
     for before, wait in enumerate(waits):
         after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
         pairs = np.stack([alone, after], axis=2)
-        found = percept_distances(pairs[0], pairs[1], dt, person)
-        apart[:, before] = [found[norm][:, 0, 1] for norm in NORMS]
-    noise = np.array([float(identification_noise(person, norm, dt * (rows - 1))) for norm in NORMS])
+        differences = percept_distances(pairs[0], pairs[1], dt, person)
+        episodes = Episodes.of(pairs[0], pairs[1], dt, person)
+        for k, norm in enumerate(NORMS):
+            if norm in TRACE_NORMS:
+                apart[k, before] = differences[norm][:, 0, 1]
+            else:
+                apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
+    duration = dt * (rows - 1)
+    noise = np.array(
+        [float(identification_noise(person, norm, duration)) if norm in TRACE_NORMS else 1.0 for norm in NORMS]
+    )
     return CarryOver(tuple(icon.name for icon in icons), gap_s, apart, noise)
 
 

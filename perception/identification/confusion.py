@@ -84,7 +84,7 @@ def confuse(
     elif icons == 2:
         named = _two(distances[:, 0, 1], favour[:, 0] - favour[:, 1])
     else:
-        named = _shared(_sampled(points, favour, seed, samples, first), distances, favour)
+        named = shared_among_identical(_sampled(points, favour, seed, samples, first), distances, favour)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
     mean = probability.mean(axis=0)
     one = sampling_error(probability, samples) if icons > 2 else 0.0
@@ -151,7 +151,7 @@ def _two(d_prime: Array, favour: Array) -> Array:
     return np.stack([np.stack([first, 1.0 - first], -1), np.stack([1.0 - second, second], -1)], -2)
 
 
-def _shared(named: Array, distances: Array, favour: Array) -> Array:
+def shared_among_identical(named: Array, distances: Array, favour: Array) -> Array:
     """Answers shared equally among identical icons, among which rounding would decide otherwise."""
     fair = (favour[:, :, None] == favour[:, None]).all(axis=0)
     same = ((distances < 1e-9).all(axis=0) & fair).astype(np.float64)

@@ -11,9 +11,10 @@ import numpy as np
 from thermicon.circuit.solver.delivery_deviation import loss_limit
 
 from ..arrays import Array
-from ..observer.observer import Observer, check_norm
+from ..observer.channels import USUAL_NORM, Norm, check_norm
+from ..observer.observer import Observer
 from ..sensation.percept import Percept, perceive
-from .distance import identification_dprime, percept_distances
+from .from_memory import dprimes_from_memory
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -78,7 +79,7 @@ def judge_delivered(
     designed: Sequence[Trace],
     delivered: Sequence[Trace],
     observer: Observer | None = None,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
 ) -> tuple[PerceivedChange, ...]:
     """Compare designed and delivered icons of a set for a nominal person (or `observer`).
 
@@ -102,12 +103,9 @@ def judge_delivered(
     )
 
 
-def _d_primes(percepts: Sequence[Percept], person: Observer, norm: str) -> Array:
-    cold = np.array([[percept.psi_cold for percept in percepts]])
-    warm = np.array([[percept.psi_warm for percept in percepts]])
-    first, chosen = percepts[0], check_norm(norm)
-    apart = percept_distances(cold, warm, first.dt_s, person)[chosen][0]
-    return identification_dprime(apart, person, chosen, first.dt_s * (first.psi_cold.size - 1))
+def _d_primes(percepts: Sequence[Percept], person: Observer, norm: Norm) -> Array:
+    felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm)
 
 
 def _pair(change: DeliveredChange) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Distance of two percepts in d′: a norm over time, divided by noise.
+"""Distance of two traces of sensation in d′: a norm over time, divided by noise.
 
 At each instant the difference is d(t) = √(Δψ_cold² + Δψ_warm²), after both sensations were
 smoothed by the uncertainty of a remembered onset. A norm makes one number of it: `max` its
@@ -10,6 +10,7 @@ in log units: ψ is about a·p·ln u far above threshold, so σ_m log units are 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from statistics import NormalDist
 
 import numpy as np
@@ -17,7 +18,8 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
-from ..observer.observer import NORMS, Norm, Observer, check_norm
+from ..observer.channels import TRACE_NORMS, TraceNorm, trace_norm
+from ..observer.observer import Observer
 from ..sensation.percept import Percept
 
 
@@ -38,7 +40,9 @@ def smooth(psi: ArrayLike, dt_s: float, uncertainty_s: float) -> Array:
     return blurred.reshape(shape)
 
 
-def percept_distances(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer) -> dict[Norm, Array]:
+def percept_distances(
+    psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, observer: Observer
+) -> dict[TraceNorm, Array]:
     """Differences between all icons of every person, in sensation units, for every norm.
 
     `psi_cold`, `psi_warm` have shape (people, icons, n_time) on one clock. Each norm gets an array
@@ -52,14 +56,14 @@ def percept_distances(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, obs
         raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
     people, icons, _ = cold.shape
     first, second = np.triu_indices(icons, 1)
-    found = np.zeros((people, first.size, len(NORMS)))
+    found = np.zeros((people, first.size, len(TRACE_NORMS)))
 
     def work(part: slice) -> None:
         kernels.differences(cold[part], warm[part], dt_s, found[part])
 
     over_rows(work, people, cold.size)
-    matrices: dict[Norm, Array] = {}
-    for k, norm in enumerate(NORMS):
+    matrices: dict[TraceNorm, Array] = {}
+    for k, norm in enumerate(TRACE_NORMS):
         matrix = np.zeros((people, icons, icons))
         matrix[:, first, second] = found[..., k]
         matrix[:, second, first] = found[..., k]
@@ -67,8 +71,8 @@ def percept_distances(psi_cold: ArrayLike, psi_warm: ArrayLike, dt_s: float, obs
     return matrices
 
 
-def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, norm: Norm = "max") -> float:
-    """Distance of two percepts in sensation units.
+def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, norm: str = "max") -> float:
+    """Distance of two percepts back to back, in sensation units.
 
     Parameters
     ----------
@@ -82,24 +86,30 @@ def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, n
     Raises
     ------
     ValueError
-        For different clocks and for an unknown norm.
+        For different clocks, and for another norm: episodes are compared from memory (`dprime_from_memory`).
 
     """
     person = Observer.load() if observer is None else observer
-    cold, warm, dt = _common(a, b)
-    return float(percept_distances(cold[None], warm[None], dt, person)[check_norm(norm)][0, 0, 1])
+    chosen = trace_norm(norm)
+    if chosen is None:
+        raise ValueError(
+            f"there is no norm {norm!r} of traces: choose one of {', '.join(TRACE_NORMS)}, or compare from memory with "
+            "dprime_from_memory"
+        )
+    cold, warm, dt = on_one_clock([a, b])
+    return float(percept_distances(cold[None], warm[None], dt, person)[chosen][0, 0, 1])
 
 
 def difference_trace(a: Percept, b: Percept, observer: Observer | None = None) -> Array:
     """Signed smoothed differences a − b over time, shape (2, n_time): cold, warm."""
     person = Observer.load() if observer is None else observer
-    cold, warm, dt = _common(a, b)
+    cold, warm, dt = on_one_clock([a, b])
     smoothed = [smooth(psi, dt, person.onset_uncertainty_s) for psi in (cold, warm)]
     return np.stack([psi[0] - psi[1] for psi in smoothed])
 
 
 def identification_dprime(
-    difference: ArrayLike, observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0
+    difference: ArrayLike, observer: Observer, norm: TraceNorm, duration_s: float, memory: ArrayLike = 1.0
 ) -> Array:
     """d′ of a difference when one of the two comes from memory.
 
@@ -110,21 +120,23 @@ def identification_dprime(
     return found
 
 
-def identification_noise(observer: Observer, norm: Norm, duration_s: float, memory: ArrayLike = 1.0) -> Array:
+def identification_noise(observer: Observer, norm: TraceNorm, duration_s: float, memory: ArrayLike = 1.0) -> Array:
     """Noise in the units of a norm when one of two comes from memory, shaped as `memory`."""
     log_noise = observer.memory_noise(norm) * np.asarray(memory, dtype=np.float64)
     noise: Array = np.hypot(sensory_noise(norm, observer, duration_s), observer.a * observer.p * log_noise)
     return noise
 
 
-def sensory_noise(norm: Norm, observer: Observer, duration_s: float) -> float:
+def sensory_noise(norm: TraceNorm, observer: Observer, duration_s: float) -> float:
     """Sensory noise in the units of a norm: 1, but for the integral of correlated noise √(2τT)."""
-    if check_norm(norm) == "integral":
+    if norm == "integral":
         return math.sqrt(2.0 * observer.noise_correlation_s * duration_s)
     return 1.0
 
 
-def memory_from_task(difference: float, proportion: float, observer: Observer, norm: Norm, duration_s: float) -> float:
+def memory_from_task(
+    difference: float, proportion: float, observer: Observer, norm: TraceNorm, duration_s: float
+) -> float:
     """Memory noise (log units) that gives `proportion` correct for a difference in a two-interval forced choice.
 
     The choice is correct with probability Φ(d′/√2).
@@ -134,13 +146,16 @@ def memory_from_task(difference: float, proportion: float, observer: Observer, n
     return math.sqrt(max(noise * noise - sensory * sensory, 0.0)) / (observer.a * observer.p)
 
 
-def _common(a: Percept, b: Percept) -> tuple[Array, Array, float]:
-    if not math.isclose(a.dt_s, b.dt_s, rel_tol=1e-9):
-        raise ValueError(f"percepts are on clocks of {a.dt_s:g} s and {b.dt_s:g} s: simulate both at one rate")
-    n = max(a.psi_cold.size, b.psi_cold.size)
-    cold = np.stack([_held(p.psi_cold, n) for p in (a, b)])
-    warm = np.stack([_held(p.psi_warm, n) for p in (a, b)])
-    return cold, warm, a.dt_s
+def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:
+    """Sensations (percepts, n_time), cold and warm, and their step in s; shorter ones are held at their end."""
+    dt = percepts[0].dt_s
+    for each in percepts:
+        if not math.isclose(each.dt_s, dt, rel_tol=1e-9):
+            raise ValueError(f"percepts are on clocks of {dt:g} s and {each.dt_s:g} s: simulate all at one rate")
+    n = max(each.psi_cold.size for each in percepts)
+    cold = np.stack([_held(each.psi_cold, n) for each in percepts])
+    warm = np.stack([_held(each.psi_warm, n) for each in percepts])
+    return cold, warm, dt
 
 
 def _held(psi: Array, n: int) -> Array:

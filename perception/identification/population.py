@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..arrays import Array
-from ..observer.observer import Norm, Observer
+from ..observer.channels import TRACE_NORMS, Norm, TraceNorm, trace_norm
+from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
 from .distance import identification_noise, percept_distances
+from .episodes import Episodes, episode_distances
 from .measures import information_bits, proportion_correct
+from .naming import SAMPLES as NAMED_SAMPLES
+from .naming import name_directly
 from .task import USUAL, Task
 
 
@@ -38,12 +42,14 @@ class ReceptorTemperatures:
 
 @dataclass(frozen=True, slots=True)
 class PopulationResponse:
-    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s.
+    """Episodes of every person and icon, detection probabilities (people, icons), duration s.
 
-    `peaks` (people, icons) are the largest sensations, cold and warm.
+    `apart` (people, icons, icons) are differences of traces for the norms that were asked for; `peaks` (people, icons)
+    are the largest sensations, cold and warm.
     """
 
-    apart: dict[Norm, Array]
+    episodes: Episodes
+    apart: dict[TraceNorm, Array]
     probability: Array
     duration_s: float
     peaks: tuple[Array, Array]
@@ -58,8 +64,10 @@ class Scores:
     detected: Array
 
 
-def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> PopulationResponse:
-    """Detection of every icon by every person, and the distances between the icons."""
+def respond(
+    played: ReceptorTemperatures, crowd: People, observer: Observer, norms: Iterable[Norm] = ()
+) -> PopulationResponse:
+    """Detection of every icon by every person, its episodes, and what norms of traces need."""
     dt, rows = uniform_clock(played.time_s)
     cold, warm = perceive_many(
         played.cold_C[..., :rows],
@@ -82,13 +90,23 @@ def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> 
         decision_s=crowd.decision_s[:, None],
     )
     peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    return PopulationResponse(percept_distances(cold, warm, dt, observer), found.probability, dt * (rows - 1), peaks)
+    episodes = Episodes.of(cold, warm, dt, observer, crowd.criterion_cold, crowd.criterion_warm)
+    apart = percept_distances(cold, warm, dt, observer) if any(norm in TRACE_NORMS for norm in norms) else {}
+    return PopulationResponse(episodes, apart, found.probability, dt * (rows - 1), peaks)
 
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) multiplies the memory noise."""
-    own = task.memory(memory, felt.peaks, observer)[:, None, None]
-    return felt.apart[norm] / task.between(identification_noise(observer, norm, felt.duration_s, own), norm)
+    own, trace = task.memory(memory, felt.peaks, observer), trace_norm(norm)
+    if trace is not None:
+        noise = identification_noise(observer, trace, felt.duration_s, own[:, None, None])
+        found: Array = felt.apart[trace] / task.between(noise, norm)
+        return found
+    apart: Array = episode_distances(felt.episodes, felt.episodes, observer, norm, own)
+    if task.carried:
+        noise = own[:, None, None]
+        apart = apart * noise / task.between(noise, norm)
+    return apart
 
 
 def identify(
@@ -107,6 +125,13 @@ def identify(
     """
     d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
     bias = task.favour(first, len(crowd), d_prime.shape[-1], seed)
+    if norm == "naming":
+        memory = task.memory(crowd.memory, felt.peaks, observer)
+        named = name_directly(
+            felt.episodes, observer, memory=memory, louder=task.louder(memory, norm), lapse=crowd.lapse, bias=bias,
+            seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
+        )  # fmt: skip
+        return d_prime, named
     return d_prime, confuse(d_prime, lapse=crowd.lapse, bias=bias, seed=seed, samples=samples, first=first)
 
 
@@ -120,6 +145,6 @@ def score(
     task: Task = USUAL,
 ) -> Scores:
     """Scores by one observer, without what only a report needs."""
-    felt = respond(played, crowd, observer)
+    felt = respond(played, crowd, observer, [norm])
     confusion = identify(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
     return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
@@ -19,15 +20,19 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, NORMS, Norm
+from ..observer.channels import CHANNELS, TRACE_NORMS, Norm, TraceNorm, trace_norm
 from ..observer.observer import Observer
 from ..observer.variants import source_of
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.fits import RIG
 from ..sensation.percept import perceive_many
 from .distance import memory_from_task, percept_distances
+from .episodes import Episodes, episode_distances
 
 TAIL_S = 10.0
+MEMORY_NORMS: tuple[Norm, ...] = ("episodes", *TRACE_NORMS)
+"""Norms with a memory noise of their own; both forms of episodes share one."""
+LOG_NOISE = (math.log(1e-3), math.log(20.0))
 
 
 def memory_noise(known: Table, observer: Observer) -> list[Record]:
@@ -37,11 +42,8 @@ def memory_noise(known: Table, observer: Observer) -> list[Record]:
     criteria = known.one("criterion of the rate task").interval
     cases = rate_task(known, observer)
     records = []
-    for norm in NORMS:
-        found = [
-            [memory_from_task(case.size[norm], proportion, observer, norm, case.duration_s) for case in cases]
-            for proportion in criteria
-        ]
+    for norm in MEMORY_NORMS:
+        found = [[_noise_of(case, norm, proportion, observer) for case in cases] for proportion in criteria]
         ends = [_root_mean_square(values) for values in found]
         every = [v for values in found for v in values]
         spread = max(max(values) / max(min(values), 1e-9) for values in found)
@@ -73,10 +75,41 @@ def memory_record(norm: Norm, observer: Observer | None, value: float, low: floa
 
 
 class RateCase(NamedTuple):
-    """One condition of the rate task: difference of its two coolings by each norm, and how long they last."""
+    """One condition of the rate task: difference of its two coolings by each norm of traces, how long they last, and
+    their episodes.
+    """
 
-    size: dict[Norm, float]
+    size: dict[TraceNorm, float]
     duration_s: float
+    episodes: Episodes
+
+
+def _noise_of(case: RateCase, norm: Norm, proportion: float, observer: Observer) -> float:
+    """Memory noise at which a condition comes out with a proportion correct."""
+    trace = trace_norm(norm)
+    if trace is not None:
+        return memory_from_task(case.size[trace], proportion, observer, trace, case.duration_s)
+    return _episode_noise(case.episodes, proportion, observer)
+
+
+def _episode_noise(episodes: Episodes, proportion: float, observer: Observer) -> float:
+    """The same of episodes, with intensity remembered as well as rate: a two-interval choice is right in Φ(d′/√2)."""
+    from scipy.optimize import brentq
+
+    wanted = math.sqrt(2.0) * NormalDist().inv_cdf(proportion)
+
+    def missed(log_noise: float) -> float:
+        memory = replace(observer.memory, timing=math.exp(log_noise), share=0.0)
+        person = replace(observer, memory=memory)
+        return float(episode_distances(episodes, episodes, person, "episodes")[0, 0, 1]) - wanted
+
+    low, high = LOG_NOISE
+    if missed(high) > 0.0 or missed(low) < 0.0:
+        raise ValueError(
+            f"no memory noise of {math.exp(low):.2g} to {math.exp(high):.2g} log units gives the rate task "
+            f"{proportion:g} correct"
+        )
+    return math.exp(float(brentq(missed, low, high, xtol=1e-6)))
 
 
 def rate_task(known: Table, observer: Observer) -> list[RateCase]:
@@ -84,7 +117,8 @@ def rate_task(known: Table, observer: Observer) -> list[RateCase]:
     cases = []
     for cold, warm, dt in _felt(known, observer):
         apart = percept_distances(cold[None], warm[None], dt, observer)
-        cases.append(RateCase({norm: float(apart[norm][0, 0, 1]) for norm in NORMS}, dt * (cold.shape[-1] - 1)))
+        sizes = {norm: float(apart[norm][0, 0, 1]) for norm in TRACE_NORMS}
+        cases.append(RateCase(sizes, dt * (cold.shape[-1] - 1), Episodes.of(cold[None], warm[None], dt, observer)))
     return cases
 
 

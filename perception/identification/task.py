@@ -30,9 +30,10 @@ class Task:
     `context` (0–1) is the share of memory noise, in its logarithm, that follows the range of the set. `gap_s` is the
     time from the end of one icon to the next (None: all has faded). `bias` is the SD over people and names of the log
     likelihood that favours a name. There is no thermal record of the last two, nor of `context` above 0.
-    The rest is filled in by `prepared` for the icons at hand: `carried` (norms, icons) is what the icons before change
-    of each, in sensation units; `counted` are the places of the icons that will be played, which make up the range
-    (none: all); `places` are those that the icons had in the set that they come from, on which the bias depends.
+    The rest is filled in by `prepare_task` for the icons at hand: `carried` (norms, icons) is what the icons before
+    change of each, in sensation units, or in d′ where episodes are remembered; `counted` are the places of the icons
+    that will be played, which make up the range (none: all); `places` are those that the icons had in the set that
+    they come from, on which the bias depends.
 
     >>> Task(context=1.5)
     Traceback (most recent call last):
@@ -82,6 +83,14 @@ class Task:
             return noise
         own = np.array(self.carried[NORMS.index(norm)])
         found: Array = np.sqrt(noise**2 + 0.5 * (own[:, None] ** 2 + own[None, :] ** 2))
+        return found
+
+    def louder(self, memory: Array, norm: Norm) -> Array | float:
+        """Multiples (people, icons) of the noise of icons that also vary with what was felt before them."""
+        if not self.carried:
+            return 1.0
+        own = np.array(self.carried[NORMS.index(norm)])
+        found: Array = np.hypot(1.0, own[None, :] / memory[:, None])
         return found
 
     def favour(self, first: int, people: int, icons: int, seed: int) -> Array | float:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from thermicon.circuit.records import Record
 
-from ..observer.channels import NORMS
+from ..identification.rate_task import MEMORY_NORMS
 from ..observer.mechanisms import find_mechanism
 from ..observer.observer import load_thresholds, observer_records
 from ..observer.people import people_records
@@ -165,7 +165,7 @@ def predicted_table() -> str:
 
 def memory_table() -> str:
     """Noise of identification of the default observer, by norm of distance."""
-    records = [observer_records().one("memory noise", method=norm) for norm in NORMS]
+    records = [observer_records().one("memory noise", method=norm) for norm in MEMORY_NORMS]
     lines = [(f"`{record.method}`", _log_units(record.central), _ends(record)) for record in records]
     return _table(("norm", "memory noise σ (log units)", "interval"), lines)
 

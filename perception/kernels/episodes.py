@@ -1,8 +1,9 @@
-"""Compiled loops of remembered episodes: where stretches of one quality begin and end, their features, their alignment.
+"""Compiled loops of remembered episodes: where stretches of one quality begin and end, and their features.
 
 An episode of quality q opens where ψ_q reaches the criterion c_on and is not below the other quality, starts where ψ_q
 last rose through c_off = c_on/2, and closes where ψ_q falls below c_off or below the other quality. Two of one quality
-with a short gap and nothing of the other between them are one; one whose drive falls below half of both its peaks is two.
+with a short gap and nothing of the other between them are one; one whose drive falls below half of both its
+peaks is two.
 """
 
 from __future__ import annotations
@@ -14,43 +15,45 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET = range(8)
+QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET, START = range(9)
 """Columns of an episode: 0 cold or 1 warm; ln u at the peak; ln of the steepest rise of u in 1/s; ln of the time above
 half the peak in s; ln of the pause before it; sensory noise of the intensity; 1 where the end of the trace cuts it;
-ln u at the criterion."""
-FEATURES = 8
+ln u at the criterion; start in s."""
+FEATURES = 9
 MOST = 8
 """Episodes that are kept of an icon."""
 MERGED_S, SHORTEST_S, LOOK_BACK_S, PAUSE_FROM_S = 0.3, 0.2, 1.0, 0.5
 SPLIT_SHARE, HALF = 0.5, 0.5
+MOST_SEGMENTS = 32
+"""Stretches of one quality that are looked at, before short and weak ones are dropped."""
 
 
-def _segments(psi: Any, other: Any, dt: float, c_on: float, first: Any, last: Any) -> int:
+def _segments(psi: Any, other: Any, dt: float, c_on: float, c_on_other: float, first: Any, last: Any) -> int:
     """Starts and ends (inclusive samples) of stretches of one quality; how many there are."""
     count, n, t = 0, psi.size, 0
     c_off = 0.5 * c_on
     while t < n and count < first.size:
-        if psi[t] >= c_on and psi[t] >= other[t]:
-            start = t
-            while start > 0 and psi[start - 1] >= c_off:
-                start -= 1
-            end = t
-            while end + 1 < n and psi[end + 1] >= c_off and psi[end + 1] >= other[end + 1]:
-                end += 1
-            merged = False
-            if count > 0 and (start - last[count - 1]) * dt < MERGED_S:
-                merged = True
-                for k in range(last[count - 1], start):
-                    if other[k] >= c_on:
-                        merged = False
-            if merged:
-                last[count - 1] = end
-            else:
-                first[count], last[count] = start, end
-                count += 1
-            t = end + 1
-        else:
+        if psi[t] < c_on or psi[t] < other[t]:
             t += 1
+            continue
+        earliest = last[count - 1] + 1 if count > 0 else 0
+        start = t
+        while start > earliest and psi[start - 1] >= c_off:
+            start -= 1
+        end = t
+        while end + 1 < n and psi[end + 1] >= c_off and psi[end + 1] >= other[end + 1]:
+            end += 1
+        merged = count > 0 and (start - last[count - 1]) * dt < MERGED_S
+        if merged:
+            for k in range(last[count - 1] + 1, t):
+                if other[k] >= c_on_other:
+                    merged = False
+        if merged:
+            last[count - 1] = end
+        else:
+            first[count], last[count] = start, end
+            count += 1
+        t = end + 1
     return count
 
 
@@ -71,23 +74,29 @@ def _split_at(u: Any, start: int, end: int) -> int:
     return place
 
 
-def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: float, a: float, p: float, found: Any) -> int:
-    """Fill `found` (MOST, FEATURES) with the episodes of one icon in the order of their starts; how many there are."""
+def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: float, found: Any) -> int:
+    """Fill `found` (MOST, FEATURES) with the episodes of one icon in the order of their starts; how many there are.
+
+    `c_on` (2,) are the criteria of cold and warm in d′; u = (b·(e^(ψ/a) − 1))^(1/p) with b = 1/(e^(1/a) − 1).
+    """
     b = 1.0 / math.expm1(1.0 / a)
     n = psi_cold.size
-    first, last = np.empty(32, np.int64), np.empty(32, np.int64)
-    starts, ends, kinds = np.empty(64, np.int64), np.empty(64, np.int64), np.empty(64, np.int64)
+    first, last = np.empty(MOST_SEGMENTS, np.int64), np.empty(MOST_SEGMENTS, np.int64)
+    most = 2 * MOST_SEGMENTS
+    starts, ends, kinds = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     total = 0
     drives = np.empty((2, n))
     for quality in range(2):
         psi = psi_cold if quality == 0 else psi_warm
         other = psi_warm if quality == 0 else psi_cold
+        count = segments(psi, other, dt, c_on[quality], c_on[1 - quality], first, last)
+        if count == 0:
+            continue
         for t in range(n):
             drives[quality, t] = (b * math.expm1(psi[t] / a)) ** (1.0 / p) if psi[t] > 0.0 else 0.0
-        count = segments(psi, other, dt, c_on, first, last)
         k = 0
         while k < count:
-            place = split_at(drives[quality], first[k], last[k]) if count < 31 else -1
+            place = split_at(drives[quality], first[k], last[k]) if count < MOST_SEGMENTS - 1 else -1
             if place >= 0:
                 for m in range(count, k + 1, -1):
                     first[m], last[m] = first[m - 1], last[m - 1]
@@ -100,7 +109,7 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: float, a: float, p:
             peak = 0.0
             for t in range(first[k], last[k] + 1):
                 peak = max(peak, psi[t])
-            if (last[k] - first[k]) * dt >= SHORTEST_S and peak >= c_on and total < 64:
+            if (last[k] - first[k]) * dt >= SHORTEST_S and peak >= c_on[quality] and total < most:
                 starts[total], ends[total], kinds[total] = first[k], last[k], quality
                 total += 1
     order = np.argsort(starts[:total])
@@ -129,61 +138,23 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: float, a: float, p:
         found[k, PAUSE] = math.log(max(starts[e] * dt - before, 0.0) + PAUSE_FROM_S)
         found[k, NOISE] = (b + raised) / (a * p * raised)
         found[k, CUT] = 1.0 if ends[e] >= n - 1 else 0.0
-        found[k, ONSET] = math.log((b * math.expm1(c_on / a)) ** (1.0 / p))
+        found[k, ONSET] = math.log((b * math.expm1(c_on[kinds[e]] / a)) ** (1.0 / p))
+        found[k, START] = starts[e] * dt
         before = ends[e] * dt
     return kept
 
 
-def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: float) -> float:
-    """d′² between two sequences of episodes: matches and unmatched ones at the least cost, in order."""
-    cost = np.zeros((ones + 1, twos + 1))
-    for i in range(1, ones + 1):
-        cost[i, 0] = cost[i - 1, 0] + unmatched(one[i - 1], intensity)
-    for j in range(1, twos + 1):
-        cost[0, j] = cost[0, j - 1] + unmatched(two[j - 1], intensity)
-    for i in range(1, ones + 1):
-        for j in range(1, twos + 1):
-            x, y = one[i - 1], two[j - 1]
-            best = min(cost[i - 1, j] + unmatched(x, intensity), cost[i, j - 1] + unmatched(y, intensity))
-            if x[QUALITY] == y[QUALITY]:
-                sd = intensity[int(x[QUALITY])]
-                noise = sd * sd + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
-                match = (x[INTENSITY] - y[INTENSITY]) ** 2 / noise
-                time = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
-                if x[CUT] == 0.0 and y[CUT] == 0.0:
-                    time += (x[LENGTH] - y[LENGTH]) ** 2
-                best = min(best, cost[i - 1, j - 1] + match + time / (timing * timing))
-            cost[i, j] = best
-    return float(cost[ones, twos])
-
-
-def _unmatched(x: Any, intensity: Any) -> float:
-    above = max(x[INTENSITY] - x[ONSET], 0.0)
-    sd = intensity[int(x[QUALITY])]
-    return above * above / (sd * sd + x[NOISE] * x[NOISE])
-
-
-def _episode_distances(
-    cold: Any, warm: Any, dt: float, criterion: Any, a: float, p: float, intensity: Any, timing: Any, apart: Any
-) -> None:
-    """d′ between all icons of every person: (people, icons, icons); noises are (people, 2) and (people,)."""
-    people, icons, _ = cold.shape
-    found = np.empty((icons, MOST, FEATURES))
-    counts = np.empty(icons, np.int64)
-    for person in range(people):
-        for i in range(icons):
-            counts[i] = episodes(cold[person, i], warm[person, i], dt, criterion[person], a, p, found[i])
-        for i in range(icons):
-            apart[person, i, i] = 0.0
-            for j in range(i + 1, icons):
-                square = aligned(found[i], counts[i], found[j], counts[j], intensity[person], timing[person])
-                apart[person, i, j] = apart[person, j, i] = math.sqrt(square)
+def _all_episodes(cold: Any, warm: Any, dt: float, c_on: Any, a: float, p: float, found: Any, counts: Any) -> None:
+    """Episodes of all icons of every person; `cold` (people, icons, time), `c_on` (people, 2)."""
+    for person in range(cold.shape[0]):
+        for icon in range(cold.shape[1]):
+            counts[person, icon] = episodes(
+                cold[person, icon], warm[person, icon], dt, c_on[person], a, p, found[person, icon]
+            )
 
 
 _compile: Any = kernel(nogil=True)
 segments: Any = _compile(_segments)
 split_at: Any = _compile(_split_at)
 episodes: Any = _compile(_episodes)
-unmatched: Any = _compile(_unmatched)
-aligned: Any = _compile(_aligned)
-episode_distances: Any = _compile(_episode_distances)
+all_episodes: Any = _compile(_all_episodes)

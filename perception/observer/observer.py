@@ -6,6 +6,7 @@ says what it was calibrated on, or that it is assumed, and carries its interval.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,9 +18,10 @@ import numpy as np
 from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
-from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
+from .channels import CHANNELS, NORMS, Channel, Norm, TraceNorm, check_norm
 from .delays import LEG_M_PER_S, Conduction
 from .mechanisms import check_without
+from .memory import EpisodeMemory, Ratings
 from .transducer import Transducer
 from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
@@ -66,9 +68,9 @@ class Observer:
 
     `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
     presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
-    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable`
-    says what the receptors go by, temperature or heat flow, and `model` how; `without` names the mechanisms that are
-    turned off.
+    `decision_s`, `memory` how well episodes are remembered, `memory_noise` the noise of remembered traces in log units
+    of drive for each norm. `variable` says what the receptors go by, temperature or heat flow, and `model` how;
+    `without` names the mechanisms that are turned off.
 
     >>> person = Observer.load()
     >>> 0.5 < person.receptor("warm").velocity_m_per_s < 2.5
@@ -96,6 +98,7 @@ class Observer:
     memory_max: float
     memory_rms: float
     memory_integral: float
+    memory: EpisodeMemory
     p: float = 1.0
     gain_noise: float = 0.0
     choice_s: float = 0.0
@@ -203,6 +206,11 @@ class Observer:
                 dynamic_Hz_s_per_K=abs(number("dynamic gain", channel)),
             )
 
+        def ratings(channel: Channel) -> Ratings:
+            rated, exponent = number("mean rating", channel), number("rating exponent", channel)
+            scatter = math.hypot(number("scatter of ratings"), exponent * rated * number("gain noise"))
+            return Ratings(number("rating at threshold", channel), exponent, rated, scatter)
+
         low, high = table.one("neutral zone").interval
         return cls(
             cold=receptor("cold"),
@@ -226,6 +234,13 @@ class Observer:
             memory_max=number("memory noise", method="max"),
             memory_rms=number("memory noise", method="rms"),
             memory_integral=number("memory noise", method="integral"),
+            memory=EpisodeMemory(
+                timing=number("memory noise", method="episodes"),
+                share=number("share of the scatter of ratings"),
+                missing=number("cost of a missing episode"),
+                cold=ratings("cold"),
+                warm=ratings("warm"),
+            ),
             variable=variable,
             model=model,
             count_s=number("window of counted impulses"),
@@ -271,9 +286,9 @@ class Observer:
         """How much larger thresholds are at a site than on the thenar; 1 where nothing is known of the site."""
         return self.receptor(channel).forearm_factor if site is not None and on_forearm(site) else 1.0
 
-    def memory_noise(self, norm: Norm) -> float:
-        """Memory noise of a norm, log units."""
-        return {"max": self.memory_max, "rms": self.memory_rms, "integral": self.memory_integral}[check_norm(norm)]
+    def memory_noise(self, norm: TraceNorm) -> float:
+        """Memory noise of a norm of traces, log units."""
+        return {"max": self.memory_max, "rms": self.memory_rms, "integral": self.memory_integral}[norm]
 
     def __repr__(self) -> str:
         variant = (
@@ -281,7 +296,7 @@ class Observer:
         )
         return (
             f"Observer({variant}a {self.a:.3g}, p {self.p:.3g}, criterion {self.criterion:.3g} d′, "
-            f"memory noise {self.memory_max:.3g} log units, "
+            f"memory noise {self.memory.timing:.3g} log units, "
             f"threshold drive cold {self.cold.threshold_drive:.3g} {self.drive_unit}, "
             f"warm {self.warm.threshold_drive:.3g} {self.drive_unit})"
         )

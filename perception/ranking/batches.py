@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 RATE_HZ = 100.0
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
-OTHER_SAMPLES = 512
+OTHER_SAMPLES, OTHER_NAMED = 512, 1152
 EXPERIMENTS = 20
 PROBES = ("cold_receptor_C", "warm_receptor_C")
 
@@ -137,11 +137,13 @@ def run(job: Job, number: int) -> BatchResult:
     )
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
     observer = Observer.load()
-    felt = respond(played, crowd, observer)
+    felt = respond(played, crowd, observer, NORMS)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     others = [
         np.diagonal(
-            identify(felt, n, crowd, observer, job.seed, OTHER_SAMPLES, start, job.task)[1].probability,
+            identify(felt, n, crowd, observer, job.seed, _other_samples(n, len(job.icons)), start, job.task)[
+                1
+            ].probability,
             axis1=1,
             axis2=2,
         )
@@ -162,6 +164,11 @@ def run(job: Job, number: int) -> BatchResult:
         cold_C=first_people.cold_C,
         warm_C=first_people.warm_C,
     )
+
+
+def _other_samples(norm: Norm, icons: int) -> int:
+    """Trials of an icon to a person by a norm that is only compared: fewer where naming goes through all templates."""
+    return OTHER_SAMPLES if norm != "naming" else max(4, OTHER_NAMED // icons**2)
 
 
 def locally(job: Job, numbers: list[int], workers: int | None = None) -> Iterator[tuple[int, BatchResult]]:

@@ -15,15 +15,17 @@ import numpy as np
 from thermicon.circuit.program import own_version
 
 from ..arrays import Array
-from ..comparison.distance_components import course, course_components
+from ..comparison.distance_components import components_of
 from ..comparison.reasons import pair_reasons
 from ..comparison.rule_score import disagreements, icon_score, pair_margin, worst_by_rules
 from ..comparison.rules import icon_rules, pair_rules, rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
+from ..identification.episodes import remembered
 from ..identification.intervals import DRAWS, parameter_intervals
 from ..identification.map import spread_over_people
 from ..identification.population import Scores
 from ..identification.task import USUAL, Task
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import DATA, Norm, Observer, check_norm
 from ..observer.people import People, draw_people
 from ..selection.choose import Choice, choose
@@ -54,7 +56,7 @@ def rank(
     seed: int = 0,
     trials: int = 48,
     tracking: str | None = None,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
     by: str = "model",
     parameters: int = DRAWS,
     choosing: Selection | None = None,
@@ -83,7 +85,8 @@ def rank(
     tracking
         `replay`, `display` or `ideal` (None: what suits the control of each icon).
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered: `episodes` (compared in logarithms), `naming` (episodes as ratings, each trial named
+        directly), or traces, whose difference over time counts by `max`, `rms` or `integral`.
     by
         `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
     parameters
@@ -222,7 +225,7 @@ def _assemble(
 ) -> _Made:
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     pairs = []
-    courses = [course(trace, percept, observer) for trace, percept in zip(traces, percepts, strict=True)]
+    episodes = remembered(percepts, observer)
     for i, j in combinations(range(len(icons)), 2):
         why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
         rules = pair_rules(traces[i], traces[j])
@@ -235,7 +238,7 @@ def _assemble(
                 why=tuple(reason.text for reason in why),
                 rules=rules,
                 rules_margin=pair_margin(rules),
-                parts=course_components(courses[i], courses[j], observer),
+                parts=components_of(episodes, i, j, observer),
             )
         )
     scored = []

@@ -14,6 +14,7 @@ from ..identification.confusion import SAMPLES, confuse
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL, Task
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, Observer
 from ..observer.people import People, draw_people
 from .subset_identification import Objective
@@ -63,7 +64,7 @@ def appraise(
     people: int | People = 200,
     seed: int = 0,
     tracking: str | None = None,
-    norm: Norm = "max",
+    norm: Norm = USUAL_NORM,
     samples: int = SAMPLES,
     task: Task = USUAL,
 ) -> Appraisal:
@@ -115,7 +116,7 @@ def population_dprime(
     rig: Rig,
     crowd: People,
     tracking: str | None = None,
-    norm: Norm = "max",
+    norm: Norm = USUAL_NORM,
     *,
     rigs: Sequence[Rig] | None = None,
     rate_Hz: float = RATE_HZ,
@@ -134,6 +135,9 @@ def population_dprime(
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
     felt = respond(
-        ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2), crowd, observer
+        ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2),
+        crowd,
+        observer,
+        [norm],
     )
     return memory_dprime(felt, norm, crowd.memory, observer, task), durations

@@ -17,6 +17,7 @@ from ..arrays import Array
 from ..identification.carry_over import CarryOver, task_among
 from ..identification.intervals import ParameterIntervals
 from ..identification.task import USUAL, Task
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm
 from ..observer.people import People
 from .appraise import Appraisal, appraise
@@ -116,7 +117,7 @@ def choose(
     *,
     seed: int = 0,
     tracking: str | None = None,
-    norm: Norm = "max",
+    norm: Norm = USUAL_NORM,
     task: Task = USUAL,
     left: CarryOver | None = None,
 ) -> Choice:

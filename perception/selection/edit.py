@@ -18,6 +18,7 @@ from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
 from ..identification.task import USUAL, Task
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm
 from ..observer.people import People, draw_people
 from .appraise import population_dprime
@@ -109,7 +110,7 @@ def cheapest_edit(
     people: int | People = CONFIRMED_BY,
     seed: int = 0,
     tracking: str | None = None,
-    norm: Norm = "max",
+    norm: Norm = USUAL_NORM,
     before: Array | None = None,
     task: Task = USUAL,
 ) -> Edit | NoEdit:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.distance import identification_dprime, percept_distances
+from ..identification.from_memory import dprimes_from_memory
 from ..observer.observer import Norm, Observer
 from ..sensation.percept import perceive_many, uniform_clock
 from .request import objection
@@ -64,14 +64,7 @@ def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None =
     person = Observer.load() if observer is None else observer
     n = max(tried.cold.shape[1], kept.cold.shape[1])
     one, other = (_held(tried.cold, n), _held(tried.warm, n)), (_held(kept.cold, n), _held(kept.warm, n))
-    found = np.empty((len(one[0]), len(other[0])))
-    for row in range(len(found)):
-        cold, warm = (
-            np.stack([np.broadcast_to(mine[row], theirs.shape), theirs], axis=1)
-            for mine, theirs in zip(one, other, strict=True)
-        )
-        found[row] = percept_distances(cold, warm, tried.dt_s, person)[norm][:, 0, 1]
-    return identification_dprime(found, person, norm, tried.dt_s * (n - 1))
+    return dprimes_from_memory(one, other, tried.dt_s, person, norm)
 
 
 def end_of(durations_s: Sequence[float]) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.confusion import confuse
 from ..identification.measures import information_bits, proportion_correct
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
 from .appraise import population_dprime
@@ -79,7 +80,7 @@ def compare_sets(
     draws: int = DRAWS,
     seed: int = 0,
     tracking: str | None = None,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
 ) -> SetComparison:
     """Probability that set A is better than set B for a person and a rig drawn at random.
 
@@ -106,7 +107,7 @@ def best_set_probability(
     draws: int = DRAWS,
     seed: int = 0,
     tracking: str | None = None,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
 ) -> SetRobustness:
     """Which of several sets is best, and how often, over people, contact, ambient and rig.
 

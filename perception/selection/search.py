@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.people import draw_people
 from .appraise import Appraisal, appraise
@@ -67,7 +68,7 @@ def search(
     people: int = 200,
     seed: int = 0,
     tracking: str | None = None,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
     progress: Progress | None = None,
 ) -> SearchResult:
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.

@@ -17,11 +17,21 @@ import numpy as np
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
+from ..observer.channels import USUAL_NORM, noise_norm
 from ..observer.observer import CHANNELS, NORMS, Norm, Observer, observer_records, on_forearm, variant_records
 from .fits import anchored
 
 PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
 ANCHORED = "threshold drive"
+REMEMBERED: dict[str, tuple[Norm, ...]] = {
+    "share of the scatter of ratings": ("episodes", "naming"),
+    "scatter of ratings": ("episodes", "naming"),
+    "rating exponent": ("episodes", "naming"),
+    "rating at threshold": ("naming",),
+    "cost of a missing episode": ("naming",),
+    "onset uncertainty": ("max", "rms", "integral"),
+}
+"""Norms that make use of a constant, where not all of them do."""
 LOG_FROM = 1.5
 """An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
 
@@ -62,7 +72,7 @@ class ObserverParameter:
         return f"ObserverParameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
 
 
-def observer_parameters(norm: Norm = "max", site: str = "thenar") -> tuple[ObserverParameter, ...]:
+def observer_parameters(norm: Norm = USUAL_NORM, site: str = "thenar") -> tuple[ObserverParameter, ...]:
     """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
     known = variant_records()
     whole = _at_site(known, site)
@@ -118,7 +128,9 @@ def _free(record: Record, norm: Norm, site: str, known: Table, whole: Observer) 
     low, high = record.interval
     if record.value is None or low == high or record.quantity in PER_PERSON or record.quantity.startswith(ANCHORED):
         return False
-    if record.method in NORMS and record.method != norm:
+    if record.method in NORMS and record.method != noise_norm(norm):
+        return False
+    if record.quantity in REMEMBERED and norm not in REMEMBERED[record.quantity]:
         return False
     moved = Table(known.name, tuple(replace(r, value=low) if r is record else r for r in known))
     return low != record.value and _at_site(moved, site) != whole

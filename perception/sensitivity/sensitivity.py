@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.population import score
 from ..kernels.parallel import in_order
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, check_norm
 from ..ranking.ranking import with_changes
 from ..sensation.parameters import ObserverParameter, latin, observer_at
@@ -143,7 +144,7 @@ def sensitivity(
     people: int = 24,
     seed: int = 0,
     samples: int = SAMPLES,
-    norm: str = "max",
+    norm: str = USUAL_NORM,
     progress: Progress | None = None,
 ) -> Sensitivity:
     """Find the parameters that influence the prediction for a set most, over their whole intervals.

@@ -6,13 +6,15 @@ are never read. `python -m thermicon.perception.validation.calibrate` writes the
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from thermicon.circuit.records import Record, Table, dump_records
 
-from ..identification.rate_task import memory_noise, memory_record
+from ..identification.rate_task import MEMORY_NORMS, memory_noise, memory_record
+from ..inference.evidence import load_evidence
 from ..inference.results import Constant, load_constants
-from ..observer.channels import CHANNELS, NORMS
+from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import DATA, Observer, load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import neutral_flux
@@ -77,7 +79,9 @@ def _record(each: Constant, variant: str) -> Record:
 def _memory(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> list[Record]:
     """Memory noise of a variant, by the rate task through its own distance."""
     variant = source_of(variable, model)
-    unset = [replace(memory_record(norm, None, 0.0, 0.0, 0.0), quantity=f"memory noise{variant}") for norm in NORMS]
+    unset = [
+        replace(memory_record(norm, None, 1.0, 1.0, 1.0), quantity=f"memory noise{variant}") for norm in MEMORY_NORMS
+    ]
     draft = Observer.from_table(Table("draft", (*shared, *unset)), variable=variable, model=model)
     return memory_noise(known, draft)
 
@@ -98,6 +102,30 @@ def _taken_over(known: Table) -> tuple[Record, ...]:
         *(known.one("path length to the cord", site=site) for site in ("hand", "forearm")),
         known.one("onset uncertainty"),
         known.one("lapse rate"),
+        known.one("share of the scatter of ratings"),
+        known.one("cost of a missing episode"),
+        *(_mean_rating(channel) for channel in CHANNELS),
+    )
+
+
+STRIPS = range(1, 6)
+
+
+def _mean_rating(channel: Channel) -> Record:
+    """Geometric mean of the ratings of E2 over its areas, at which their pooled scatter is taken to hold."""
+    evidence = load_evidence()
+    found = [evidence.find("E2", f"rating_mean_{strips}strip", channel) for strips in STRIPS]
+    logs = [math.log(each.place) for each in found]
+    return Record(
+        quantity="mean rating",
+        unit="points of 100",
+        source="statistics of open trial data, experiment E2 of evidence.csv",
+        value=math.exp(sum(logs) / len(logs)),
+        channel=channel,
+        site="forearm",
+        conditions="geometric mean over 1 to 5 strips of 1.96 cm²; sets only where the scatter of ratings is taken",
+        confidence="medium",
+        use="calibrate",
     )
 
 

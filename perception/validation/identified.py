@@ -21,6 +21,7 @@ from ..identification.intervals import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, identify, respond
 from ..kernels.parallel import in_order
+from ..observer.channels import USUAL_NORM, Norm
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
@@ -75,18 +76,18 @@ class Shown:
     played: tuple[ReceptorTemperatures, ...]
     seed: int
 
-    def identify(self, variable: Variable, model: Model, draws: int) -> Identified:
-        """Confusions of one variant from memory, by the largest difference over time."""
+    def identify(self, variable: Variable, model: Model, draws: int, norm: Norm = USUAL_NORM) -> Identified:
+        """Confusions of one variant from memory, by a norm."""
         played = self.played[VARIABLES.index(variable)]
         few = self.crowd.part(0, PEOPLE)
         thin = played.thinned(len(few), EVERY)
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer) -> Array:
-            felt = respond(thin, few, observer)
-            return identify(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
+            felt = respond(thin, few, observer, [norm])
+            return identify(felt, norm, few, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        whole = identify(respond(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
+        whole = identify(respond(played, self.crowd, nominal, [norm]), norm, self.crowd, nominal, self.seed, SAMPLES)[1]
         others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
         drawn = tuple(in_order(thinly, others))
         kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
@@ -112,7 +113,7 @@ def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
 
 def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
-    said = f"named from memory, {found.probability.shape[0]} people, max norm"
+    said = f"named from memory, {found.probability.shape[0]} people, {USUAL_NORM}"
     most = math.log2(len(found.labels))
 
     def share_of_people(share: float) -> Score:
@@ -140,7 +141,7 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
 
 def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
     """How alike the shapes are at the skin, and whether they are each other's main confusions."""
-    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, max norm"
+    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
     made = []
     for pair in PAIRS:
         both = " and ".join(pair)

@@ -1,0 +1,68 @@
+"""The reason that carries a distance from memory: which feature of the remembered episodes, in one sentence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
+from ..observer.observer import Norm, Observer
+from .distance_components import strongest
+
+ALIKE_DPRIME = 0.3
+"""Below this no feature is named: two icons are then told apart in less than 56 % of trials."""
+FEATURES = {
+    "intensity": ("how strong they are", "peak", "times threshold"),
+    "rate": ("how fast they start", "rate_per_s", "times threshold per second"),
+    "duration": ("how long they last", "length_s", "s at half the peak"),
+    "pause": ("when they start", "pause_s", "s after what was before"),
+}
+"""Part of a distance: the feature in words, its name in an episode, its unit in words."""
+
+
+def carrying_feature(
+    names: tuple[str, str], episodes: Episodes, places: tuple[int, int], observer: Observer, norm: Norm
+) -> tuple[str, dict[str, float]]:
+    """A sentence on what distinguishes two of the first person's icons from memory, and the numbers behind it."""
+    shares = distance_shares(episodes, places[0], episodes, places[1], observer, norm)
+    total = math.sqrt(sum(shares.values()))
+    parts = {part: math.sqrt(share) for part, share in shares.items()}
+    values = {"d_prime": total, **parts}
+    both = " and ".join(names)
+    one, other = (episodes.listed(0, place) for place in places)
+    if not one and not other:
+        return f"neither {both} is felt, so their names are guessed", values
+    if total < ALIKE_DPRIME:
+        return f"{both} are remembered alike: d′ {total:.1f} for a nominal person", values
+    most = max(PARTS, key=lambda part: shares[part])
+    size = f"d′ {parts[most]:.1f} of {total:.1f} for a nominal person"
+    if most == "direction":
+        return (
+            f"mostly distinguished by what is felt: {names[0]} {_said(one)}, {names[1]} {_said(other)}: {size}",
+            values,
+        )
+    words, name, unit = FEATURES[most]
+    first, second = _most_different(one, other, name)
+    values.update(a=first, b=second)
+    return (
+        f"mostly distinguished by {words}: {names[0]} {_number(first)}, {names[1]} {_number(second)} {unit}: {size}",
+        values,
+    )
+
+
+def _said(episodes: Sequence[Episode]) -> str:
+    return ", then ".join(episode.channel for episode in episodes) or "nothing"
+
+
+def _most_different(one: Sequence[Episode], other: Sequence[Episode], name: str) -> tuple[float, float]:
+    """A feature of the two episodes at one place that differ most in it; of the strongest where qualities differ."""
+    pairs = [(x, y) for x, y in zip(one, other, strict=False) if x.channel == y.channel]
+    if not pairs:
+        x, y = strongest(tuple(one)), strongest(tuple(other))
+        pairs = [(x, y)] if x is not None and y is not None else []
+    values = [(float(getattr(x, name)), float(getattr(y, name))) for x, y in pairs]
+    return max(values, key=lambda pair: abs(math.log((pair[0] + 0.1) / (pair[1] + 0.1))))
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}" if value < 100.0 else f"{value:.0f}"

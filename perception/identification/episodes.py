@@ -1,0 +1,183 @@
+"""What is remembered of icons as episodes: stretches of one quality, in their order, each with its features.
+
+Features are intensity, rate of onset and length, and the pause before. Two forms: `episodes` compares intensities in
+logarithms and places icons symmetrically; `naming` compares ratings and names each felt trial directly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..arrays import Array
+from ..kernels.parallel import over_rows
+from ..observer.channels import CHANNELS, Channel, Norm
+from ..observer.observer import Observer
+from ..sensation.percept import Percept
+
+PARTS = ("direction", "intensity", "rate", "duration", "pause")
+"""Parts of a distance in the order of the kernel: episodes of one icon alone, and the features of shared ones."""
+
+
+@dataclass(frozen=True, slots=True)
+class Episode:
+    """One episode of an icon as it is remembered, on the receptor clock.
+
+    `peak` is its strongest drive in multiples of threshold, `rate_per_s` the steepest rise of that, `length_s` the time
+    above half the peak, `pause_s` the time since the episode before (or since the cue began). `cut` says that the end
+    of the trace cuts it, so that its length counts for nothing.
+    """
+
+    channel: Channel
+    start_s: float
+    peak: float
+    rate_per_s: float
+    length_s: float
+    pause_s: float
+    cut: bool
+
+    def __repr__(self) -> str:
+        length = "cut by the end" if self.cut else f"{self.length_s:.2f} s"
+        return (
+            f"Episode({self.channel} at {self.start_s:.2f} s, {self.peak:.3g} times threshold, "
+            f"rise {self.rate_per_s:.3g}/s, {length})"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Episodes:
+    """Episodes of many people and icons: `features` (people, icons, most, features), `counts` (people, icons).
+
+    Columns of the features are those of `kernels.episodes`.
+    """
+
+    features: Array
+    counts: NDArray[np.int64]
+
+    @classmethod
+    def of(
+        cls,
+        psi_cold: ArrayLike,
+        psi_warm: ArrayLike,
+        dt_s: float,
+        observer: Observer,
+        criterion_cold: ArrayLike = 1.0,
+        criterion_warm: ArrayLike = 1.0,
+    ) -> Episodes:
+        """Episodes of sensations (people, icons, n_time); criteria (people,) are multiples of the observer's."""
+        from ..kernels import episodes as kernel
+
+        cold, warm = (np.ascontiguousarray(psi, dtype=np.float64) for psi in (psi_cold, psi_warm))
+        if cold.ndim != 3 or cold.shape != warm.shape:
+            raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
+        people, icons, _ = cold.shape
+        each = np.broadcast_arrays(criterion_cold, criterion_warm, np.empty(people))[:2]
+        criteria = observer.criterion * np.stack(each, axis=-1)
+        features = np.zeros((people, icons, kernel.MOST, kernel.FEATURES))
+        counts = np.zeros((people, icons), dtype=np.int64)
+
+        def work(part: slice) -> None:
+            kernel.all_episodes(
+                cold[part], warm[part], dt_s, criteria[part], observer.a, observer.p, features[part], counts[part]
+            )
+
+        over_rows(work, people, cold.size)
+        return cls(features, counts)
+
+    def __len__(self) -> int:
+        return int(self.counts.shape[0])
+
+    def listed(self, person: int, icon: int) -> tuple[Episode, ...]:
+        """The episodes of one icon for one person."""
+        from ..kernels import episodes as kernel
+
+        listed = []
+        for row in self.features[person, icon, : self.counts[person, icon]]:
+            length, pause = math.exp(row[kernel.LENGTH]), math.exp(row[kernel.PAUSE]) - kernel.PAUSE_FROM_S
+            peak, rate = math.exp(row[kernel.INTENSITY]), math.exp(row[kernel.RATE])
+            channel = CHANNELS[int(row[kernel.QUALITY])]
+            listed.append(
+                Episode(channel, float(row[kernel.START]), peak, rate, length, max(pause, 0.0), bool(row[kernel.CUT]))
+            )
+        return tuple(listed)
+
+    def scaled(self, norm: Norm, observer: Observer) -> Episodes:
+        """The same with intensities on the scale of a norm: ln of drive, or ratings in points."""
+        if norm != "naming":
+            return self
+        from ..kernels import episodes as kernel
+
+        features = self.features.copy()
+        warm = features[..., kernel.QUALITY] == 1.0
+        ratings = [observer.memory.ratings(channel) for channel in CHANNELS]
+        exponent = np.where(warm, ratings[1].exponent, ratings[0].exponent)
+        unit = np.where(warm, ratings[1].at_threshold, ratings[0].at_threshold)
+        rated = unit * np.exp(exponent * features[..., kernel.INTENSITY])
+        features[..., kernel.NOISE] *= exponent * rated
+        features[..., kernel.INTENSITY] = rated
+        features[..., kernel.ONSET] = unit * np.exp(exponent * features[..., kernel.ONSET])
+        return Episodes(features, self.counts)
+
+
+def intensity_noise(norm: Norm, observer: Observer, memory: Array) -> Array:
+    """σ_I (people, 2) of cold and warm on the scale of a norm; `memory` (people,) multiplies it."""
+    noise = np.array([observer.memory.intensity(channel) for channel in CHANNELS])
+    if norm == "naming":
+        ratings = [observer.memory.ratings(channel) for channel in CHANNELS]
+        noise = noise * np.array([each.exponent * each.rated for each in ratings])
+    found: Array = memory[:, None] * noise[None, :]
+    return found
+
+
+def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: Norm, memory: ArrayLike = 1.0) -> Array:
+    """d′ from memory (people, n, m) of each icon of one to each of the other; `memory` (people,) multiplies noise."""
+    from ..kernels import alignment
+
+    people = len(one)
+    own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
+    first, second = one.scaled(norm, observer), other.scaled(norm, observer)
+    intensity, timing = intensity_noise(norm, observer, own), observer.memory.timing * own
+    apart = np.empty((people, one.counts.shape[1], other.counts.shape[1]))
+
+    def work(part: slice) -> None:
+        alignment.distances(
+            first.features[part], first.counts[part], second.features[part], second.counts[part],
+            intensity[part], timing[part], apart[part],
+        )  # fmt: skip
+
+    over_rows(work, people, apart.size * 20)
+    return apart
+
+
+def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> dict[str, float]:
+    """Parts of d′² between two icons for the first person, by the names of `PARTS`, without their sign."""
+    from ..kernels import alignment
+
+    first, second = one.scaled(norm, observer), other.scaled(norm, observer)
+    shares = np.empty(alignment.SHARES)
+    alignment.aligned(
+        first.features[0, i], first.counts[0, i], second.features[0, j], second.counts[0, j],
+        intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing, shares,
+    )  # fmt: skip
+    return dict(zip(PARTS, shares.tolist(), strict=True))
+
+
+def remembered(percepts: Sequence[Percept], observer: Observer | None = None) -> Episodes:
+    """Episodes of percepts on one clock for a nominal person (or `observer`); shorter ones are held at their end.
+
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.perception import perceive
+    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=10)
+    >>> [episode.channel for episode in remembered([perceive(trace)]).listed(0, 0)]
+    ['cold']
+    """
+    from .distance import on_one_clock
+
+    person = Observer.load() if observer is None else observer
+    cold, warm, dt = on_one_clock(percepts)
+    return Episodes.of(cold[None], warm[None], dt, person)

@@ -1,0 +1,71 @@
+"""d′ between icons of which one comes from memory, for one person and by any norm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import USUAL_NORM, Norm, check_norm, trace_norm
+from ..observer.observer import Observer
+from ..sensation.percept import Percept
+from .distance import identification_dprime, on_one_clock, percept_distances
+from .episodes import Episodes, episode_distances
+
+Felt = tuple[Array, Array]
+"""Sensations (icons, n_time) of cold and warm."""
+
+
+def dprimes_from_memory(one: Felt, other: Felt, dt_s: float, observer: Observer, norm: Norm) -> Array:
+    """d′ (n, m) of every icon of one to every icon of the other, on one clock, for the nominal memory."""
+    trace = trace_norm(norm)
+    if trace is None:
+        first, second = (Episodes.of(cold[None], warm[None], dt_s, observer) for cold, warm in (one, other))
+        found: Array = episode_distances(first, second, observer, norm)[0]
+        return found
+    apart = np.empty((len(one[0]), len(other[0])))
+    for row in range(len(apart)):
+        cold, warm = (
+            np.stack([np.broadcast_to(mine[row], theirs.shape), theirs], axis=1)
+            for mine, theirs in zip(one, other, strict=True)
+        )
+        apart[row] = percept_distances(cold, warm, dt_s, observer)[trace][:, 0, 1]
+    return identification_dprime(apart, observer, trace, dt_s * (one[0].shape[-1] - 1))
+
+
+def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None, norm: str = USUAL_NORM) -> float:
+    """d′ of two percepts when one of them comes from memory.
+
+    Parameters
+    ----------
+    a, b
+        Percepts on the same clock; the shorter one is held at its end.
+    observer
+        The person (None: the nominal one).
+    norm
+        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
+
+    Returns
+    -------
+    float
+        Distance over noise; two icons are told apart in Φ(d′/2) of trials.
+
+    Raises
+    ------
+    ValueError
+        For different clocks and for an unknown norm.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.perception import perceive
+    >>> icons, rig = load_library("six-icons"), Rig.load("thenar")
+    >>> step, ramp = (perceive(simulate(icons[name], rig, tail_s=10)) for name in ("cooling-step", "linear-cooling"))
+    >>> dprime_from_memory(step, step), dprime_from_memory(step, ramp) > 1.5
+    (0.0, True)
+
+    """
+    person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
+    cold, warm, dt = on_one_clock([a, b])
+    one, other = ((cold[[k]], warm[[k]]) for k in (0, 1))
+    return float(dprimes_from_memory(one, other, dt, person, chosen)[0, 0])

@@ -1,0 +1,150 @@
+"""Compiled loops that compare sequences of episodes: alignment, distances, shares of a distance, naming of trials.
+
+    D[i, j] = min(D[i−1, j] + g_i², D[i, j−1] + g_j², D[i−1, j−1] + m_ij² where the qualities agree),  d′ = √D[n, m]
+    m² = ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T²,   g² = max(I − I_on, 0)²/(σ_I² + s²)
+
+with intensity I, rate R, length W, pause P of an episode and the noise s of its sensation.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from thermicon.circuit.compiled import kernel
+
+from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE
+
+SHARES = 5
+MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
+"""Places of the parts of d′²: episodes without a partner, and the features of those with one."""
+
+
+def _unmatched(x: Any, intensity: Any) -> float:
+    above = max(x[INTENSITY] - x[ONSET], 0.0)
+    sd = intensity[int(x[QUALITY])]
+    return float(above * above / (sd * sd + x[NOISE] * x[NOISE]))
+
+
+def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float:
+    """m² of two episodes of one quality, its parts in `parts` (SHARES,)."""
+    sd = intensity[int(x[QUALITY])]
+    noise = sd * sd + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
+    parts[MISSING] = 0.0
+    parts[BY_INTENSITY] = (x[INTENSITY] - y[INTENSITY]) ** 2 / noise
+    parts[BY_RATE] = ((x[RATE] - y[RATE]) / timing) ** 2
+    whole = x[CUT] == 0.0 and y[CUT] == 0.0  # the length of an episode that the end cuts is the tail's
+    parts[BY_LENGTH] = ((x[LENGTH] - y[LENGTH]) / timing) ** 2 if whole else 0.0
+    parts[BY_PAUSE] = ((x[PAUSE] - y[PAUSE]) / timing) ** 2
+    total: float = parts.sum()
+    return total
+
+
+def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: float, shares: Any) -> float:
+    """d′² between two sequences at the least cost, in order; `shares` (SHARES,) gets its parts."""
+    cost = np.zeros((ones + 1, twos + 1))
+    parts = np.zeros((ones + 1, twos + 1, SHARES))
+    own = np.empty(SHARES)
+    for i in range(ones + 1):
+        for j in range(twos + 1):
+            if i == 0 and j == 0:
+                continue
+            best = math.inf
+            if i > 0:
+                lone = unmatched(one[i - 1], intensity)
+                best = cost[i - 1, j] + lone
+                parts[i, j] = parts[i - 1, j]
+                parts[i, j, MISSING] += lone
+            if j > 0:
+                lone = unmatched(two[j - 1], intensity)
+                if cost[i, j - 1] + lone < best:
+                    best = cost[i, j - 1] + lone
+                    parts[i, j] = parts[i, j - 1]
+                    parts[i, j, MISSING] += lone
+            if i > 0 and j > 0 and one[i - 1][QUALITY] == two[j - 1][QUALITY]:
+                pair = matched(one[i - 1], two[j - 1], intensity, timing, own)
+                if cost[i - 1, j - 1] + pair < best:
+                    best = cost[i - 1, j - 1] + pair
+                    parts[i, j] = parts[i - 1, j - 1] + own
+            cost[i, j] = best
+    shares[:] = parts[ones, twos]
+    return float(cost[ones, twos])
+
+
+def _distances(one: Any, ones: Any, two: Any, twos: Any, intensity: Any, timing: Any, apart: Any) -> None:
+    """d′ (people, n, m) from every icon of `one` to every icon of `two`; noises are (people, 2) and (people,)."""
+    shares = np.empty(SHARES)
+    for person in range(apart.shape[0]):
+        for i in range(apart.shape[1]):
+            for j in range(apart.shape[2]):
+                square = aligned(
+                    one[person, i], ones[person, i], two[person, j], twos[person, j],
+                    intensity[person], timing[person], shares,
+                )  # fmt: skip
+                apart[person, i, j] = math.sqrt(square)
+
+
+def _cost_of_name(
+    felt: Any, felts: int, lone: Any, template: Any, places: int, sd: Any, timing: Any, c: float
+) -> float:
+    """What it costs to give one felt sequence the name of a template: felt without a partner lone² + c, missing g²."""
+    cost = np.empty((felts + 1, places + 1))
+    cost[0, 0] = 0.0
+    for i in range(1, felts + 1):
+        cost[i, 0] = cost[i - 1, 0] + lone[i - 1] * lone[i - 1] + c
+    for j in range(1, places + 1):
+        cost[0, j] = cost[0, j - 1] + unmatched(template[j - 1], sd)
+    for i in range(1, felts + 1):
+        for j in range(1, places + 1):
+            x, y = felt[i - 1], template[j - 1]
+            best = min(cost[i - 1, j] + lone[i - 1] * lone[i - 1] + c, cost[i, j - 1] + unmatched(y, sd))
+            if x[QUALITY] == y[QUALITY]:
+                noise = sd[int(x[QUALITY])] ** 2 + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
+                square = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
+                if x[CUT] == 0.0 and y[CUT] == 0.0:
+                    square += (x[LENGTH] - y[LENGTH]) ** 2
+                pair = (x[INTENSITY] - y[INTENSITY]) ** 2 / noise + square / (timing * timing)
+                best = min(best, cost[i - 1, j - 1] + pair)
+            cost[i, j] = best
+    return float(cost[felts, places])
+
+
+def _name(
+    felt: Any, counts: Any, intensity: Any, timing: float, louder: Any, c: float, favour: Any, noise: Any, answers: Any
+) -> None:
+    """Count the names that one person gives: noise on what is felt, the template that costs least.
+
+    `felt` (icons, MOST, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (icons, samples, MOST, 4)
+    are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to.
+    """
+    icons = felt.shape[0]
+    now, lone = felt[0].copy(), np.empty(felt.shape[1])
+    for i in range(icons):
+        for s in range(noise.shape[1]):
+            for k in range(counts[i]):
+                x, z = felt[i, k], noise[i, s, k]
+                sd = intensity[int(x[QUALITY])]
+                total = math.sqrt(sd * sd + x[NOISE] * x[NOISE]) * louder[i]
+                now[k] = x
+                now[k, INTENSITY] = x[INTENSITY] + total * z[0]
+                now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
+                now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
+                now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
+                lone[k] = max((x[INTENSITY] - x[ONSET]) / total + z[0], 0.0)
+            best, name = math.inf, 0
+            for j in range(icons):
+                cost = cost_of_name(now, counts[i], lone, felt[j], counts[j], intensity, timing, c) - 2.0 * favour[j]
+                if cost < best:
+                    best, name = cost, j
+            answers[i, name] += 1.0
+
+
+_compile: Any = kernel(nogil=True)
+unmatched: Any = _compile(_unmatched)
+matched: Any = _compile(_matched)
+aligned: Any = _compile(_aligned)
+distances: Any = _compile(_distances)
+cost_of_name: Any = _compile(_cost_of_name)
+name: Any = _compile(_name)
