@@ -1,7 +1,8 @@
-"""Forms of memory compared on published identification, which no constant was inferred from.
+"""Forms of memory compared on published results that no noise of memory was set on.
 
-Each form predicts the six icons and the three waveforms with the draws of its constants; its log score is the log
-density of what was published. ``python -m thermicon.perception.validation.memory_forms`` writes the shipped table.
+Each form predicts the six icons, the three waveforms and the ratings of E6 with the draws of its constants; its log
+score is the log density of what was published. The shipped table is written by
+``python -m thermicon.perception.validation.memory_forms``.
 """
 
 from __future__ import annotations
@@ -17,15 +18,23 @@ import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..observer.channels import NORMS, Norm
-from ..observer.observer import DATA
+from ..arrays import Array
+from ..identification.episodes import Episodes, distance_shares
+from ..identification.from_memory import dprimes_from_memory
+from ..inference.evidence import load_evidence
+from ..inference.experiments import E6_K_PER_S, E6_SIZES
+from ..inference.skin_modes import skin_modes
+from ..observer.channels import CHANNELS, NORMS, Channel, Norm, check_norm, sign_of, trace_norm
+from ..observer.observer import DATA, Observer
+from ..sensation.percept import perceive_many
 from .evidence import SIX
 from .identified import show, six_icons, wave_shapes
+from .plausible import plausible_observers
 from .predicted import Predicted
 from .targets import Row, load_targets
 from .waves import LIBRARY, likeness, skin_waves, with_others
 
-FORMS_TABLE = "memory_forms.csv"
+TABLE = "memory_forms.csv"
 PEOPLE, DRAWS, TRIALS = 200, 64, 48
 NUMBERS = ("proportion correct", "plug-in information")
 """Published numbers of the six icons; the intervals of targets.toml are taken as 95 %."""
@@ -34,7 +43,11 @@ MAIN_CONFUSIONS = (
     "confusion of square and triangle over any other",
     "confusion of sine and triangle over any other",
 )
-"""Published as the main confusions: more than twice as often as with any other icon."""
+"""Published as the main confusions: at least twice as often as with any other icon."""
+STEP_S, END_S, BASELINE_C, CONTACT_M2K_PER_W = 0.01, 3.0, 30.0, 2e-4
+"""Play of E6: 30 °C under a strapped thermode, whose contact is the one inferred."""
+RATIO = (0.8, 1.25)
+NUMERIC = ("predicted", "low", "high", "log_score")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +66,9 @@ class FormScore:
 def compare_forms(
     people: int = PEOPLE, draws: int = DRAWS, seed: int = 0, norms: Sequence[Norm] = NORMS
 ) -> tuple[FormScore, ...]:
-    """Scores of forms of memory on every judged row of the six icons and the waveforms.
+    """Scores of forms of memory on the judged rows of the six icons and the waveforms, and on ratings.
 
-    Rows of one experiment share its people, so that scores of the two numbers of the six icons are not independent.
+    The two numbers of the six icons share their people, so that their scores are not independent.
     """
     from thermicon.icons import load_library
 
@@ -66,44 +79,78 @@ def compare_forms(
     published = {row.quantity: row for target in load_targets() for row in target.rows if row.judged}
     scores = []
     for norm in norms:
-        found = (
+        identified = (
             *six_icons(six.identify("temperature", "adapting", draws, norm), TRIALS, seed),
             *wave_shapes(waves.identify("temperature", "adapting", draws, norm), alike),
         )
-        predicted = {one.quantity: one for one in found}
-        for quantity in NUMBERS:
-            scores.append(_number(norm, predicted[quantity], published[quantity]))
-        for quantity in MAIN_CONFUSIONS:
-            scores.append(_event(norm, predicted[quantity], published[quantity]))
+        predicted = {one.quantity: one for one in identified}
+        scores += [_number(norm, predicted[quantity], published[quantity]) for quantity in NUMBERS]
+        scores += [_event(norm, predicted[quantity], published[quantity]) for quantity in MAIN_CONFUSIONS]
+        scores += [_rated(norm, channel, draws, seed) for channel in CHANNELS]
     return tuple(scores)
 
 
+def rating_dprime(channel: Channel, observer: Observer, norm: Norm) -> float:
+    """d′ of ratings of two sizes about the median one of E6, over their log ratio; intensity alone is rated."""
+    change, area_cm2 = E6_SIZES[channel]
+    sizes = [sign_of(channel) * times * change for times in RATIO]
+    at_cold, at_warm = (_received("forearm", each, sizes) for each in CHANNELS)
+    cold, warm = perceive_many(at_cold, at_warm, STEP_S, observer, area_m2=area_cm2 * 1e-4, site="forearm")
+    if trace_norm(norm) is None:
+        episodes = Episodes.of(cold[None], warm[None], STEP_S, observer)
+        apart = math.sqrt(distance_shares(episodes, 0, episodes, 1, observer, norm)["intensity"])
+    else:
+        apart = float(dprimes_from_memory((cold, warm), (cold, warm), STEP_S, observer, norm)[0, 1])
+    return apart / math.log(RATIO[1] / RATIO[0])
+
+
+def _received(rig: str, channel: Channel, sizes: Sequence[float]) -> Array:
+    """Temperatures (sizes, rows) at the receptors of a channel under held changes."""
+    modes, skin = skin_modes(rig, CONTACT_M2K_PER_W), Rig.load(rig).skin
+    depth = skin.cold_receptor_m if channel == "cold" else skin.warm_receptor_m
+    rows = round(END_S / STEP_S) + 1
+    return np.stack([modes.course(depth, BASELINE_C, [(abs(size) / E6_K_PER_S, size)], STEP_S, rows) for size in sizes])
+
+
+def _rated(norm: Norm, channel: Channel, draws: int, seed: int) -> FormScore:
+    """E6: d′ of ratings for each unit of ln K; only the exponent of these ratings was conditioned on."""
+    statistic = load_evidence().find("E6", "dprime_per_ln_change", channel)
+    each = [rating_dprime(channel, observer, norm) for observer in plausible_observers(draws, seed)]
+    value = rating_dprime(channel, Observer.load(), norm)
+    said = f"{statistic.value:.3g} ± {statistic.se:.2g}"
+    return _scored(norm, f"d′ of ratings per ln K, {channel}", said, value, each, (statistic.value, statistic.se))
+
+
 def _number(norm: Norm, predicted: Predicted, row: Row) -> FormScore:
-    """The published number has a normal error; the draws are taken as normal too."""
     low, high = row.low or 0.0, row.high or 1.0
-    middle, error = 0.5 * (low + high), (high - low) / (2.0 * 1.96)
-    draws = np.array(predicted.draws)
-    sd = math.hypot(float(draws.std(ddof=1)), error)
-    score = math.log(NormalDist(float(draws.mean()), sd).pdf(middle))
-    ends = np.percentile(draws, [2.5, 97.5]).tolist()
-    said = f"{middle:.3g} [{low:.3g}, {high:.3g}]"
-    return FormScore(norm, predicted.quantity, said, float(predicted.value or 0.0), *ends, score)
+    said = f"{0.5 * (low + high):.3g} [{low:.3g}, {high:.3g}]"
+    measured = 0.5 * (low + high), (high - low) / (2.0 * 1.96)
+    return _scored(norm, predicted.quantity, said, float(predicted.value or 0.0), predicted.draws, measured)
+
+
+def _scored(
+    norm: Norm, row: str, said: str, value: float, draws: Sequence[float], measured: tuple[float, float]
+) -> FormScore:
+    """A published number with a normal error; the draws are taken as normal too."""
+    each = np.array(draws)
+    sd = math.hypot(float(each.std(ddof=1)), measured[1])
+    score = math.log(NormalDist(float(each.mean()), sd).pdf(measured[0]))
+    low, high = np.percentile(each, [2.5, 97.5]).tolist()
+    return FormScore(norm, row, said, value, low, high, score)
 
 
 def _event(norm: Norm, predicted: Predicted, row: Row) -> FormScore:
     """Share of draws in which it happens, with half a draw for either side."""
-    least = row.value or 1.0
-    draws = np.array(predicted.draws)
+    least, draws = row.value or 1.0, np.array(predicted.draws)
     share = (float((draws >= least).sum()) + 0.5) / (draws.size + 1.0)
-    ends = np.percentile(draws, [2.5, 97.5]).tolist()
-    return FormScore(
-        norm, predicted.quantity, f"at least {least:g}", float(predicted.value or 0.0), *ends, math.log(share)
-    )
+    low, high = np.percentile(draws, [2.5, 97.5]).tolist()
+    value = float(predicted.value or 0.0)
+    return FormScore(norm, predicted.quantity, f"at least {least:g}", value, low, high, math.log(share))
 
 
 def totals(scores: Sequence[FormScore]) -> dict[Norm, float]:
-    """Log score of each form over all rows."""
-    return {norm: sum(one.log_score for one in scores if one.norm == norm) for norm in {one.norm: 0 for one in scores}}
+    """Log score of each form over all rows, in the order of the norms."""
+    return {norm: sum(one.log_score for one in scores if one.norm == norm) for norm in NORMS}
 
 
 def to_csv(scores: Sequence[FormScore]) -> str:
@@ -112,22 +159,16 @@ def to_csv(scores: Sequence[FormScore]) -> str:
     table = csv.writer(text, lineterminator="\n")
     table.writerow([field.name for field in fields(FormScore)])
     for one in scores:
-        numbers = [f"{value:.4g}" for value in (one.predicted, one.low, one.high, one.log_score)]
-        table.writerow([one.norm, one.row, one.published, *numbers])
+        table.writerow([one.norm, one.row, one.published, *(f"{getattr(one, name):.4g}" for name in NUMERIC)])
     return text.getvalue()
 
 
 def load_forms() -> tuple[FormScore, ...]:
     """The shipped table."""
-    with (DATA / FORMS_TABLE).open(encoding="utf-8", newline="") as file:
+    with (DATA / TABLE).open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     return tuple(
-        FormScore(
-            row["norm"],
-            row["row"],
-            row["published"],
-            *(float(row[name]) for name in ("predicted", "low", "high", "log_score")),
-        )
+        FormScore(check_norm(row["norm"]), row["row"], row["published"], *map(float, (row[name] for name in NUMERIC)))
         for row in rows
     )
 
@@ -135,7 +176,7 @@ def load_forms() -> tuple[FormScore, ...]:
 def main() -> None:
     """Write the shipped table."""
     head = f"# written by python -m thermicon.perception.validation.memory_forms, {PEOPLE} people, {DRAWS} draws\n"
-    (DATA / FORMS_TABLE).write_text(head + to_csv(compare_forms()), encoding="utf-8")
+    (DATA / TABLE).write_text(head + to_csv(compare_forms()), encoding="utf-8")
 
 
 if __name__ == "__main__":
