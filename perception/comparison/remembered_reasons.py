@@ -31,7 +31,7 @@ def carrying_feature(
     both = " and ".join(names)
     one, other = (episodes.listed(0, place) for place in places)
     if not one and not other:
-        return f"neither {both} is felt, so their names are guessed", values
+        return f"neither {names[0]} nor {names[1]} is felt, so their names are guessed", values
     if total < ALIKE_DPRIME:
         return f"{both} are remembered alike: d′ {total:.1f} for a nominal person", values
     most = max(PARTS, key=lambda part: shares[part])

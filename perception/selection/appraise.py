@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import ReceptorTemperatures, memory_dprime, respond
+from ..identification.population import PopulationResponse, ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, Observer
@@ -127,6 +127,22 @@ def population_dprime(
 
     `rigs` are those of the people, when they are not the rig with each person's contact and skin.
     """
+    felt, durations = population_response(icons, rig, crowd, tracking, norm, rigs=rigs, rate_Hz=rate_Hz, end_s=end_s)
+    return memory_dprime(felt, norm, crowd.memory, Observer.load(), task), durations
+
+
+def population_response(
+    icons: Sequence[Icon],
+    rig: Rig,
+    crowd: People,
+    tracking: str | None = None,
+    norm: Norm = USUAL_NORM,
+    *,
+    rigs: Sequence[Rig] | None = None,
+    rate_Hz: float = RATE_HZ,
+    end_s: float | None = None,
+) -> tuple[PopulationResponse, Array]:
+    """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
     from thermicon.circuit import duration_s, simulate_many
 
     observer = Observer.load()
@@ -134,10 +150,5 @@ def population_dprime(
     end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
-    felt = respond(
-        ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2),
-        crowd,
-        observer,
-        [norm],
-    )
-    return memory_dprime(felt, norm, crowd.memory, observer, task), durations
+    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    return respond(played, crowd, observer, [norm]), durations

@@ -21,7 +21,7 @@ from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm
 from ..observer.people import People, draw_people
-from .appraise import population_dprime
+from .appraise import population_dprime, population_response
 from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
 from .nominal import Sensed, dprimes, end_of, sense
 
@@ -44,11 +44,16 @@ CONFIRMED_BY = 200
 MOST_NEAR, NEAR = 5, 3.0
 """Up to 5 icons that an edit brings nearer are checked with people, if they end within three times the wanted d′."""
 MOST_CONFIRMED = 8
+MOST_RECOUNTED = 50
 
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One line of one icon, before and after; cost, added seconds, and the median d′ of the pair after it."""
+    """One line of one icon, before and after; cost, added seconds, and the median d′ of the pair after it.
+
+    `recounted` is the share of people who remember another number of episodes after the edit: where it lies between
+    0 and 1, some gain much and others little.
+    """
 
     icon: str
     old: str
@@ -57,6 +62,7 @@ class Edit:
     added_s: float
     d_prime: float
     edited: Icon
+    recounted: float = 0.0
 
     @property
     def text(self) -> str:
@@ -73,6 +79,7 @@ class Edit:
             "cost": self.cost,
             "added_s": self.added_s,
             "d_prime": self.d_prime,
+            "recounted_share": self.recounted,
         }
 
     def __repr__(self) -> str:
@@ -186,13 +193,23 @@ class _Search:
                 rest[min(i, j), max(i, j)] = False
                 parted, worse = float(whole[i, j]), self._worse(before[rest], whole[rest])
             if parted >= self.wanted and not worse and _reads_back(one.icon):
-                return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon)
+                recounted = self._recounted(one, crowd, rigs, tracking, end_s)
+                return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
             refused |= worse
             self.refused.add((one.place, one.new))
             if parted < self.wanted:
                 self.target *= 1.002 * min(self.wanted / max(parted, 1e-6), 1.5)
         reason = "each one that separates them makes another pair worse" if refused or self.opposed else self._why_not()
         return NoEdit(f"no single edit separates them to d′ {self.wanted:.3g}: {reason}")
+
+    def _recounted(
+        self, one: _CandidateEdit, crowd: People, rigs: Sequence[Rig], tracking: str | None, end_s: float
+    ) -> float:
+        """Share of the first people whose number of episodes of the icon changes with the edit."""
+        few, both = crowd.part(0, min(len(crowd), MOST_RECOUNTED)), [self.icons[one.place], one.icon]
+        felt, _ = population_response(both, self.rig, few, tracking, rigs=rigs[: len(few)], rate_Hz=25.0, end_s=end_s)
+        before, after = felt.episodes.counts.T
+        return float((before != after).mean())
 
     def _untried(self, offers: Sequence[_CandidateEdit]) -> list[_CandidateEdit]:
         return [one for one in offers if (one.place, one.new) not in self.refused]

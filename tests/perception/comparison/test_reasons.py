@@ -5,10 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.perception import NORMS, Observer, Percept, perceive, percept_distance
+from thermicon.perception import Observer, Percept, perceive, percept_distance
 from thermicon.perception.comparison.reasons import largest_difference, pair_reasons
 from thermicon.perception.comparison.rules import load_rules
 from thermicon.perception.identification.distance import difference_trace, identification_dprime
+from thermicon.perception.identification.episodes import PARTS
+from thermicon.perception.observer.channels import TRACE_NORMS
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
 
 
@@ -31,7 +33,7 @@ def test_features_of_a_trapezoid(cue: Any, observer: Observer) -> None:
 
 
 def test_same_direction_gives_peaks_rates_and_onsets(cue: Any, observer: Observer) -> None:
-    direction, peaks, rates, onsets, largest = why(cue, observer, {"change": -4.0}, {"change": -3.0, "rate": 1.0})
+    carries, direction, peaks, rates, onsets = why(cue, observer, {"change": -4.0}, {"change": -3.0, "rate": 1.0})
     assert direction.text == (
         "same direction: a cools (-4.00 K at the cold receptor); b cools (-3.00 K at the cold receptor)"
     )
@@ -44,11 +46,16 @@ def test_same_direction_gives_peaks_rates_and_onsets(cue: Any, observer: Observe
     assert rates.values["ratio"] == pytest.approx(3.0)
     assert onsets.values["difference"] == pytest.approx(abs(onsets.values["a"] - onsets.values["b"]))
     assert f"{onsets.values['difference']:.2f} s apart, within the 0.20 s of the response window" in onsets.text
-    assert largest.text.startswith("a and b differ most at ")
+    assert carries.text.startswith("mostly distinguished by how fast they start: a ")
+    shares = [carries.values[part] ** 2 for part in PARTS]
+    assert sum(shares) == pytest.approx(carries.values["d_prime"] ** 2)
+    assert carries.text.endswith(
+        f"d′ {carries.values['rate']:.1f} of {carries.values['d_prime']:.1f} for a nominal person"
+    )
 
 
 def test_what_fails_to_separate_is_said(cue: Any, observer: Observer) -> None:
-    _, peaks, rates, onsets, _ = why(cue, observer, {"change": 4.0}, {"change": 4.05})
+    _, _, peaks, rates, onsets = why(cue, observer, {"change": 4.0}, {"change": 4.05})
     assert "both warm" in peaks.text
     assert peaks.text.endswith("differ by 0.05 K, within the just noticeable 0.09 K")
     assert rates.text.endswith("differ by a factor 1.00, within the just noticeable 1.43")
@@ -57,18 +64,19 @@ def test_what_fails_to_separate_is_said(cue: Any, observer: Observer) -> None:
 
 def test_other_directions_give_no_peaks(cue: Any, observer: Observer) -> None:
     reasons = why(cue, observer, {"change": -4.0}, {"change": 3.0})
-    assert [r.unit for r in reasons] == ["K", "s", "d′"]
-    assert reasons[0].text == (
+    assert [r.unit for r in reasons] == ["d′", "K", "s"]
+    assert reasons[0].text.startswith("mostly distinguished by what is felt: a cold")
+    assert reasons[1].text == (
         "directions differ: a cools (-4.00 K at the cold receptor); b warms (+3.00 K at the warm receptor)"
     )
-    assert reasons[1].text.startswith("felt at 0.")
+    assert reasons[2].text.startswith("felt at 0.")
 
 
-@pytest.mark.parametrize("norm", NORMS)
+@pytest.mark.parametrize("norm", TRACE_NORMS)
 def test_every_number_of_the_largest_difference_can_be_computed_again(cue: Any, observer: Observer, norm: Any) -> None:
     one, two = cue(change=-4.0, name="a"), cue(change=3.0, name="b")
     felt = perceive(one, observer), perceive(two, observer)
-    text = pair_reasons(one, two, *felt, observer, norm)[-1].text
+    text = pair_reasons(one, two, *felt, observer, norm)[0].text
 
     over_time = np.abs(difference_trace(*felt, observer))
     k = int(np.hypot(*over_time).argmax())
@@ -98,14 +106,17 @@ def test_identical_icons_get_one_sentence(cue: Any, observer: Observer) -> None:
 
 
 def test_what_no_sensation_tells_apart_has_no_time_of_largest_difference(cue: Any, observer: Observer) -> None:
-    *_, last = why(cue, observer, {"change": -0.001}, {"change": -0.0012})
-    assert last.text == "a and b nowhere differ by 0.05 d′ of sensation, so their names are guessed"
+    one, two = cue(change=-0.001, name="a"), cue(change=-0.0012, name="b")
+    felt = perceive(one, observer), perceive(two, observer)
+    of_traces = pair_reasons(one, two, *felt, observer, "max")[0].text
+    assert of_traces == "a and b nowhere differ by 0.05 d′ of sensation, so their names are guessed"
+    assert pair_reasons(one, two, *felt, observer)[0].text == "neither a nor b is felt, so their names are guessed"
 
 
 @pytest.mark.parametrize("share", [0.9999, 0.99999, 1.00001, 1.0001])
 def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, share: float) -> None:
     needed = load_rules().one("peak", channel="warm").central
-    peaks = why(cue, observer, {"change": 4.0}, {"change": 4.0 + needed * share})[1].text
+    peaks = why(cue, observer, {"change": 4.0}, {"change": 4.0 + needed * share})[2].text
     found = re.search(r"differ by (\S+) K, (more than|within) the just noticeable (\S+) K$", peaks)
     assert found is not None
     gap, said, limit = found.groups()
@@ -117,12 +128,12 @@ def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, share: f
 
 def test_rounding_does_not_undo_the_verdict_on_rates_and_onsets(cue: Any, observer: Observer) -> None:
     ratio = load_rules().one("rate ratio").central
-    rates = why(cue, observer, {"change": -4.0, "rate": 2.0}, {"change": -4.0, "rate": 2.0 * ratio * 0.999})[2].text
+    rates = why(cue, observer, {"change": -4.0, "rate": 2.0}, {"change": -4.0, "rate": 2.0 * ratio * 0.999})[3].text
     assert rates.endswith("differ by a factor 1.429, within the just noticeable 1.43")
     one = cue(change=-4.0, name="a")
     felt = perceive(one, observer)
     late = replace(felt, onset_s=(felt.onset_s or 0.0) + 0.1999)
-    onsets = pair_reasons(one, cue(change=-4.2, name="b"), felt, late, observer)[3].text
+    onsets = pair_reasons(one, cue(change=-4.2, name="b"), felt, late, observer)[4].text
     assert onsets.endswith(": 0.1999 s apart, within the 0.20 s of the response window")
 
 
@@ -130,7 +141,7 @@ def test_as_much_as_is_said_of_what_is_equal(cue: Any, observer: Observer) -> No
     one = cue(change=-4.0, name="a")
     felt = replace(perceive(one, observer), onset_s=0.0)
     later = replace(felt, onset_s=0.2)
-    text = pair_reasons(one, cue(change=-4.2, name="b"), felt, later, observer)[3].text
+    text = pair_reasons(one, cue(change=-4.2, name="b"), felt, later, observer)[4].text
     assert text.endswith("0.20 s apart, as much as the 0.20 s of the response window")
 
 

@@ -13,6 +13,7 @@ from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import Task, rank
 from thermicon.perception.identification import carry_over as carryover
 from thermicon.perception.identification.carry_over import carry_over
+from thermicon.perception.observer.channels import USUAL_NORM
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")
@@ -70,8 +71,8 @@ def test_a_ranking_by_replay_counts_what_replay_leaves_behind() -> None:
     names = [icon.name for icon in ICONS]
     for row in found:
         place = names.index(row["name"])
-        assert row["carry_over"] == left.worst_of(place, "max")
-        assert row["carry_over"] != other.worst_of(place, "max")
+        assert row["carry_over"] == left.worst_of(place, USUAL_NORM)
+        assert row["carry_over"] != other.worst_of(place, USUAL_NORM)
 
 
 def test_icons_that_prescribe_current_are_replayed_too() -> None:

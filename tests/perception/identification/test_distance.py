@@ -49,7 +49,7 @@ def test_norms_of_a_constant_difference(observer: Observer) -> None:
 def test_a_shorter_percept_is_held_at_its_end(observer: Observer) -> None:
     long, short = percept(np.full(2000, 7.0)), percept(np.full(500, 7.0))
     assert percept_distance(long, short, observer) == pytest.approx(0.0, abs=1e-12)
-    with pytest.raises(ValueError, match=r"on clocks of 0.01 s and 0.02 s: simulate both at one rate"):
+    with pytest.raises(ValueError, match=r"on clocks of 0.01 s and 0.02 s: simulate all at one rate"):
         percept_distance(long, percept(np.zeros(9), 0.02), observer)
 
 
@@ -70,7 +70,9 @@ def test_memory_noise_from_a_task_gives_the_task_back(observer: Observer) -> Non
 
 
 def test_messages(observer: Observer) -> None:
-    with pytest.raises(ValueError, match=r"there is no norm 'mean': choose one of max, rms, integral"):
+    with pytest.raises(
+        ValueError, match=r"there is no norm 'mean': choose one of episodes, naming, max, rms, integral"
+    ):
         check_norm("mean")
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\)"):
         percept_distances(np.zeros((2, 9)), np.zeros((2, 9)), 0.01, observer)

@@ -30,7 +30,7 @@ def test_what_is_delivered_as_designed_changes_nothing() -> None:
 
 
 def test_an_icon_that_fades_is_told_with_detection_and_pair() -> None:
-    designed, delivered = [pulse(0.02), pulse(0.0)], [pulse(0.004), pulse(0.0)]
+    designed, delivered = [pulse(0.1), pulse(0.0)], [pulse(0.05), pulse(0.0)]
     faint, _ = judge_delivered(["faint", "none"], designed, delivered)
     assert faint.detection.designed > faint.detection.delivered + 0.05
     detection, pair = faint.losses()

@@ -90,6 +90,8 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
     from thermicon.perception.identification.distance import percept_distances
+    from thermicon.perception.identification.episodes import Episodes, episode_distances
+    from thermicon.perception.observer.channels import trace_norm
     from thermicon.perception.sensation.percept import perceive
 
     first, second = SIX["double-dip"], SIX["warming-step"]
@@ -100,11 +102,14 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(left_behind: CarryOver)
     rows = alone.psi_cold.size
     stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip
-    found = percept_distances(*stacks, 0.04, Observer.load())
+    differences = percept_distances(*stacks, 0.04, Observer.load())
+    episodes = Episodes.of(*stacks, 0.04, Observer.load())
     place = {name: k for k, name in enumerate(left_behind.names)}
     for k, norm in enumerate(NORMS):
         told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
-        assert found[norm][0, 0, 1] == pytest.approx(told, rel=0.02)
+        trace = trace_norm(norm)
+        apart = episode_distances(episodes, episodes, Observer.load(), norm) if trace is None else differences[trace]
+        assert apart[0, 0, 1] == pytest.approx(told, rel=0.02)
 
 
 def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
@@ -131,7 +136,7 @@ def test_the_same_whoever_works_on_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=20.0), 2.0)], ids=["context", "gap"]
+    ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=10.0), 2.0)], ids=["context", "gap"]
 )
 def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -> None:
     found = cheapest_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task, wanted=wanted)
@@ -166,7 +171,7 @@ def test_what_is_not_safe_leaves_nothing_behind() -> None:
     without = {(p.a, p.b): p.d_prime for p in ranked(task=Task(gap_s=3.0)).pairs}
     for pair in with_it.pairs:
         if "hot" not in (pair.a, pair.b):
-            assert pair.d_prime == pytest.approx(without[pair.a, pair.b], rel=1e-2)
+            assert pair.d_prime == pytest.approx(without[pair.a, pair.b], rel=2e-2)
 
 
 def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:

@@ -61,8 +61,8 @@ def test_numbers_hang_together(held: Any) -> None:
     low, high = whole["proportion_correct_interval"]
     assert low <= whole["proportion_correct"] <= high
     assert whole["bits_per_s"] == pytest.approx(whole["information_bits"] / 8.0, rel=0.01)
-    assert set(whole["norm_sensitivity"]) == {"rms", "integral"}
-    assert set(whole["norm_changes"]) == {"rms", "integral"}
+    assert set(whole["norm_sensitivity"]) == {"naming", "max", "rms", "integral"}
+    assert set(whole["norm_changes"]) == {"naming", "max", "rms", "integral"}
     assert len(held["pairs"]) == 15
     worst = max(held["pairs"], key=lambda pair: pair["confused_probability"])
     assert whole["worst_pair"] == [worst["a"], worst["b"]]
@@ -100,7 +100,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
 
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     apart = plot_distance(ranking)
-    assert apart.get_title() == "Predicted d′ between icons (max norm)"
+    assert apart.get_title() == "Predicted d′ between icons (episodes norm)"
     assert (apart.get_xlabel(), apart.get_ylabel()) == ("… and", "d′ between …")
     assert len(apart.texts) == len(axes.texts) == 36  # every cell says its number, so no colour bar is needed
 

@@ -91,7 +91,7 @@ def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig, crowd: People
 
 
 def test_time_and_energy_are_those_of_the_traces(pool: Pool, rig: Rig) -> None:
-    free = pool.choose(3)
+    free = pool.choose(2)
     chosen = [k for k, icon in enumerate(pool.icons) if icon.name in free.icons]
     lengths = [duration_s(pool.icons[k], rig) for k in chosen]
     assert free.total_s == pytest.approx(sum(lengths))
@@ -102,10 +102,10 @@ def test_time_and_energy_are_those_of_the_traces(pool: Pool, rig: Rig) -> None:
         steps = np.minimum(np.append(trace.time_s[1:], np.inf), length) - trace.time_s
         energy += float((trace.voltage_V * trace.current_A * steps)[rows].sum())
     assert free.total_J == pytest.approx(energy)
-    less = pool.choose(3, most_s=free.total_s - 0.5)
+    less = pool.choose(2, most_s=free.total_s - 0.5)
     assert less.total_s <= free.total_s - 0.5
     assert less.value <= free.value
-    frugal = pool.choose(3, most_J=free.total_J - 0.5)
+    frugal = pool.choose(2, most_J=free.total_J - 0.5)
     assert frugal.total_J <= free.total_J - 0.5
 
 

@@ -31,7 +31,7 @@ def stage(rig: Rig) -> SimulationGrid:
 def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -> None:
     names = [e.parameter.name for e in found.effects]
     assert len(names) == len(set(names))
-    assert {"contact resistance", "lapse rate", "memory noise (max)"} <= set(names)
+    assert {"contact resistance", "lapse rate", "memory noise (episodes)"} <= set(names)
     sizes = [e.proportion_correct for e in found.effects]
     assert sizes == sorted(sizes, reverse=True)
     assert min(sizes) >= 0.0
@@ -43,7 +43,7 @@ def test_effects_are_ordered_and_say_what_to_measure_first(found: Sensitivity) -
 
 
 def test_more_memory_noise_is_fewer_correct(found: Sensitivity) -> None:
-    (memory,) = (e for e in found.effects if e.parameter.name == "memory noise (max)")
+    (memory,) = (e for e in found.effects if e.parameter.name == "memory noise (episodes)")
     low, high = memory.proportion_correct_ends
     assert low > found.proportion_correct > high
     assert memory.information_bits_ends[0] > found.information_bits > memory.information_bits_ends[1]

@@ -1,0 +1,180 @@
+"""Episodes that are remembered: where they begin and end, their features, and distances between them."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from thermicon.perception import Observer
+from thermicon.perception.identification.confusion import confuse
+from thermicon.perception.identification.episodes import Episodes, distance_shares, episode_distances
+from thermicon.perception.identification.measures import proportion_correct
+from thermicon.perception.identification.naming import name_directly
+
+Trace = NDArray[np.float64]
+DT = 0.01
+CLOCK = DT * np.arange(1500)
+
+
+def bump(start_s: float, peak: float, rise_s: float = 1.0, hold_s: float = 1.0) -> Trace:
+    """Sensation that rises to a peak in d′, stays and falls."""
+    return np.interp(
+        CLOCK, start_s + np.array([0.0, rise_s, rise_s + hold_s, 2 * rise_s + hold_s]), [0.0, peak, peak, 0.0]
+    )
+
+
+NOTHING = np.zeros_like(CLOCK)
+
+
+def episodes(*icons: tuple[Trace, Trace], observer: Observer, **criteria: Any) -> Episodes:
+    cold, warm = (np.stack([icon[k] for icon in icons])[None] for k in (0, 1))
+    return Episodes.of(cold, warm, DT, observer, **criteria)
+
+
+def qualities(found: Episodes, icon: int = 0) -> str:
+    return " ".join(each.channel for each in found.listed(0, icon))
+
+
+def test_qualities_pauses_and_order(observer: Observer) -> None:
+    icon = bump(1.0, 20.0), bump(8.0, 15.0)
+    first, second = episodes(icon, observer=observer).listed(0, 0)
+    assert (first.channel, second.channel) == ("cold", "warm")
+    # ψ passes half the criterion of 3.34 d′ on its way to 20 in 1 s
+    assert first.start_s == pytest.approx(1.0 + 1.67 / 20.0, abs=0.011)
+    assert first.pause_s == pytest.approx(first.start_s, abs=0.011)
+    assert second.pause_s == pytest.approx(second.start_s - (4.0 - 1.67 / 20.0), abs=0.03)
+    u = math.sqrt(math.expm1(20.0 / 12.0) / math.expm1(1.0 / 12.0))
+    assert first.peak == pytest.approx(u, rel=1e-6)
+    assert not first.cut
+
+
+def test_short_gaps_are_bridged_and_deep_valleys_part(observer: Observer) -> None:
+    whole = episodes((bump(1.0, 20.0), NOTHING), observer=observer)
+    gap = np.where((CLOCK > 2.5) & (CLOCK < 2.7), 0.0, bump(1.0, 20.0))
+    assert qualities(whole) == "cold"
+    bridged = episodes((gap, NOTHING), observer=observer)
+    # the gap is bridged, but it is also a valley below half of both peaks
+    assert qualities(bridged) == "cold cold"
+    shallow = np.maximum(bump(1.0, 20.0), bump(4.0, 20.0))
+    shallow = np.where((CLOCK > 2.0) & (CLOCK < 6.0), np.maximum(shallow, 17.0), shallow)
+    assert qualities(episodes((shallow, NOTHING), observer=observer)) == "cold"
+    assert qualities(episodes((bump(1.0, 20.0) + bump(4.2, 20.0), NOTHING), observer=observer)) == "cold cold"
+
+
+def test_the_stronger_quality_has_the_instant(observer: Observer) -> None:
+    both = bump(1.0, 20.0, hold_s=6.0), bump(3.0, 30.0)
+    assert qualities(episodes(both, observer=observer)) == "cold warm cold"
+    assert qualities(episodes((both[0], bump(3.0, 10.0)), observer=observer)) == "cold"
+
+
+def test_what_is_weak_or_short_is_not_remembered(observer: Observer) -> None:
+    assert qualities(episodes((bump(1.0, 3.3), NOTHING), observer=observer)) == ""
+    assert qualities(episodes((bump(1.0, 20.0, 0.05, 0.05), NOTHING), observer=observer)) == ""
+    cautious = episodes((bump(1.0, 20.0), NOTHING), observer=observer, criterion_cold=7.0)
+    assert qualities(cautious) == ""
+
+
+def test_an_episode_that_the_end_cuts_has_no_length(observer: Observer) -> None:
+    long, longer = bump(1.0, 20.0, hold_s=30.0), bump(1.0, 20.0, hold_s=5.0)
+    found = episodes((long, NOTHING), (longer, NOTHING), observer=observer)
+    assert found.listed(0, 0)[0].cut
+    assert episode_distances(found, found, observer, "episodes")[0, 0, 1] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_distances_follow_their_formulas(observer: Observer) -> None:
+    """Two coolings of one shape that differ in intensity alone, and one that is not there."""
+    strong, weak = bump(1.0, 20.0), bump(1.0, 12.0)
+    found = episodes((strong, NOTHING), (weak, NOTHING), (NOTHING, NOTHING), observer=observer)
+    apart = episode_distances(found, found, observer, "episodes")[0]
+    assert apart == pytest.approx(apart.T)
+    assert np.diagonal(apart) == pytest.approx(0.0)
+    shares = distance_shares(found, 0, found, 1, observer, "episodes")
+    assert sum(shares.values()) == pytest.approx(apart[0, 1] ** 2)
+    one, other = (found.listed(0, k)[0] for k in (0, 1))
+    b = 1.0 / math.expm1(1.0 / observer.a)
+    noises = [(b + each.peak**2) / (observer.a * 2.0 * each.peak**2) for each in (one, other)]
+    variance = observer.memory.intensity("cold") ** 2 + 0.5 * (noises[0] ** 2 + noises[1] ** 2)
+    assert shares["intensity"] == pytest.approx(math.log(one.peak / other.peak) ** 2 / variance, rel=1e-6)
+    assert shares["rate"] == pytest.approx(math.log(one.rate_per_s / other.rate_per_s) ** 2 / 0.09, rel=1e-6)
+    lone = distance_shares(found, 1, found, 2, observer, "episodes")
+    at_criterion = math.sqrt(b * math.expm1(observer.criterion / observer.a))
+    variance = observer.memory.intensity("cold") ** 2 + noises[1] ** 2
+    assert lone["direction"] == pytest.approx(math.log(other.peak / at_criterion) ** 2 / variance, rel=1e-6)
+
+
+def test_a_distance_grows_from_nothing_where_an_episode_appears(observer: Observer) -> None:
+    faint = [(bump(1.0, peak), NOTHING) for peak in (3.3, 3.35, 3.5, 5.0)]
+    found = episodes(*faint, (NOTHING, NOTHING), observer=observer)
+    apart = episode_distances(found, found, observer, "episodes")[0, :, -1]
+    assert apart[0] == 0.0
+    assert (np.diff(apart[:-1]) > 0).all()
+    assert apart[1] < 0.05
+
+
+def test_noise_of_a_person_divides_distances(observer: Observer) -> None:
+    icons = [(bump(1.0, 20.0, rise_s=rise), NOTHING) for rise in (0.5, 1.5)]
+    stacked = Episodes.of(
+        np.stack([[icon[0] for icon in icons]] * 2), np.stack([[icon[1] for icon in icons]] * 2), DT, observer
+    )
+    once, twice = episode_distances(stacked, stacked, observer, "episodes", np.array([1.0, 2.0]))[:, 0, 1]
+    assert once == pytest.approx(2.0 * twice, rel=0.02)  # sensory noise of intensity does not change
+
+
+def test_naming_is_right_as_often_as_distances_say(observer: Observer) -> None:
+    """Two icons that differ in their rate alone: both forms reduce to one feature with one noise."""
+    icons = [(bump(1.0, 60.0, rise_s=rise), NOTHING) for rise in (1.0, 1.6)]  # so strong that none is missed
+    found = episodes(*icons, observer=observer)
+    named = name_directly(found, observer, lapse=0.0, samples=20_000).probability[0]
+    apart = episode_distances(found, found, observer, "naming")
+    assert np.diagonal(named).mean() == pytest.approx(
+        float(proportion_correct(confuse(apart, lapse=0.0).probability)[0]), abs=0.03
+    )
+
+
+def test_naming_loses_faint_episodes_and_never_gains_one(observer: Observer) -> None:
+    plain = bump(1.0, 20.0), NOTHING
+    echoed = bump(1.0, 20.0), bump(8.0, 4.5)
+    found = episodes(plain, echoed, observer=observer)
+    assert found.counts.tolist() == [[1, 2]]
+    named = name_directly(found, observer, lapse=0.0, samples=4000).probability[0]
+    assert named[1, 0] > named[0, 1]
+
+
+def test_icons_alike_share_their_names_and_lapses_are_any_name(observer: Observer) -> None:
+    found = episodes(
+        (bump(1.0, 20.0), NOTHING), (bump(1.0, 20.0), NOTHING), (NOTHING, bump(1.0, 20.0)), observer=observer
+    )
+    named = name_directly(found, observer, lapse=0.3, samples=500).probability[0]
+    assert named[0, 0] == pytest.approx(named[0, 1])
+    assert named[2, 2] == pytest.approx(0.7 + 0.1, abs=0.01)
+    assert named.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_the_same_person_gets_the_same_noise_in_another_crowd(observer: Observer) -> None:
+    icon = np.stack([[bump(1.0, 20.0), bump(1.0, 15.0)]] * 3)
+    crowd = Episodes.of(icon, np.zeros_like(icon), DT, observer)
+    last = Episodes.of(icon[2:], np.zeros_like(icon[2:]), DT, observer)
+    whole = name_directly(crowd, observer, seed=4).probability
+    assert np.array_equal(name_directly(last, observer, seed=4, first=2).probability[0], whole[2])
+    assert not np.array_equal(whole[0], whole[1])
+
+
+def test_share_of_the_scatter_of_ratings_moves_intensity_noise(observer: Observer) -> None:
+    noises = [replace(observer.memory, share=share).intensity("warm") for share in (0.0, 0.5, 1.0)]
+    assert noises[0] == pytest.approx(0.30)
+    assert noises[2] == pytest.approx(13.0 / (0.7 * 27.0))
+    assert noises[1] == pytest.approx(math.sqrt(noises[0] * noises[2]))
+
+
+def test_messages(observer: Observer) -> None:
+    with pytest.raises(ValueError, match=r"share of the scatter of ratings must lie in 0 to 1, not 1.5"):
+        replace(observer.memory, share=1.5)
+    with pytest.raises(ValueError, match=r"memory noise of episodes must be above 0, not 0"):
+        replace(observer.memory, timing=0.0)
+    with pytest.raises(ValueError, match=r"cost of a missing episode must be 0 or more, not -1"):
+        replace(observer.memory, missing=-1.0)
+    with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
+        Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
