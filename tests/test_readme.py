@@ -20,7 +20,8 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.perception.inference.tables import TABLES
+from thermicon.perception.inference import tables
+from thermicon.perception.validation.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]
 README = ROOT / "README.md"
@@ -31,6 +32,7 @@ NAMES = [page.relative_to(ROOT).as_posix() for page in PAGES]
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
+TABLES = {**tables.TABLES, "forms of memory": forms_table}
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""
 
@@ -198,12 +200,14 @@ def draw_mechanisms(folder: Path) -> None:
     """Draw what each mechanism does, and what the inference found."""
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
+    from thermicon.perception import perceive
     from thermicon.perception.inference.effects import EFFECTS
     from thermicon.perception.inference.onset_stages import onset_stages
     from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
+    from thermicon.perception.plots.draw_episodes import episodes_figure
     from thermicon.perception.plots.draw_evidence import (
         plot_ablation,
         plot_left_out,
@@ -218,6 +222,11 @@ def draw_mechanisms(folder: Path) -> None:
         "published-predicted": plot_published_predicted(load_predictions()),
         "narrowing": plot_narrowing(load_constants()),
     }
+    rig, icons = Rig.load("thenar"), load_library("six-icons")
+    shown = [
+        perceive(simulate(icons[name], rig, tail_s=6.0)) for name in ("linear-cooling", "double-dip", "cold-to-warm")
+    ]
+    episodes_figure(shown).savefig(folder / "mechanism-episodes.png", dpi=90)
     for name, axes in drawn.items():
         figure = axes.get_figure(root=True)
         assert isinstance(figure, Figure)

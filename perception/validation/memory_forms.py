@@ -24,6 +24,7 @@ from ..identification.from_memory import dprimes_from_memory
 from ..inference.evidence import load_evidence
 from ..inference.experiments import E6_K_PER_S, E6_SIZES
 from ..inference.skin_modes import skin_modes
+from ..inference.tables import number
 from ..observer.channels import CHANNELS, NORMS, Channel, Norm, check_norm, sign_of, trace_norm
 from ..observer.observer import DATA, Observer
 from ..sensation.percept import perceive_many
@@ -171,6 +172,18 @@ def load_forms() -> tuple[FormScore, ...]:
         FormScore(check_norm(row["norm"]), row["row"], row["published"], *map(float, (row[name] for name in NUMERIC)))
         for row in rows
     )
+
+
+def forms_table() -> str:
+    """The shipped table for the documentation, in Markdown, with the sum of each form."""
+    scores = load_forms()
+    lines = [("norm", "row", "published", "predicted", "95 %", "log score"), ("---",) * 6]
+    for norm, total in totals(scores).items():
+        for one in (each for each in scores if each.norm == norm):
+            ends = f"{number(one.low)} to {number(one.high)}"
+            lines.append((f"`{norm}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
+        lines.append((f"`{norm}`", "**all rows**", "", "", "", f"**{total:.1f}**"))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
 def main() -> None:
