@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..arrays import Array
 from ..observer.observer import Norm, Observer
 from ..observer.people import People
-from ..sensation.detection import detect
+from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
 from .distance import identification_noise, percept_distances
@@ -38,15 +38,20 @@ class ReceptorTemperatures:
 
 @dataclass(frozen=True, slots=True)
 class PopulationResponse:
-    """Differences (people, icons, icons) for each norm, detection probabilities (people, icons), duration s.
+    """Differences (people, icons, icons) for each norm, detection (people, icons), duration s.
 
     `peaks` (people, icons) are the largest sensations, cold and warm.
     """
 
     apart: dict[Norm, Array]
-    probability: Array
+    detection: Detection
     duration_s: float
     peaks: tuple[Array, Array]
+
+    @property
+    def probability(self) -> Array:
+        """Probability (people, icons) that a person reports an icon."""
+        return self.detection.probability
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +63,21 @@ class Scores:
     detected: Array
 
 
-def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> PopulationResponse:
-    """Detection of every icon by every person, and the distances between the icons."""
+def respond(played: ReceptorTemperatures, crowd: People, observer: Observer, times: bool = False) -> PopulationResponse:
+    """Detection of every icon by every person, with response times or without, and the distances between the icons."""
+    cold, warm, dt = _sensations(played, crowd, observer)
+    found = _detection(cold, warm, dt, played.site, crowd, observer, times)
+    peaks = (cold.max(axis=-1), warm.max(axis=-1))
+    return PopulationResponse(percept_distances(cold, warm, dt, observer), found, dt * (cold.shape[-1] - 1), peaks)
+
+
+def detected_by(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
+    """Detection (people, icons) of every icon by every person, without response times."""
+    cold, warm, dt = _sensations(played, crowd, observer)
+    return _detection(cold, warm, dt, played.site, crowd, observer, times=False)
+
+
+def _sensations(played: ReceptorTemperatures, crowd: People, observer: Observer) -> tuple[Array, Array, float]:
     dt, rows = uniform_clock(played.time_s)
     cold, warm = perceive_many(
         played.cold_C[..., :rows],
@@ -71,18 +89,23 @@ def respond(played: ReceptorTemperatures, crowd: People, observer: Observer) -> 
         threshold_cold=crowd.threshold_cold[:, None],
         threshold_warm=crowd.threshold_warm[:, None],
     )
-    found = detect(
+    return cold, warm, dt
+
+
+def _detection(
+    cold: Array, warm: Array, dt_s: float, site: str, crowd: People, observer: Observer, times: bool
+) -> Detection:
+    return detect(
         cold,
         warm,
-        dt,
+        dt_s,
         observer,
-        path_m=observer.path_m(played.site) * crowd.path[:, None],
+        path_m=observer.path_m(site) * crowd.path[:, None],
         criterion_cold=crowd.criterion_cold[:, None],
         criterion_warm=crowd.criterion_warm[:, None],
         decision_s=crowd.decision_s[:, None],
+        times=times,
     )
-    peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    return PopulationResponse(percept_distances(cold, warm, dt, observer), found.probability, dt * (rows - 1), peaks)
 
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:

@@ -54,6 +54,13 @@ class People:
     def __len__(self) -> int:
         return int(self.threshold_cold.size)
 
+    @classmethod
+    def nominal(cls, n: int = 1) -> People:
+        """The nominal person, n times: every multiplier 1, decision time and lapse as the observer has them."""
+        record = people_records()
+        own = {"decision_s": observer_records().one("decision time").central, "lapse": record["lapse"].central}
+        return cls(**{field.name: np.full(n, own.get(field.name, 1.0)) for field in fields(cls)})
+
     def part(self, start: int, stop: int) -> People:
         """The persons from one number up to another."""
         return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})

@@ -30,6 +30,7 @@ from ..selection.choose import Choice, choose
 from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, objection
 from ..sensation.coverage import outside_data
+from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept, perceive
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
@@ -221,6 +222,7 @@ def _assemble(
     observer: Observer,
 ) -> _Made:
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
+    onsets, channels = all_.detection.onset_s, all_.detection.channel
     pairs = []
     courses = [course(trace, percept, observer) for trace, percept in zip(traces, percepts, strict=True)]
     for i, j in combinations(range(len(icons)), 2):
@@ -248,8 +250,8 @@ def _assemble(
             IconScore(
                 name=icon.name,
                 detected_probability=float(detected[k]),
-                onset_s=percept.onset_s,
-                channel=percept.channel,
+                onset_s=None if math.isnan(onsets[k]) else float(onsets[k]),
+                channel=channel_name(int(channels[k])),
                 peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),

@@ -32,9 +32,11 @@ PERCENTAGE_POINT = 0.01
 
 @dataclass(frozen=True, slots=True)
 class IconScore:
-    """One icon. Probability of detection and proportion correct are means over people; the rest is nominal.
+    """One icon. Detection, onset, channel and proportion correct are of the people; the rest is nominal.
 
-    `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
+    `detected_probability` is the probability that a person drawn at random reports the icon, `onset_s` the median
+    response time of those trials and `channel` the one that most of them go by; both are None where fewer than half of
+    the trials end in a report. Peak change (K),
     attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` states why the icon is not
     safe, cannot be reached, or both; `cautions` are the soft safety limits that it exceeds; `outside_data`
     states where no data support the prediction. `rules_score` is the share that is passed of its rules and of

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, as_rows
+from ..criteria import FELT_FROM
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.variants import receptor_input
@@ -31,8 +32,10 @@ if TYPE_CHECKING:
 class Percept:
     """Sensation over time in d′ units, on the clock named by `clock`.
 
-    The receptor clock starts with the cue and counts no conduction; `onset_s` is on the response
-    clock (crossing + conduction + decision) and None where nothing was felt, like `channel`.
+    The receptor clock starts with the cue and counts no conduction. `detected_probability` is the share of trials in
+    which this person reports the icon; `onset_s` is the median response time of those trials, on the response clock
+    (first passage + conduction + decision), and `channel` the one that most of them go by; both are None where the
+    icon is not felt, which is where fewer than half of the trials end in a report.
     `conduction_s` is what the percept clock is later by, cold and warm; `outside_data` has a sentence for
     every way in which the trace lies outside what the prediction rests on.
     """
@@ -59,6 +62,13 @@ class Percept:
             raise ValueError(f"psi_cold has {self.psi_cold.size} samples and psi_warm {self.psi_warm.size}")
         if not self.dt_s > 0.0:
             raise ValueError(f"dt_s = {self.dt_s:g} s must be above 0")
+        if not 0.0 <= self.detected_probability <= 1.0:
+            raise ValueError(f"detected_probability = {self.detected_probability:g} must lie in 0 to 1")
+        if {self.onset_s is not None, self.channel is not None, self.felt} != {self.felt}:
+            raise ValueError(
+                f"an onset and a channel belong to an icon that is felt (from p {FELT_FROM:g} on), not to onset_s = "
+                f"{self.onset_s}, channel = {self.channel}, p {self.detected_probability:g}"
+            )
 
     @property
     def time_s(self) -> Array:
@@ -86,6 +96,18 @@ class Percept:
         peak = self.peak_s(channel)
         return None if peak is None else peak + self.conduction_s[channel == "warm"]
 
+    @property
+    def felt(self) -> bool:
+        """Whether at least half of the trials of this person end in a report."""
+        return self.detected_probability >= FELT_FROM
+
+    @property
+    def summary(self) -> str:
+        """Whether it is felt, when and how surely, as in `felt at 1.05 s by cold, p 1.000`."""
+        if not self.felt:
+            return f"not felt, p {self.detected_probability:.3f}"
+        return f"felt at {self.onset_s:.2f} s by {self.channel}, p {self.detected_probability:.3f}"
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both sensations; returns the axes."""
         from ..plots.draw import plot_sensation
@@ -94,9 +116,8 @@ class Percept:
 
     def __repr__(self) -> str:
         beyond = ", outside the data" if self.outside_data else ""
-        felt = "not felt" if self.onset_s is None else f"felt at {self.onset_s:.2f} s by {self.channel}"
         return (
-            f"Percept({self.icon or 'unnamed'}: {felt}, p {self.detected_probability:.3f}, "
+            f"Percept({self.icon or 'unnamed'}: {self.summary}, "
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
             f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
         )
