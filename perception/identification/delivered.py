@@ -34,16 +34,27 @@ class DeliveredChange:
 
 @dataclass(frozen=True, slots=True)
 class PerceivedChange:
-    """Effect of a device on one icon for a nominal person: probability of detection, d′ to each other icon."""
+    """Effect of a device on one icon: probability of detection, and d′ to each other icon for a nominal person.
+
+    `people` is the number of virtual people whose mean the detection is; 0 where it is the nominal person's.
+    """
 
     icon: str
     detection: DeliveredChange
     d_prime: tuple[tuple[str, DeliveredChange], ...]
+    people: int = 0
+
+    @property
+    def detected_by(self) -> str:
+        """Whose probability of detection it is."""
+        if not self.people:
+            return "the nominal person"
+        return "1 virtual person" if self.people == 1 else f"{self.people} virtual people"
 
     def __repr__(self) -> str:
         worst = max(self.d_prime, key=lambda pair: pair[1].drop, default=None)
         pair = "" if worst is None else f", d′ to {worst[0]} {worst[1].designed:.3g} → {worst[1].delivered:.3g}"
-        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f}"
+        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f} by {self.detected_by}"
         return f"PerceivedChange({self.icon}: {detected}{pair})"
 
     def losses(self) -> tuple[str, ...]:
@@ -51,8 +62,8 @@ class PerceivedChange:
         found = []
         if self.detection.drop > loss_limit("detection drop"):
             found.append(
-                f"detection falls from {self.detection.designed:.2f} to {self.detection.delivered:.2f}, by more than "
-                f"the stated {loss_limit('detection drop'):g}"
+                f"detection by {self.detected_by} falls from {self.detection.designed:.2f} to "
+                f"{self.detection.delivered:.2f}, by more than the stated {loss_limit('detection drop'):g}"
             )
         share, least = loss_limit("relative d′ drop"), loss_limit("least d′ drop")
         for other, change in self.d_prime:
@@ -67,6 +78,7 @@ class PerceivedChange:
         """Plain data for the sidecar file."""
         return {
             "observer": "nominal",
+            "detected_by": self.detected_by,
             "detected_probability": _pair(self.detection),
             "d_prime": {other: _pair(change) for other, change in self.d_prime},
             "losses": list(self.losses()),

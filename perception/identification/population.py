@@ -71,7 +71,7 @@ def respond(played: ReceptorTemperatures, crowd: People, observer: Observer, tim
     return PopulationResponse(percept_distances(cold, warm, dt, observer), found, dt * (cold.shape[-1] - 1), peaks)
 
 
-def detected_by(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
+def population_detection(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
     """Detection (people, icons) of every icon by every person, without response times."""
     cold, warm, dt = _sensations(played, crowd, observer)
     return _detection(cold, warm, dt, played.site, crowd, observer, times=False)

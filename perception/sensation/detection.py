@@ -59,8 +59,8 @@ class Detection:
         if self.reported is None:
             raise ValueError(UNTIMED)
         rows = self.reported.reshape(-1, self.reported.shape[-1])
-        time = self.dt_s * np.arange(rows.shape[1])
-        found = [time_of(row, time, 0.5 * row[-1]) if row[-1] >= FELT_FROM else math.nan for row in rows]
+        time: Array = self.dt_s * np.arange(rows.shape[1], dtype=np.float64)
+        found = [time_of(row, time, 0.5 * float(row[-1])) if row[-1] >= FELT_FROM else math.nan for row in rows]
         return np.array(found).reshape(self.probability.shape)
 
     def reported_sum(self) -> Array:

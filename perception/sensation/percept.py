@@ -103,7 +103,7 @@ class Percept:
 
     @property
     def summary(self) -> str:
-        """Whether it is felt, when and how surely, as in `felt at 1.05 s by cold, p 1.000`."""
+        """Whether the nominal person feels it, when and how surely, as in `felt at 1.05 s by cold, p 1.000`."""
         if not self.felt:
             return f"not felt, p {self.detected_probability:.3f}"
         return f"felt at {self.onset_s:.2f} s by {self.channel}, p {self.detected_probability:.3f}"
@@ -117,7 +117,7 @@ class Percept:
     def __repr__(self) -> str:
         beyond = ", outside the data" if self.outside_data else ""
         return (
-            f"Percept({self.icon or 'unnamed'}: {self.summary}, "
+            f"Percept({self.icon or 'unnamed'}, nominal person: {self.summary}, "
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
             f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
         )
