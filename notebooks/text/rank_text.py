@@ -75,9 +75,9 @@ def caveat(result: dict[str, Any]) -> str:
     norm = "" if result["norm"] == "max" else f", {result['norm']} norm"
     return (
         f"Predicted for {crowd} on the {result['rig']} rig{what_if} "
-        f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}): *detected* is the "
-        "share of their trials in which they report the icon, *onset* the median time of those reports, shown from "
-        "50 % on. These are predictions of a model, not measurements."
+        f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "
+        "These are predictions of a model, not measurements. Detected is the share of these people's trials that end "
+        "in a report; onset is the median time of those reports, channel what most of them go by, from 50 % on."
     )
 
 
@@ -133,7 +133,7 @@ def disagreement_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     icons = [each for each in found if "a" not in each]
     for some, why in (
         (pairs, "rules compare two icons played back to back, while naming one needs memory"),
-        (icons, "rules require a change and a rate, the model that at least half of the trials end in a report"),
+        (icons, "rules require a change and a rate, the model a report in half of the trials"),
     ):
         if some:
             yield f"Rules and model disagree: {why}"

@@ -1,8 +1,8 @@
 """Detection of an icon by virtual people, as designed and as a device delivers it.
 
 Designed, it is played as `rank` plays it. What the device changes at the receptors of the nominal person is added to
-the temperatures of every person, as much larger or smaller as the icon itself is at the receptors of that person. That is exact for what scales with the
-icon; of a change of shape it is wrong by about a tenth, by which the lags of their skins differ.
+the temperatures of every person, as much larger or smaller as the icon itself is for that person. That is exact for
+what scales with the icon, and wrong by about a tenth of the change otherwise, since skins differ in lag.
 """
 
 from __future__ import annotations

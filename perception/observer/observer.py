@@ -18,13 +18,20 @@ from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
 from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
-from .delays import LEG_M_PER_S, Conduction
-from .mechanisms import check_without
+from .delays import Conduction
+from .mechanisms import check_without, find_mechanism
 from .transducer import Transducer
 from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
+TURNED_OFF = {
+    "transducer": ("transducer exponent", "p"),
+    "gain noise": ("gain noise", "gain_noise"),
+    "decision between trials": ("decision time between trials", "decision_noise"),
+    "choice time": ("choice time", "choice_s"),
+}
+"""Mechanisms with one constant: its parameter of the inference, and the field of an observer."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -152,27 +159,23 @@ class Observer:
         """
         table = None if path is None else load_records(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
-        off = check_without(without)
+        off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole
 
     def with_mechanisms_off(self, names: frozenset[str]) -> Observer:
-        """The observer without some mechanisms, all else the same."""
+        """The observer without some mechanisms that act on it, all else the same."""
         changes: dict[str, Any] = {"without": self.without | names}
         for channel in CHANNELS:
             receptor = self.receptor(channel)
             if f"{channel} limit" in names:
                 receptor = replace(receptor, limit_C=None)
             if "delays" in names:
-                receptor = replace(receptor, velocity_m_per_s=LEG_M_PER_S[channel])
+                velocity = find_mechanism("delays").off(f"{channel} conduction velocity")
+                receptor = replace(receptor, velocity_m_per_s=velocity)
             changes[channel] = receptor
-        if "transducer" in names:
-            changes["p"] = 2.0
-        if "gain noise" in names:
-            changes["gain_noise"] = 0.0
-        if "decision between trials" in names:
-            changes["decision_noise"] = 0.0
-        if "choice time" in names:
-            changes["choice_s"] = 0.0
+        for name in names & set(TURNED_OFF):
+            parameter, constant = TURNED_OFF[name]
+            changes[constant] = find_mechanism(name).off(parameter)
         return replace(self, **changes)
 
     @classmethod

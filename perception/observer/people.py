@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from statistics import NormalDist
@@ -14,6 +15,7 @@ from thermicon.circuit.records import Record
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
+from .mechanisms import check_without
 from .observer import load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -89,7 +91,7 @@ def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
     )
 
 
-def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> People:
+def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, without: Iterable[str] = ()) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
     Sensitivities and criteria of the two channels are correlated, as people's thresholds are. `age_years` raises the
@@ -101,6 +103,7 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> Peo
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
+    off = check_without(without, "people")
     record = people_records()
     streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
@@ -120,8 +123,12 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> Peo
         return _triangular(column[name], low, record[name].central, high)
 
     aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
+    if "age" in off:
+        aged = [1.0, 1.0]
     threshold_cold, threshold_warm = both("threshold")
     criterion_cold, criterion_warm = both("criterion")
+    if "criterion between people" in off:
+        criterion_cold, criterion_warm = np.ones(n), np.ones(n)
     return People(
         threshold_cold=aged[0] * threshold_cold,
         threshold_warm=aged[1] * threshold_warm,
