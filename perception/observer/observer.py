@@ -20,6 +20,7 @@ from ..arrays import Array
 from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
 from .delays import Conduction
 from .mechanisms import check_without, find_mechanism
+from .observer_file import check_complete, read_observer_file
 from .transducer import Transducer
 from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
@@ -157,7 +158,7 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        table = None if path is None else load_records(Path(path))
+        table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole
@@ -186,6 +187,7 @@ class Observer:
         """
         check_variant(variable, model)
         variant, known = source_of(variable, model), {record.quantity for record in table}
+        check_complete(table, variable, variant)
 
         def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
             own = f"{quantity}{variant}"
