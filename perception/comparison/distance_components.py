@@ -36,10 +36,24 @@ GRID = np.linspace(-0.5, 2.0, 251)
 
 @dataclass(frozen=True, slots=True)
 class DistanceComponent:
-    """One component of the distance of two icons; `a` and `b` are its values for each icon, where each has one.
+    """One component of the distance of two icons.
 
-    `value` is None where there is nothing to compare, as for an icon that is not felt. `noticeable` is the value
-    that is just noticeable back to back, in the same unit. A rate is a factor, whose unit is 1, of two rates in K/s.
+    Attributes
+    ----------
+    name
+        `direction`, `intensity`, `rate`, `duration`, `pattern` or `onset`.
+    value
+        The difference; None where there is nothing to compare, as for an icon that is not felt.
+    unit
+        Unit of `value`; a rate is a factor, whose unit is 1, of two rates in K/s.
+    noticeable
+        Value that is just noticeable back to back, in the same unit.
+    a, b
+        Values of each icon, where each has one.
+
+    See Also
+    --------
+    distance_components : Computes all six.
     """
 
     name: str
@@ -108,13 +122,39 @@ class Course:
 def distance_components(
     a: Trace, b: Trace, observer: Observer | None = None, felt: tuple[Percept, Percept] | None = None
 ) -> tuple[DistanceComponent, ...]:
-    """The six components of the distance of two simulated icons for a nominal person (or `observer`).
+    """Split the distance of two simulated icons for a nominal person into six components.
 
-    `felt` are their percepts, where they are known already. `direction` is the strongest sensation (d′) in a
-    direction whose place in the order of directions differs; `intensity` the difference of the strongest
-    sensations (d′); `rate` the factor between the steepest rates at a receptor, that of the first direction where the
-    two share none; `duration` and `onset` are differences in s; `pattern` is the largest difference (d′) that remains
-    of the courses of total sensation when onset, duration and intensity are made the same.
+    `direction` is the strongest sensation (d′) in a direction whose place in the order of directions differs;
+    `intensity` the difference of the strongest sensations (d′); `rate` the factor between the steepest rates at a
+    receptor, that of the first direction where the two share none; `duration` and `onset` are differences in s;
+    `pattern` is the largest difference (d′) that remains of the courses of total sensation when onset, duration and
+    intensity are made the same.
+
+    Parameters
+    ----------
+    a, b
+        Traces of `simulate`.
+    observer
+        The person (None: the nominal one).
+    felt
+        Percepts of the two, where they are known already.
+
+    Returns
+    -------
+    tuple of DistanceComponent
+        Direction, intensity, rate, duration, pattern, onset.
+
+    Raises
+    ------
+    ValueError
+        For traces without a uniform clock.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
+    >>> parts = distance_components(*(simulate(icons[name], rig) for name in ("cooling-step", "warming-step")))
     """
     person = Observer.load() if observer is None else observer
     percepts = (perceive(a, person), perceive(b, person)) if felt is None else felt

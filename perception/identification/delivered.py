@@ -36,7 +36,20 @@ class DeliveredChange:
 class PerceivedChange:
     """Effect of a device on one icon: probability of detection, and d′ to each other icon for a nominal person.
 
-    `people` is the number of virtual people whose mean the detection is; 0 where it is the nominal person's.
+    Attributes
+    ----------
+    icon
+        Name of the icon.
+    detection
+        Probability of a report, designed and delivered.
+    d_prime
+        d′ from memory to each other icon, by its name, designed and delivered.
+    people
+        Number of virtual people whose mean the detection is; 0 where it is the nominal person's.
+
+    See Also
+    --------
+    judge_delivered : Compares a set.
     """
 
     icon: str
@@ -92,10 +105,39 @@ def judge_delivered(
     observer: Observer | None = None,
     norm: str = "max",
 ) -> tuple[PerceivedChange, ...]:
-    """Compare designed and delivered icons of a set for a nominal person (or `observer`).
+    """Compare designed and delivered icons of a set for a nominal person.
 
-    All traces must have the same rows. Each icon is compared with the others as they were designed, and, delivered,
-    with the others as they are delivered.
+    Each icon is compared with the others as they were designed, and, delivered, with the others as they are delivered.
+
+    Parameters
+    ----------
+    names
+        Names of the icons.
+    designed, delivered
+        Their traces, all with the same rows.
+    observer
+        The person (None: the nominal one).
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+
+    Returns
+    -------
+    tuple of PerceivedChange
+        For each icon, detection by this person and d′ to every other icon, designed and delivered.
+
+    Raises
+    ------
+    ValueError
+        For an unknown norm, and for traces without a uniform clock.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
+    >>> traces = [simulate(icons[name], rig) for name in ("cooling-step", "warming-step")]
+    >>> judge_delivered(["cooling-step", "warming-step"], traces, traces)[0].losses()
+    ()
     """
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
     percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]

@@ -72,12 +72,61 @@ class Receptor:
 class Observer:
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
-    `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
-    presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
-    `decision_s`, `memory_noise` the noise of identification in log units of drive for each norm of distance. `variable`
-    says what the receptors go by, temperature or heat flow, and `model` how; `without` names the mechanisms that are
-    turned off.
+    An observer is loaded with `Observer.load`, which takes a variant and mechanisms to leave out; its fields are the
+    constants of the chain from receptor to answer, each with its source in the parameter file.
 
+    Attributes
+    ----------
+    cold, warm
+        Constants of each channel.
+    integration_s
+        Time constant of integration at the receptors, s.
+    neutral_low_C, neutral_high_C
+        Range of complete adaptation, °C.
+    a
+        Slope of sensation, d′.
+    reference_area_m2
+        Area of contact that thresholds are given for, m².
+    criterion
+        Change of sensation that is answered with yes, d′.
+    noise_correlation_s
+        Correlation time of the sensory noise, s.
+    path_hand_m, path_forearm_m
+        Length of the nerve to the cord, m.
+    decision_s
+        Time from the brain's signal to the answer, s.
+    onset_uncertainty_s
+        Uncertainty of a remembered onset, s.
+    lapse
+        Share of trials in which any name is given, 0–1.
+    memory_max, memory_rms, memory_integral
+        Noise of identification for each norm of distance, log units of drive.
+    p
+        Exponent of sensation near threshold.
+    gain_noise
+        SD (ln) of the gain from presentation to presentation.
+    choice_s
+        What a choice adds to `decision_s`, s.
+    decision_noise
+        SD (ln) of decision times from trial to trial.
+    variable
+        What the receptors go by: `temperature` or `heat flow`.
+    model
+        How they do: `adapting` or `ring-de-dear`.
+    without
+        Mechanisms that are turned off.
+    count_s
+        Window of counted impulses, s; for `ring-de-dear` alone.
+    static_from_C
+        Where static discharge starts, °C; for `ring-de-dear` alone.
+
+    Raises
+    ------
+    ValueError
+        For a constant out of its range, and for a variable and a model that do not go together.
+
+    Examples
+    --------
     >>> person = Observer.load()
     >>> 0.5 < person.receptor("warm").velocity_m_per_s < 2.5
     True

@@ -94,12 +94,38 @@ def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
 def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, without: Iterable[str] = ()) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
-    Sensitivities and criteria of the two channels are correlated, as people's thresholds are. `age_years` raises the
-    thresholds as `age_factor` says; None leaves age out, which is people of 20 to 30 years.
+    Sensitivities and criteria of the two channels are correlated, as people's thresholds are. What differs between
+    people comes from records: `people_records` has the one behind every column.
 
+    Parameters
+    ----------
+    n
+        Number of people.
+    seed
+        Seed of the draw.
+    age_years
+        Age of all of them, which multiplies thresholds as `age_factor` says; None leaves age out, which is people of 20
+        to 30 years.
+    without
+        Mechanisms of people that are turned off: `criterion between people` or `age`.
+
+    Returns
+    -------
+    People
+        Multipliers of thresholds, criteria, memory noise, contact, skin and nerve path, decision times and lapses.
+
+    Raises
+    ------
+    ValueError
+        For fewer than one person, an age outside 18 to 100 years, and a mechanism that does not act on people.
+
+    Examples
+    --------
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
     True
+    >>> draw_people(3, without=["criterion between people"]).criterion_cold.tolist()
+    [1.0, 1.0, 1.0]
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")

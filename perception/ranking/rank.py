@@ -112,6 +112,13 @@ def rank(
     ValueError
         For a set without icons, unknown names, a single draw, and a choice that cannot be made.
 
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    >>> ranking.worst_pair
+    ('warming-step', 'linear-warming')
     """
     from thermicon.circuit import duration_s, simulate_all
 

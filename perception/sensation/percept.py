@@ -30,14 +30,42 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Percept:
-    """Sensation over time in d′ units, on the clock named by `clock`.
+    """Sensation over time in d′ units, and whether the nominal person reports it.
 
-    The receptor clock starts with the cue and counts no conduction. `detected_probability` is the share of trials in
-    which this person reports the icon; `onset_s` is the median response time of those trials, on the response clock
-    (first passage + conduction + decision), and `channel` the one that most of them go by; both are None where the
-    icon is not felt, which is where fewer than half of the trials end in a report.
-    `conduction_s` is what the percept clock is later by, cold and warm; `outside_data` has a sentence for
-    every way in which the trace lies outside what the prediction rests on.
+    Three clocks are distinguished: the receptor clock starts with the cue, the percept clock is later by conduction,
+    the response clock by conduction and decision.
+
+    Attributes
+    ----------
+    psi_cold, psi_warm
+        Sensation of each channel (n_time,), d′, on the clock named by `clock`.
+    dt_s
+        Step of the clock, s.
+    onset_s
+        Median response time of the trials that end in a report, s on the response clock (first passage + conduction +
+        decision); None where the icon is not felt, which is where fewer than half of the trials do.
+    channel
+        Channel that most reports go by; None where the icon is not felt.
+    detected_probability
+        Share of trials of this person that end in a report, beyond reports of nothing, 0–1.
+    icon
+        Name of the icon.
+    clock
+        `receptor`.
+    conduction_s
+        What the percept clock is later by, cold and warm, s.
+    outside_data
+        A sentence for every way in which the trace lies outside what the prediction rests on.
+
+    Raises
+    ------
+    ValueError
+        For sensations that are not two finite traces of one length, and for an onset or a channel that contradicts the
+        probability.
+
+    See Also
+    --------
+    perceive : Predicts a percept.
     """
 
     psi_cold: Array
@@ -129,10 +157,36 @@ class Percept:
 
 
 def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:
-    """Percept of one simulated trace by a nominal person (or `observer`, of temperature or of heat flow).
+    """Predict what the nominal person feels of one simulated trace: receptor drive, sensation, detection.
 
-    `area_m2` is the trace's own area of contact unless given; the site is the trace's. The chain is
-    receptor drive, sensation, detection.
+    Parameters
+    ----------
+    trace
+        A trace of `simulate`, with a uniform clock; its site decides thresholds and nerve path. The response window is
+        the length of the trace: simulate a tail, such as 10 s, to include the return.
+    observer
+        The person, of temperature or of heat flow; None: the nominal one.
+    area_m2
+        Area of contact, m²; None: that of the trace.
+
+    Returns
+    -------
+    Percept
+        Sensation of both channels, and the probability, time and channel of a report by this person.
+
+    Raises
+    ------
+    ValueError
+        For a trace of fewer than two rows or without a uniform clock.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=10.0)
+    >>> percept = perceive(trace)
+    >>> percept.felt, percept.channel, 1.0 < percept.onset_s < 1.3
+    (True, 'cold', True)
     """
     person = Observer.load() if observer is None else observer
     area = trace.area_m2 if area_m2 is None else area_m2
