@@ -94,7 +94,7 @@ def confuse(
     Raises
     ------
     ValueError
-        For d′ that are not square, symmetric and finite, or a lapse outside 0 to 1.
+        For d′ of another shape, and for d′ that are not finite.
 
     Examples
     --------

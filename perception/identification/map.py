@@ -151,7 +151,7 @@ def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> Perceptu
     Parameters
     ----------
     ranking
-        A ranking of two or more icons.
+        The ranking.
     reference
         Another map, onto which this one is laid.
 
@@ -159,11 +159,6 @@ def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> Perceptu
     -------
     PerceptualMap
         Points in d′, with stress and scatter.
-
-    Raises
-    ------
-    ValueError
-        For a ranking of one icon.
 
     Examples
     --------

@@ -33,17 +33,12 @@ def proportion_correct(confusion: ArrayLike) -> Array:
     Parameters
     ----------
     confusion
-        Confusion matrices (..., m, m), probabilities or counts, one row per presented icon.
+        Probabilities (..., m, m) of each answer (last axis) to each presented icon; rows sum to 1.
 
     Returns
     -------
     ndarray
         Proportion (...,), 0–1.
-
-    Raises
-    ------
-    ValueError
-        For matrices that are not square, or with negative cells or empty rows.
 
     Examples
     --------
@@ -60,17 +55,12 @@ def information_bits(confusion: ArrayLike) -> Array:
     Parameters
     ----------
     confusion
-        Confusion matrices (..., m, m), probabilities or counts, one row per presented icon.
+        Probabilities (..., m, m) of each answer (last axis) to each presented icon; rows sum to 1.
 
     Returns
     -------
     ndarray
         Information (...,) in bits, 0 to log2 m.
-
-    Raises
-    ------
-    ValueError
-        For matrices that are not square, or with negative cells or empty rows.
 
     Examples
     --------

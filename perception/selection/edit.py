@@ -172,7 +172,8 @@ def cheapest_edit(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> cheapest_edit(list(read_cue("six-icons"))[:2], Rig.load("thenar"), "cooling-step", "warming-step", people=4).reason
+    >>> two = list(read_cue("six-icons"))[:2]
+    >>> cheapest_edit(two, Rig.load("thenar"), "cooling-step", "warming-step", people=4).reason
     'the pair is distinguishable already: d′ ..., criterion 2.56'
     """
     if not 0 < wanted < math.inf:

@@ -125,8 +125,10 @@ def compare_sets(
 
     Raises
     ------
+    ChoiceError
+        For a set of fewer than two icons, and for no draws.
     ValueError
-        For a set of fewer than two icons, fewer than two draws, and an unknown norm.
+        For an unknown norm.
 
     Examples
     --------

@@ -58,7 +58,7 @@ class SearchResult:
     evaluations
         Number of icons evaluated for the nominal person.
     refined
-        Number of sets appraised by people.
+        Number of them that were tried after the first sample, near the best sets.
 
     See Also
     --------

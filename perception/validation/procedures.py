@@ -180,8 +180,8 @@ def method_of_limits(
 
     Raises
     ------
-    ValueError
-        For people whose columns do not agree.
+    CueErrors
+        For a rate or a limit that is not above 0.
 
     Examples
     --------
@@ -278,7 +278,7 @@ def method_of_levels(
     Raises
     ------
     ValueError
-        For steps that are not above 0.
+        For no run, and for steps that are not above 0 with the last below the first.
 
     Examples
     --------
