@@ -21,6 +21,10 @@ from .rank_notes import (
 )
 from .tables import show, table
 
+DETECTED = (
+    "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
+    "channel what most of them go by, from 50 % on."
+)
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
@@ -76,8 +80,7 @@ def caveat(result: dict[str, Any]) -> str:
     return (
         f"Predicted for {crowd} on the {result['rig']} rig{what_if} "
         f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "
-        "These are predictions of a model, not measurements. Detected is the share of these people's trials that end "
-        "in a report; onset is the median time of those reports, channel what most of them go by, from 50 % on."
+        f"These are predictions of a model, not measurements. {DETECTED}"
     )
 
 
