@@ -7,6 +7,7 @@ The front door holds what a script or a notebook needs; everything else is in th
 from .observer.observer import CHANNELS, NORMS, Observer
 from .sensation.percept import Percept, perceive
 from .identification.distance import percept_distance
+from .identification.from_memory import dprime_from_memory
 from .identification.confusion import Confusion, confuse
 from .identification.measures import information_bits, proportion_correct
 from .observer.people import draw_people
@@ -35,6 +36,7 @@ __all__ = [
     "perceive",
     "Percept",
     "percept_distance",
+    "dprime_from_memory",
     "distance_components",
     "DistanceComponent",
     "confuse",

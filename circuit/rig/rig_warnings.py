@@ -48,7 +48,25 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
     if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
         sentences.append(resting)
     origin = () if rig.pump is None else rig.pump.origin.warnings
-    return (*sentences, *origin, *_left_from_another_module(rig))
+    return (*sentences, *origin, *_left_from_another_module(rig), *_left_from_another_site(rig))
+
+
+def _left_from_another_site(rig: Rig) -> list[str]:
+    """A sentence where a change names another site and leaves the skin as it was."""
+    from .rig import Rig, rig_names
+
+    changed = [text.partition("=")[0].strip() for text in rig.changes]
+    if "skin.site" not in changed or any(key.startswith("skin.layer") for key in changed):
+        return []
+    there = [shipped for name in rig_names() if (shipped := Rig.load(name)).site == rig.site]
+    if any(shipped.skin.layers == rig.skin.layers for shipped in there):
+        return []
+    names = " or ".join(f"--rig {shipped.name}" for shipped in there)
+    cure = f"use {names}, or set skin.layer" if there else "use a rig file of that site, or set skin.layer"
+    return [
+        f"skin.site = {rig.site} changes the name of the site, and thresholds and nerve path that go by it; layers and "
+        f"receptor depths are still those of rig {rig.name}: {cure}, skin.cold_receptor_mm and skin.warm_receptor_mm"
+    ]
 
 
 def _left_from_another_module(rig: Rig) -> list[str]:

@@ -104,8 +104,10 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.plot(t, percept.psi_cold, color=COOL, lw=1.5, ls="-.", label="cold")
     ax.plot(t, percept.psi_warm, color=WARM, lw=1.5, ls="--", label="warm")
     if percept.onset_s is not None:
-        said = f"reported as {percept.channel}\nat {percept.onset_s:.2f} s\n(response clock)"
+        said = f"reported as {percept.channel}\nat {percept.onset_s:.2f} s by the\nnominal person\n(response clock)"
         ax.axvline(percept.onset_s, color=INK, lw=1.0, ls=":", label=said)
+    else:
+        ax.plot([], [], " ", label=f"not felt by the\nnominal person\n(p {percept.detected_probability:.2f})")
     ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from thermicon.circuit.delivery.formats import Format
     from thermicon.icons import Icon
     from thermicon.perception import PerceivedChange
+    from thermicon.perception.identification.delivered import DeliveredChange
 
 FORMAT = "csv"
 
@@ -134,10 +135,12 @@ def compare_felt(
     tail_s: float,
     warn: Callable[[str], None],
 ) -> tuple[PerceivedChange, ...]:
-    """How the device changes the perception of the exported icons by a nominal person, within their set."""
+    """How the device changes detection of the exported icons by people, and d′ of a nominal person within the set."""
+    from thermicon.circuit import duration_s
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
+    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered, run_end_s
 
     everyone = [one.delivery for one in ready]
     for icon in rest:
@@ -146,15 +149,28 @@ def compare_felt(
         except InputError as problem:
             warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
     end = max(delivery.end_s for delivery in everyone) + AFTER_S
+    run_end = run_end_s(duration_s(delivery.icon, rig) for delivery in everyone)
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[delivery] for delivery in everyone]
     if len(groups) > 1:
         warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
     felt: list[PerceivedChange] = []
+    by_people: list[DeliveredChange | None] = []
     for group in groups:
         traces = [traces_until(delivery, end) for delivery in group]
         names = [delivery.icon.name for delivery in group]
         felt += judge_delivered(names, [each for each, _ in traces], [each for _, each in traces])
-    return tuple(felt[: len(ready)])
+        for place, delivery in enumerate(group):
+            if len(by_people) == len(ready):
+                break
+            try:
+                by_people.append(detected_as_delivered(delivery, *traces[place], end_s=run_end))
+            except InputError as problem:
+                warn(f"warning: {delivery.icon.name}: detection is that of the nominal person alone: {problem}")
+                by_people.append(None)
+    return tuple(
+        change if detection is None else replace(change, detection=detection, people=PEOPLE)
+        for change, detection in zip(felt, by_people, strict=False)
+    )
 
 
 def write(

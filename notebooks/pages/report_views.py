@@ -80,7 +80,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         yield Heading(icon.name, 3)
         facts = [
             f"{percent(score['proportion_correct'])} correct",
-            f"detected by {percent(score['detected_probability'])}",
+            f"reported in {percent(score['detected_probability'])} of the trials of all people",
         ]
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
         said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]

@@ -21,6 +21,10 @@ from .rank_notes import (
 )
 from .tables import show, table
 
+DETECTED = (
+    "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
+    "channel what most of them go by, from 50 % on."
+)
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
@@ -76,7 +80,7 @@ def caveat(result: dict[str, Any]) -> str:
     return (
         f"Predicted for {crowd} on the {result['rig']} rig{what_if} "
         f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "
-        "These are predictions of a model, not measurements."
+        f"These are predictions of a model, not measurements. {DETECTED}"
     )
 
 
@@ -132,7 +136,7 @@ def disagreement_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:
     icons = [each for each in found if "a" not in each]
     for some, why in (
         (pairs, "rules compare two icons played back to back, while naming one needs memory"),
-        (icons, "rules require a change and a rate, the model detection by a cautious observer"),
+        (icons, "rules require a change and a rate, the model a report in half of the trials"),
     ):
         if some:
             yield f"Rules and model disagree: {why}"

@@ -54,7 +54,8 @@ class Span:
 def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
     """Return onset, felt peaks and skin peaks of the channels that respond, the earliest first.
 
-    A held peak of the skin counts from when the temperature comes within 1 %.
+    Of an icon that is not felt only the skin's peaks are marked. A held peak of the skin counts from when the
+    temperature comes within 1 %.
     """
     found: list[EventTime] = []
     if percept.onset_s is not None and percept.channel is not None:
@@ -64,7 +65,8 @@ def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
         felt = percept.felt_peak_s(channel)
         if felt is None or psi.max() < FELT_DPRIME:
             continue
-        found.append(EventTime("felt peak", felt, channel, "percept"))
+        if percept.felt:
+            found.append(EventTime("felt peak", felt, channel, "percept"))
         away = (trace.skin_C - trace.skin_C[0]) * (-1.0 if channel == "cold" else 1.0)
         if away.max() > STILL_K:
             at = int((away >= HELD_SHARE * away.max()).argmax())

@@ -23,8 +23,10 @@ COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
 
 def delivered_html(ready: PreparedExport) -> str:
     """One row per icon: duration, deviation from the design, detection and safety; then demands, refusals, warnings."""
-    columns = ("icon", "duration", "rate", "receptors within", "rms", "detected", "d′ changes by", "safety")
     felt = {change.icon: change for change in ready.felt}
+    whose = ", ".join(dict.fromkeys(change.detected_by for change in ready.felt))
+    detected = f"detected by {whose}" if whose else "detected"
+    columns = ("icon", "duration", "rate", "receptors within", "rms", detected, "d′ changes by", "safety")
     rows = [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]
     names: dict[str, list[str]] = {}  # one line for all icons that share a warning
     for icon in ready.prepared:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
+from thermicon.icons.number_text import percent, signed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -184,7 +184,8 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         _mark(moment.time_s, moment.label, moment.channel if moment.kind != "onset" else None, None)
         for moment in drawing.moments
     ]
-    label = f"sensation (d′), {percept.clock} clock"
+    share = percent(percept.detected_probability)
+    label = f"sensation (d′), {percept.clock} clock; nominal person: reported in {share} of trials"
     return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False)
 
 

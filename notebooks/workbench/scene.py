@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from thermicon.icons import CueErrors
-from thermicon.icons.number_text import number
+from thermicon.icons.number_text import number, percent
 
 from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
@@ -218,8 +218,9 @@ def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
     site = reading.icons.context.site if reading.icons is not None else None
     if site is not None and site != rig.site:
         notes.append(f"the set is for the site {site}, the rig {rig.name} is for {rig.site}")
-    if drawing.percept.onset_s is None:
-        notes.append(f"{drawing.icon.name} is not felt by this observer")
+    if not drawing.percept.felt:
+        share = percent(drawing.percept.detected_probability)
+        notes.append(f"{drawing.icon.name} is not felt by the nominal person, who reports it in {share} of trials")
     if len(drawing.handles) == MOST_HANDLES:
         notes.append(f"only the first {MOST_HANDLES} corners can be dragged")
     return [*notes, *trace.warnings, *drawing.percept.outside_data]

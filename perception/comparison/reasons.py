@@ -131,13 +131,13 @@ def _rates(a: Trace, b: Trace, channel: Channel) -> Reason:
 def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> Reason:
     if felt_a.onset_s is None or felt_b.onset_s is None:
         unfelt = [_name(t) for t, p in ((a, felt_a), (b, felt_b)) if p.onset_s is None]
-        return Reason(f"not felt: {' and '.join(unfelt)}", {}, "s")
+        return Reason(f"not felt by the nominal person: {' and '.join(unfelt)}", {}, "s")
     channel: Channel = "warm" if felt_a.channel == felt_b.channel == "warm" else "cold"
     needed = load_rules().one("onset", channel=channel).central
     gap = abs(felt_a.onset_s - felt_b.onset_s)
     digits = decimals(gap, needed)
     text = (
-        f"felt at {felt_a.onset_s:.{digits}f} s ({felt_a.channel}) and {felt_b.onset_s:.{digits}f} s "
+        f"nominal person: felt at {felt_a.onset_s:.{digits}f} s ({felt_a.channel}) and {felt_b.onset_s:.{digits}f} s "
         f"({felt_b.channel}): {gap:.{digits}f} s apart, {verdict(gap, needed)} the {fixed(needed, digits)} s "
         f"of the response window"
     )

@@ -11,13 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import decimals, significant
 
-from ..criteria import DISTINGUISHABLE_DPRIME
+from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
 from .rules import OURS, RuleResult, passes
 
 if TYPE_CHECKING:
     from ..ranking.ranking import IconScore, PairScore
-
-FELT = 0.9
 
 
 def counted(results: Iterable[RuleResult]) -> list[RuleResult]:
@@ -69,9 +67,9 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
     found: list[dict[str, Any]] = []
     for icon in icons:
         rules = passes(icon.rules, "change at the receptor", "rate at the receptor")
-        model = icon.detected_probability >= FELT
+        model = icon.detected_probability >= FELT_FROM
         if rules != model:
-            shown, limit = significant(icon.detected_probability, FELT, least=2)
+            shown, limit = significant(icon.detected_probability, FELT_FROM, least=2)
             word = "detectable" if rules else "not detectable"
             side = "above" if model else "below"
             text = f"{icon.name}: rules: {word}; model: {shown} detected, {side} the {limit} criterion"

@@ -184,7 +184,7 @@ def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleRes
         return _inside(record, channel, onset_s)
     low, high = record.interval
     band = f"{low:.3g} to {high:.3g}{_unit(record)}"
-    text = f"latency: the icon is not felt, so it has no onset to compare with {band}"
+    text = f"latency: the nominal person does not feel the icon, so it has no onset to compare with {band}"
     return _result(record, channel, False, None, None, high, text, low)
 
 

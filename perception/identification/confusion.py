@@ -25,11 +25,23 @@ SAMPLES = 10_240
 
 @dataclass(frozen=True, slots=True)
 class Confusion:
-    """Confusions of many people: `probability` (people, icons, icons), rows sum to 1.
+    """Confusions of many people, and how accurate they are.
 
-    `stress` (people,) is how far the embedding bends the distances (0: not at all, as a share of
-    their root mean square); `standard_error` is the largest sampling error of a pooled cell and
-    `person_standard_error` that of a cell of one person, both at most and 0 where cells are exact.
+    Attributes
+    ----------
+    probability
+        Probabilities (people, icons, icons) of each answer (last axis) to each presented icon; rows sum to 1.
+    stress
+        How far the embedding bends the distances of each person (people,), as a share of their root mean square; 0: not
+        at all.
+    standard_error
+        Largest sampling error of a cell of the pooled matrix, at most; 0 where cells are exact.
+    person_standard_error
+        The same of one person's matrix.
+
+    See Also
+    --------
+    confuse : Computes confusions.
     """
 
     probability: Array
@@ -52,13 +64,40 @@ def confuse(
     samples: int = SAMPLES,
     first: int = 0,
 ) -> Confusion:
-    """Confusion matrices of pairwise d′ of shape (people, icons, icons) or (icons, icons).
+    """Compute confusion matrices from pairwise d′.
 
-    `bias` (icons,) or (people, icons) favours names: the answer is the likeliest icon with its log likelihood raised
-    by this much (natural log; only differences count). Lapses have no bias. Noise is drawn from `seed` and the
-    person's number, which counts from `first`, and nothing else: two sets of as many icons are compared on the same
+    A presented icon is felt as its point plus unit noise on every axis and named after the nearest point. Noise is
+    drawn from `seed` and the person's number and nothing else: two sets of as many icons are compared on the same
     noise, whoever else takes part. One and two icons are exact.
 
+    Parameters
+    ----------
+    d_prime
+        Pairwise d′, of shape (people, icons, icons) or (icons, icons).
+    lapse
+        Share of trials with a random name, 0–1; one number or one for each person.
+    bias
+        Favour of names (icons,) or (people, icons): the answer is the likeliest icon with its log likelihood (ln)
+        higher by this much; only differences count. Lapses have no bias.
+    seed
+        Seed of the noise.
+    samples
+        Draws of noise for each person.
+    first
+        Number of the first person.
+
+    Returns
+    -------
+    Confusion
+        Matrices of every person, and how accurate they are.
+
+    Raises
+    ------
+    ValueError
+        For d′ of another shape, and for d′ that are not finite.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> d = 2.78 * np.sqrt(2) * (1 - np.eye(6))
     >>> round(float(np.trace(confuse(d, lapse=0.0).pooled)) / 6, 2)

@@ -35,16 +35,40 @@ class DeliveredChange:
 
 @dataclass(frozen=True, slots=True)
 class PerceivedChange:
-    """Effect of a device on one icon for a nominal person: probability of detection, d′ to each other icon."""
+    """Effect of a device on one icon: probability of detection, and d′ to each other icon for a nominal person.
+
+    Attributes
+    ----------
+    icon
+        Name of the icon.
+    detection
+        Probability of a report, designed and delivered.
+    d_prime
+        d′ from memory to each other icon, by its name, designed and delivered.
+    people
+        Number of virtual people whose mean the detection is; 0 where it is the nominal person's.
+
+    See Also
+    --------
+    judge_delivered : Compares a set.
+    """
 
     icon: str
     detection: DeliveredChange
     d_prime: tuple[tuple[str, DeliveredChange], ...]
+    people: int = 0
+
+    @property
+    def detected_by(self) -> str:
+        """Whose probability of detection it is."""
+        if not self.people:
+            return "the nominal person"
+        return "1 virtual person" if self.people == 1 else f"{self.people} virtual people"
 
     def __repr__(self) -> str:
         worst = max(self.d_prime, key=lambda pair: pair[1].drop, default=None)
         pair = "" if worst is None else f", d′ to {worst[0]} {worst[1].designed:.3g} → {worst[1].delivered:.3g}"
-        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f}"
+        detected = f"detected {self.detection.designed:.3f} → {self.detection.delivered:.3f} by {self.detected_by}"
         return f"PerceivedChange({self.icon}: {detected}{pair})"
 
     def losses(self) -> tuple[str, ...]:
@@ -52,8 +76,8 @@ class PerceivedChange:
         found = []
         if self.detection.drop > loss_limit("detection drop"):
             found.append(
-                f"detection falls from {self.detection.designed:.2f} to {self.detection.delivered:.2f}, by more than "
-                f"the stated {loss_limit('detection drop'):g}"
+                f"detection by {self.detected_by} falls from {self.detection.designed:.2f} to "
+                f"{self.detection.delivered:.2f}, by more than the stated {loss_limit('detection drop'):g}"
             )
         share, least = loss_limit("relative d′ drop"), loss_limit("least d′ drop")
         for other, change in self.d_prime:
@@ -68,6 +92,7 @@ class PerceivedChange:
         """Plain data for the sidecar file."""
         return {
             "observer": "nominal",
+            "detected_by": self.detected_by,
             "detected_probability": _pair(self.detection),
             "d_prime": {other: _pair(change) for other, change in self.d_prime},
             "losses": list(self.losses()),
@@ -81,10 +106,39 @@ def judge_delivered(
     observer: Observer | None = None,
     norm: str = USUAL_NORM,
 ) -> tuple[PerceivedChange, ...]:
-    """Compare designed and delivered icons of a set for a nominal person (or `observer`).
+    """Compare designed and delivered icons of a set for a nominal person.
 
-    All traces must have the same rows. Each icon is compared with the others as they were designed, and, delivered,
-    with the others as they are delivered.
+    Each icon is compared with the others as they were designed, and, delivered, with the others as they are delivered.
+
+    Parameters
+    ----------
+    names
+        Names of the icons.
+    designed, delivered
+        Their traces, all with the same rows.
+    observer
+        The person (None: the nominal one).
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+
+    Returns
+    -------
+    tuple of PerceivedChange
+        For each icon, detection by this person and d′ to every other icon, designed and delivered.
+
+    Raises
+    ------
+    ValueError
+        For an unknown norm, and for traces without a uniform clock.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
+    >>> traces = [simulate(icons[name], rig) for name in ("cooling-step", "warming-step")]
+    >>> judge_delivered(["cooling-step", "warming-step"], traces, traces)[0].losses()
+    ()
     """
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
     percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]

@@ -83,11 +83,25 @@ def percept_distance(a: Percept, b: Percept, observer: Observer | None = None, n
     norm
         How the difference over time is counted: `max`, `rms` or `integral`.
 
+    Returns
+    -------
+    float
+        The distance, d′ of sensation, before memory noise; d′ · s by the norm `integral`.
+
     Raises
     ------
     ValueError
         For different clocks, and for another norm: episodes are compared from memory (`dprime_from_memory`).
 
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
+    >>> from thermicon.perception import perceive
+    >>> a, b = (perceive(simulate(icons[name], rig)) for name in ("cooling-step", "warming-step"))
+    >>> percept_distance(a, a), percept_distance(a, b) > 10.0
+    (0.0, True)
     """
     person = Observer.load() if observer is None else observer
     chosen = trace_norm(norm)

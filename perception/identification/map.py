@@ -28,10 +28,30 @@ ALIKE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PerceptualMap:
-    """Points (icons, 2) in d′ for icons by name, and how far the plane bends the distances.
+    """Icons as points of a plane, in d′, and how far the plane bends the distances.
 
-    `stress` is Kruskal's stress-1, 0 for none. `covariance` (icons, 2, 2) in d′² is their scatter over the maps
-    of single people, each rotated and shifted onto this one; None for one person.
+    Attributes
+    ----------
+    labels
+        Names of the icons.
+    points
+        Points (icons, 2), d′.
+    stress
+        Kruskal's stress-1; 0: the distances are exact.
+    covariance
+        Scatter (icons, 2, 2) over the maps of single people, each turned and shifted onto this one, d′²; None for one
+        person.
+    people
+        Number of people behind it.
+
+    Raises
+    ------
+    ValueError
+        For points or covariances of another shape than the labels.
+
+    See Also
+    --------
+    perceptual_map, map_of : Compute a map.
     """
 
     labels: tuple[str, ...]
@@ -68,12 +88,34 @@ def perceptual_map(
     people: ArrayLike | None = None,
     reference: PerceptualMap | None = None,
 ) -> PerceptualMap:
-    """Map of pairwise d′ (icons, icons); `people` (n, icons, icons) are those of single people, for the ellipses.
+    """Lay icons out in a plane whose distances are as near as possible to pairwise d′.
 
-    With a `reference` the map is turned, mirrored and shifted onto it as well as the icons of the same name allow
-    (two or more), and never stretched. Raises `ValueError` for distances that are not symmetric, finite and 0 between
-    an icon and itself.
+    With a reference the map is turned, mirrored and shifted onto it as well as the icons of the same name allow
+    (two or more), and never stretched.
 
+    Parameters
+    ----------
+    d_prime
+        Pairwise d′ (icons, icons).
+    labels
+        Names of the icons.
+    people
+        Pairwise d′ (n, icons, icons) of single people, for the ellipses.
+    reference
+        Another map.
+
+    Returns
+    -------
+    PerceptualMap
+        Points in d′, with stress and scatter.
+
+    Raises
+    ------
+    ValueError
+        For distances that are not symmetric, finite and 0 between an icon and itself.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> found = perceptual_map([[0, 3, 4], [3, 0, 5], [4, 5, 0]], ["a", "b", "c"])
     >>> round(found.stress, 6), np.linalg.norm(found.points[1] - found.points[2]).round(3)
@@ -104,7 +146,28 @@ def perceptual_map(
 
 
 def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> PerceptualMap:
-    """The map of a ranking's median d′, with the spread over the people it kept."""
+    """Lay out the icons of a ranking by their median d′, with the spread over the people it kept.
+
+    Parameters
+    ----------
+    ranking
+        The ranking.
+    reference
+        Another map, onto which this one is laid.
+
+    Returns
+    -------
+    PerceptualMap
+        Points in d′, with stress and scatter.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> from thermicon.perception import rank
+    >>> map_of(rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)).points.shape
+    (6, 2)
+    """
     people = None if ranking.spread is None else ranking.spread.d_prime
     return perceptual_map(ranking.d_prime, ranking.labels, people, reference)
 

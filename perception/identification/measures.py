@@ -28,14 +28,42 @@ class PluginInformation:
 
 
 def proportion_correct(confusion: ArrayLike) -> Array:
-    """Proportion correct (0–1) with every icon presented equally often; shape (..., m, m) → (...)."""
+    """Compute the proportion correct with every icon presented equally often.
+
+    Parameters
+    ----------
+    confusion
+        Probabilities (..., m, m) of each answer (last axis) to each presented icon; rows sum to 1.
+
+    Returns
+    -------
+    ndarray
+        Proportion (...,), 0–1.
+
+    Examples
+    --------
+    >>> float(proportion_correct([[0.9, 0.1], [0.3, 0.7]]))
+    0.8
+    """
     found: Array = np.trace(np.asarray(confusion, dtype=np.float64), axis1=-2, axis2=-1) / np.shape(confusion)[-1]
     return found
 
 
 def information_bits(confusion: ArrayLike) -> Array:
-    """Information from icon to response in bits, icons equally often; shape (..., m, m) → (...).
+    """Compute the information from icon to response in bits, with every icon presented equally often.
 
+    Parameters
+    ----------
+    confusion
+        Probabilities (..., m, m) of each answer (last axis) to each presented icon; rows sum to 1.
+
+    Returns
+    -------
+    ndarray
+        Information (...,) in bits, 0 to log2 m.
+
+    Examples
+    --------
     >>> import numpy as np
     >>> round(float(information_bits(np.eye(6))), 3)
     2.585

@@ -9,7 +9,7 @@ from ..arrays import Array
 from ..observer.channels import TRACE_NORMS, Norm, TraceNorm, trace_norm
 from ..observer.observer import Observer
 from ..observer.people import People
-from ..sensation.detection import detect
+from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
 from .distance import identification_noise, percept_distances
@@ -50,9 +50,14 @@ class PopulationResponse:
 
     episodes: Episodes
     apart: dict[TraceNorm, Array]
-    probability: Array
+    detection: Detection
     duration_s: float
     peaks: tuple[Array, Array]
+
+    @property
+    def probability(self) -> Array:
+        """Probability (people, icons) that a person reports an icon."""
+        return self.detection.probability
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +70,24 @@ class Scores:
 
 
 def respond(
-    played: ReceptorTemperatures, crowd: People, observer: Observer, norms: Iterable[Norm] = ()
+    played: ReceptorTemperatures, crowd: People, observer: Observer, norms: Iterable[Norm] = (), *, times: bool = False
 ) -> PopulationResponse:
-    """Detection of every icon by every person, its episodes, and what norms of traces need."""
+    """Detection of every icon by every person, with response times or without, its episodes, and what norms need."""
+    cold, warm, dt = _sensations(played, crowd, observer)
+    found = _detection(cold, warm, dt, played.site, crowd, observer, times)
+    peaks = (cold.max(axis=-1), warm.max(axis=-1))
+    episodes = Episodes.of(cold, warm, dt, observer, crowd.criterion_cold, crowd.criterion_warm)
+    apart = percept_distances(cold, warm, dt, observer) if any(norm in TRACE_NORMS for norm in norms) else {}
+    return PopulationResponse(episodes, apart, found, dt * (cold.shape[-1] - 1), peaks)
+
+
+def population_detection(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
+    """Detection (people, icons) of every icon by every person, without response times."""
+    cold, warm, dt = _sensations(played, crowd, observer)
+    return _detection(cold, warm, dt, played.site, crowd, observer, times=False)
+
+
+def _sensations(played: ReceptorTemperatures, crowd: People, observer: Observer) -> tuple[Array, Array, float]:
     dt, rows = uniform_clock(played.time_s)
     cold, warm = perceive_many(
         played.cold_C[..., :rows],
@@ -79,20 +99,23 @@ def respond(
         threshold_cold=crowd.threshold_cold[:, None],
         threshold_warm=crowd.threshold_warm[:, None],
     )
-    found = detect(
+    return cold, warm, dt
+
+
+def _detection(
+    cold: Array, warm: Array, dt_s: float, site: str, crowd: People, observer: Observer, times: bool
+) -> Detection:
+    return detect(
         cold,
         warm,
-        dt,
+        dt_s,
         observer,
-        path_m=observer.path_m(played.site) * crowd.path[:, None],
+        path_m=observer.path_m(site) * crowd.path[:, None],
         criterion_cold=crowd.criterion_cold[:, None],
         criterion_warm=crowd.criterion_warm[:, None],
         decision_s=crowd.decision_s[:, None],
+        times=times,
     )
-    peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    episodes = Episodes.of(cold, warm, dt, observer, crowd.criterion_cold, crowd.criterion_warm)
-    apart = percept_distances(cold, warm, dt, observer) if any(norm in TRACE_NORMS for norm in norms) else {}
-    return PopulationResponse(episodes, apart, found.probability, dt * (rows - 1), peaks)
 
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:

@@ -27,14 +27,31 @@ MOST_BIAS = 5.0
 class Task:
     """An identification task; the default is constant memory noise, a long pause before every icon, and no bias.
 
-    `context` (0–1) is the share of memory noise, in its logarithm, that follows the range of the set. `gap_s` is the
-    time from the end of one icon to the next (None: all has faded). `bias` is the SD over people and names of the log
-    likelihood that favours a name. There is no thermal record of the last two, nor of `context` above 0.
-    The rest is filled in by `prepare_task` for the icons at hand: `carried` (norms, icons) is what the icons before
-    change of each, in sensation units, or in d′ where episodes are remembered; `counted` are the places of the icons
-    that will be played, which make up the range (none: all); `places` are those that the icons had in the set that
-    they come from, on which the bias depends.
+    There is no thermal record of a `gap_s`, of a `bias`, or of a `context` above 0. The last three fields are filled in
+    by `rank` for the icons at hand.
 
+    Attributes
+    ----------
+    context
+        Share of memory noise, in its logarithm, that follows the range of the set, 0–1 (Durlach & Braida 1969).
+    gap_s
+        Time from the end of one icon to the next, 0 to 600 s; None: all has faded.
+    bias
+        SD over people and names of the log likelihood that favours a name, 0 to 5.
+    carried
+        What the icons before change of each (norms, icons), sensation units, or d′ where episodes are remembered.
+    counted
+        Places of the icons that will be played, which make up the range; none: all.
+    places
+        Places of the icons in the set that they come from, on which the bias depends.
+
+    Raises
+    ------
+    ValueError
+        For a number out of its range.
+
+    Examples
+    --------
     >>> Task(context=1.5)
     Traceback (most recent call last):
     ...

@@ -13,8 +13,6 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-from .passage import log_not_passed
-
 
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
     """ψ = a·ln(1 + u^p/b) of u = scale·drive."""
@@ -63,50 +61,6 @@ def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
                 pair += 1
 
 
-def _detect(
-    cold: Any, warm: Any, dt: float, criterion: Any, tau: float, a: float, raised: Any, crossing: Any, missed: Any
-) -> None:
-    """First crossing of each channel by the mean (s, NaN when never), and log probability of no detection.
-
-    `criterion` (rows, 2) in d′; `raised` (gains,) are the sizes of gain of a presentation to the power p: a drive that
-    is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Probabilities are averaged over the gains.
-    """
-    louder, risen = np.empty(cold.shape[1]), np.empty((2, cold.shape[1]))
-    for row in range(cold.shape[0]):
-        for channel in range(2):
-            psi = cold[row] if channel == 0 else warm[row]
-            crossing[row, channel] = first_crossing(psi, criterion[row, channel], dt)
-            for t in range(psi.size):
-                risen[channel, t] = math.expm1(psi[t] / a) if psi[t] != 0.0 else 0.0
-        unfelt = 0.0
-        for gain in range(raised.size):
-            log_missed = 0.0
-            for channel in range(2):
-                psi = cold[row] if channel == 0 else warm[row]
-                c = criterion[row, channel]
-                if raised[gain] == 1.0:
-                    louder[:] = psi
-                else:
-                    for t in range(psi.size):
-                        louder[t] = a * math.log1p(raised[gain] * risen[channel, t]) if risen[channel, t] else 0.0
-                log_missed += log_not_passed(louder, dt, c, tau)
-            unfelt += math.exp(log_missed) / raised.size
-        missed[row] = math.log(max(unfelt, 1e-300))
-
-
-def _first_crossing(psi: Any, criterion: float, dt: float) -> float:
-    """When the change from the first sample reaches a criterion, s; NaN where it never does."""
-    if criterion <= 0.0:
-        return 0.0
-    before = 0.0
-    for t in range(1, psi.size):
-        now = abs(psi[t] - psi[0])
-        if now >= criterion:
-            return float(dt * (t - 1 + (criterion - before) / (now - before)))
-        before = now
-    return math.nan
-
-
 def _nearest(gram: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over presented points.
 
@@ -146,10 +100,8 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
 Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
-first_crossing: Callable[..., float] = _compile(_first_crossing)
 sensation: Loop = _compile(_sensation)
 blur: Loop = _compile(_blur)
 differences: Loop = _vector(_differences)
-detect: Loop = _compile(_detect)
 nearest: Loop = _compile(_nearest)
 bend: Loop = _compile(_bend)

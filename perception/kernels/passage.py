@@ -57,21 +57,24 @@ def _passage(
     return passed
 
 
-def _log_not_passed(psi: Any, dt: float, criterion: float, tau: float) -> float:
-    """Log probability that the change of a sensation (n_time,) from its first sample never passes the criterion."""
-    log_left = math.log(cumulative(criterion))
+def _survive(psi: Any, dt: float, criterion: float, tau: float, corrected: bool, log_left: Any) -> None:
+    """Fill the log probability (n_time,) that the change of a sensation from its first sample has not passed yet.
+
+    Corrected, it is relative to that of no change at all: the crossings of noise alone are left out.
+    """
     silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
-    last = 0.0
+    spared = silent if corrected else 0.0
+    left, last = 0.0 if corrected else math.log(cumulative(criterion)), 0.0
+    log_left[0] = left
     for t in range(1, psi.size):
         now = abs(psi[t] - psi[0])
-        if now == 0.0 and last == 0.0:
-            log_left -= dt * silent
-            continue
-        log_left -= dt * crossing_rate(last, now, dt, criterion, tau)
+        rate = silent if now == 0.0 and last == 0.0 else crossing_rate(last, now, dt, criterion, tau)
+        left -= dt * (rate - spared)
+        log_left[t] = left
         last = now
-        if log_left < CERTAIN:
+        if left < CERTAIN:
+            log_left[t:] = left
             break
-    return log_left
 
 
 def _crossing_rate(last: float, now: float, dt: float, criterion: float, tau: float) -> float:
@@ -97,7 +100,7 @@ Z_FROM, Z_STEP, Z_TO = -4.0, 0.01, 4.0
 Z_MIDDLE = 400
 CERTAIN = -16.0
 SURE = -5.0
-"""Log probability of not having answered below which an answer is certain."""
+"""Log probabilities of not having answered below which an answer is certain: of one course, and of one lane."""
 
 
 def _mills_table() -> Any:
@@ -121,5 +124,5 @@ _compile: Any = kernel(nogil=True)
 cumulative: Any = _compile(_cumulative)
 looked_up: Any = _compile(_looked_up)
 crossing_rate: Any = _compile(_crossing_rate)
-log_not_passed: Any = _compile(_log_not_passed)
+survive: Any = _compile(_survive)
 passage: Any = _compile(_passage)

@@ -4,22 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from thermicon.icons.near_words import did_you_mean
 
 from .delays import LEG_M_PER_S
 
 Without = frozenset[str]
+Carrier = Literal["observer", "people", "rig", "inference"]
+
+NONE = 1e-6
+"""A parameter that is inferred in its logarithm is turned off at this value, which is as good as 0."""
 
 
 @dataclass(frozen=True, slots=True)
 class Mechanism:
-    """A mechanism by name: what it is replaced by, and the parameters that are then not inferred, with their values."""
+    """A mechanism by name: what it is replaced by, and the parameters that are then not inferred, with their values.
+
+    `carrier` is what it acts on: the `observer`, the `people` drawn around it, the `rig`, or the `inference` alone;
+    `cure` says how it is turned off there.
+    """
 
     name: str
     replaced_by: str
     fixed: Mapping[str, float] = field(default_factory=dict)
+    carrier: Carrier = "observer"
+    cure: str = ""
 
+    def off(self, parameter: str) -> float:
+        """Value of one of its parameters when it is turned off: that of the inference, but 0 for as good as 0."""
+        value = self.fixed[parameter]
+        return 0.0 if value == NONE else value
+
+
+DEPTH_MM = {"cold": 0.15, "warm": 0.30}
+LIGHT_CONTACT_M2K_PER_W = 5.4e-4
+IN_INFERENCE = "turn it off in the inference: thermicon.perception.inference.posterior.Posterior(without=…)"
 
 MECHANISMS = (
     Mechanism(
@@ -30,24 +50,43 @@ MECHANISMS = (
     Mechanism(
         "depth",
         "0.15 and 0.30 mm counted from the surface at every site",
-        {"cold receptor depth": 0.15, "warm receptor depth": 0.30},
+        {f"{channel} receptor depth": depth for channel, depth in DEPTH_MM.items()},
+        "rig",
+        "give the rig skin.depth_from = \"surface\", "
+        f"skin.cold_receptor_mm = {DEPTH_MM['cold']:.2f} and skin.warm_receptor_mm = {DEPTH_MM['warm']:.2f}",
     ),
-    Mechanism("skin", "tabulated tissue under a light contact", {
-        "contact resistance of a thermode": 5.4e-4, "effusivity of living skin": 1.0,
-    }),
+    Mechanism(
+        "skin",
+        "tabulated tissue under a light contact",
+        {"contact resistance of a thermode": LIGHT_CONTACT_M2K_PER_W, "effusivity of living skin": 1.0},
+        "rig",
+        "the shipped rigs have tabulated tissue already; for a light contact give the rig "
+        f"contact.resistance_m2K_per_W = {LIGHT_CONTACT_M2K_PER_W:g}",
+    ),
     Mechanism("cold limit", "any fall of temperature is cold, however warm", {"cold limit": 33.0}),
     Mechanism("warm limit", "any rise of temperature is warm, however cold", {"warm limit": 31.7}),
     Mechanism("ends of summation", "a power of area without ends"),
     Mechanism("transducer", "the square law, ψ ∝ u² near threshold", {"transducer exponent": 2.0}),
-    Mechanism("gain noise", "additive noise alone", {"gain noise": 1e-6}),
-    Mechanism("criterion between people", "one criterion for all", {"criterion between people": 1e-6}),
-    Mechanism("decision between trials", "one decision time a person", {"decision time between trials": 1e-6}),
-    Mechanism("choice time", "a choice takes as long as a simple reaction", {"choice time": 1e-6}),
-    Mechanism("caution", "the criterion of limits after a pre-pulse too", {"caution after a pre-pulse": 1.0}),
-    Mechanism("age", "no effect of age", {
-        "cold sensitivity lost per decade": 0.0, "warm sensitivity lost per decade": 0.0,
-    }),
-    Mechanism("laboratories", "no difference between laboratories", {"sensitivity between laboratories": 1e-6}),
+    Mechanism("gain noise", "additive noise alone", {"gain noise": NONE}),
+    Mechanism(
+        "criterion between people", "one criterion for all", {"criterion between people": NONE}, "people",
+        'draw the people without it: draw_people(n, without=["criterion between people"])',
+    ),
+    Mechanism("decision between trials", "one decision time a person", {"decision time between trials": NONE}),
+    Mechanism("choice time", "a choice takes as long as a simple reaction", {"choice time": NONE}),
+    Mechanism(
+        "caution", "the criterion of limits after a pre-pulse too", {"caution after a pre-pulse": 1.0}, "inference",
+        IN_INFERENCE,
+    ),
+    Mechanism(
+        "age", "no effect of age",
+        {"cold sensitivity lost per decade": 0.0, "warm sensitivity lost per decade": 0.0}, "people",
+        'draw the people without it: draw_people(n, without=["age"])',
+    ),
+    Mechanism(
+        "laboratories", "no difference between laboratories", {"sensitivity between laboratories": NONE}, "inference",
+        IN_INFERENCE,
+    ),
 )  # fmt: skip
 
 
@@ -63,10 +102,20 @@ def find_mechanism(name: str) -> Mechanism:
     raise ValueError(f"there is no mechanism {name!r}: {did_you_mean(name, {each.name for each in MECHANISMS})}")
 
 
-def check_without(names: Iterable[str]) -> Without:
-    """Names of mechanisms as a set; a ValueError for one that does not exist names the nearest.
+def check_without(names: Iterable[str], carrier: Carrier) -> Without:
+    """Names of mechanisms that act on a carrier, as a set.
 
-    >>> sorted(check_without(["gain noise", "cold limit"]))
+    A ValueError names the nearest to one that does not exist, and says how one that acts elsewhere is turned off.
+
+    >>> sorted(check_without(["gain noise", "cold limit"], "observer"))
     ['cold limit', 'gain noise']
     """
-    return frozenset(find_mechanism(name).name for name in names)
+    if isinstance(names, str):
+        raise ValueError(f"mechanisms are given as a list of names, such as without=[{names!r}]")
+    chosen = [find_mechanism(name) for name in names]
+    for mechanism in chosen:
+        if mechanism.carrier != carrier:
+            where = f"acts on the {mechanism.carrier}, not on the {carrier}"
+            cure = mechanism.cure or f"load the observer without it: Observer.load(without=[{mechanism.name!r}])"
+            raise ValueError(f"the mechanism {mechanism.name!r} {where}: {cure}")
+    return frozenset(mechanism.name for mechanism in chosen)

@@ -19,14 +19,22 @@ from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
 from .channels import CHANNELS, NORMS, Channel, Norm, TraceNorm, check_norm
-from .delays import LEG_M_PER_S, Conduction
-from .mechanisms import check_without
+from .delays import Conduction
+from .mechanisms import check_without, find_mechanism
 from .memory import EpisodeMemory, Ratings
+from .observer_file import check_complete, read_observer_file
 from .transducer import Transducer
 from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
+TURNED_OFF = {
+    "transducer": ("transducer exponent", "p"),
+    "gain noise": ("gain noise", "gain_noise"),
+    "decision between trials": ("decision time between trials", "decision_noise"),
+    "choice time": ("choice time", "choice_s"),
+}
+"""Mechanisms with one constant: its parameter of the inference, and the field of an observer."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -66,12 +74,61 @@ class Receptor:
 class Observer:
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
-    `a` and `p` are slope and exponent of sensation, `criterion` is in d′, `gain_noise` is the SD (ln) of the gain from
-    presentation to presentation, `decision_noise` that of decision times, `choice_s` what a choice adds to
-    `decision_s`, `memory` how well episodes are remembered, `memory_noise` the noise of remembered traces in log units
-    of drive for each norm. `variable` says what the receptors go by, temperature or heat flow, and `model` how;
-    `without` names the mechanisms that are turned off.
+    An observer is loaded with `Observer.load`, which takes a variant and mechanisms to leave out; its fields are the
+    constants of the chain from receptor to answer, each with its source in the parameter file.
 
+    Attributes
+    ----------
+    cold, warm
+        Constants of each channel.
+    integration_s
+        Time constant of integration at the receptors, s.
+    neutral_low_C, neutral_high_C
+        Range of complete adaptation, °C.
+    a
+        Slope of sensation, d′.
+    reference_area_m2
+        Area of contact that thresholds are given for, m².
+    criterion
+        Change of sensation that is answered with yes, d′.
+    noise_correlation_s
+        Correlation time of the sensory noise, s.
+    path_hand_m, path_forearm_m
+        Length of the nerve to the cord, m.
+    decision_s
+        Time from the brain's signal to the answer, s.
+    onset_uncertainty_s
+        Uncertainty of a remembered onset, s.
+    lapse
+        Share of trials in which any name is given, 0–1.
+    memory_max, memory_rms, memory_integral
+        Noise of identification for each norm of distance, log units of drive.
+    p
+        Exponent of sensation near threshold.
+    gain_noise
+        SD (ln) of the gain from presentation to presentation.
+    choice_s
+        What a choice adds to `decision_s`, s.
+    decision_noise
+        SD (ln) of decision times from trial to trial.
+    variable
+        What the receptors go by: `temperature` or `heat flow`.
+    model
+        How they do: `adapting` or `ring-de-dear`.
+    without
+        Mechanisms that are turned off.
+    count_s
+        Window of counted impulses, s; for `ring-de-dear` alone.
+    static_from_C
+        Where static discharge starts, °C; for `ring-de-dear` alone.
+
+    Raises
+    ------
+    ValueError
+        For a constant out of its range, and for a variable and a model that do not go together.
+
+    Examples
+    --------
     >>> person = Observer.load()
     >>> 0.5 < person.receptor("warm").velocity_m_per_s < 2.5
     True
@@ -153,29 +210,25 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        table = None if path is None else load_records(Path(path))
+        table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
-        off = check_without(without)
+        off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole
 
     def with_mechanisms_off(self, names: frozenset[str]) -> Observer:
-        """The observer without some mechanisms, all else the same."""
+        """The observer without some mechanisms that act on it, all else the same."""
         changes: dict[str, Any] = {"without": self.without | names}
         for channel in CHANNELS:
             receptor = self.receptor(channel)
             if f"{channel} limit" in names:
                 receptor = replace(receptor, limit_C=None)
             if "delays" in names:
-                receptor = replace(receptor, velocity_m_per_s=LEG_M_PER_S[channel])
+                velocity = find_mechanism("delays").off(f"{channel} conduction velocity")
+                receptor = replace(receptor, velocity_m_per_s=velocity)
             changes[channel] = receptor
-        if "transducer" in names:
-            changes["p"] = 2.0
-        if "gain noise" in names:
-            changes["gain_noise"] = 0.0
-        if "decision between trials" in names:
-            changes["decision_noise"] = 0.0
-        if "choice time" in names:
-            changes["choice_s"] = 0.0
+        for name in names & set(TURNED_OFF):
+            parameter, constant = TURNED_OFF[name]
+            changes[constant] = find_mechanism(name).off(parameter)
         return replace(self, **changes)
 
     @classmethod
@@ -186,6 +239,7 @@ class Observer:
         """
         check_variant(variable, model)
         variant, known = source_of(variable, model), {record.quantity for record in table}
+        check_complete(table, variable, variant)
 
         def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
             own = f"{quantity}{variant}"

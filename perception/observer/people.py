@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from statistics import NormalDist
@@ -14,6 +15,7 @@ from thermicon.circuit.records import Record
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
+from .mechanisms import check_without
 from .observer import load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -54,6 +56,13 @@ class People:
     def __len__(self) -> int:
         return int(self.threshold_cold.size)
 
+    @classmethod
+    def nominal(cls, n: int = 1) -> People:
+        """The nominal person, n times: every multiplier 1, decision time and lapse as the observer has them."""
+        record = people_records()
+        own = {"decision_s": observer_records().one("decision time").central, "lapse": record["lapse"].central}
+        return cls(**{field.name: np.full(n, own.get(field.name, 1.0)) for field in fields(cls)})
+
     def part(self, start: int, stop: int) -> People:
         """The persons from one number up to another."""
         return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})
@@ -82,18 +91,45 @@ def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
     )
 
 
-def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> People:
+def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, without: Iterable[str] = ()) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
-    Sensitivities and criteria of the two channels are correlated, as people's thresholds are. `age_years` raises the
-    thresholds as `age_factor` says; None leaves age out, which is people of 20 to 30 years.
+    Sensitivities and criteria of the two channels are correlated, as people's thresholds are. What differs between
+    people comes from records: `people_records` has the one behind every column.
 
+    Parameters
+    ----------
+    n
+        Number of people.
+    seed
+        Seed of the draw.
+    age_years
+        Age of all of them, which multiplies thresholds as `age_factor` says; None leaves age out, which is people of 20
+        to 30 years.
+    without
+        Mechanisms of people that are turned off: `criterion between people` or `age`.
+
+    Returns
+    -------
+    People
+        Multipliers of thresholds, criteria, memory noise, contact, skin and nerve path, decision times and lapses.
+
+    Raises
+    ------
+    ValueError
+        For fewer than one person, an age outside 18 to 100 years, and a mechanism that does not act on people.
+
+    Examples
+    --------
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
     True
+    >>> draw_people(3, without=["criterion between people"]).criterion_cold.tolist()
+    [1.0, 1.0, 1.0]
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
+    off = check_without(without, "people")
     record = people_records()
     streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
@@ -113,8 +149,12 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None) -> Peo
         return _triangular(column[name], low, record[name].central, high)
 
     aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
+    if "age" in off:
+        aged = [1.0, 1.0]
     threshold_cold, threshold_warm = both("threshold")
     criterion_cold, criterion_warm = both("criterion")
+    if "criterion between people" in off:
+        criterion_cold, criterion_warm = np.ones(n), np.ones(n)
     return People(
         threshold_cold=aged[0] * threshold_cold,
         threshold_warm=aged[1] * threshold_warm,

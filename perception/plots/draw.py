@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..sensation.percept import Percept
 
 CLOCK = "response clock: with conduction and decision"
+NOMINAL = "by the nominal person"
 __all__ = [
     "as_svg",
     "plot_confusion",
@@ -37,8 +38,10 @@ def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
     axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
     axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
     if percept.onset_s is not None:
-        said = f"reported as {percept.channel} at {percept.onset_s:.2f} s\n({CLOCK})"
+        said = f"reported as {percept.channel} at {percept.onset_s:.2f} s {NOMINAL}\n({CLOCK})"
         axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
+    else:
+        axes.plot([], [], " ", label=f"not felt {NOMINAL} (p {percept.detected_probability:.2f})")
     axes.set_xlabel(f"time (s), {percept.clock} clock")
     axes.set_ylabel("sensation (d′)")
     axes.set_title(percept.icon or "percept")

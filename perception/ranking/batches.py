@@ -7,7 +7,7 @@ depends only on the icons and their length, not on the number of workers.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
@@ -27,6 +27,8 @@ from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm, Observer
 from ..observer.people import People, draw_people
+from ..sensation.detection import Detection, report_step
+from ..sensation.detection import pooled as pooled_detection
 from .batch_store import BatchStore
 
 if TYPE_CHECKING:
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 RATE_HZ = 100.0
+DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
 OTHER_SAMPLES, OTHER_NAMED = 512, 1152
@@ -45,12 +48,15 @@ PROBES = ("cold_receptor_C", "warm_receptor_C")
 class BatchResult:
     """Responses of the people of a batch, one row per person; p people, m icons, q = m(m − 1)/2 pairs.
 
-    `detected` (p, m) and `confusion` (p, m, m) are probabilities, `d_prime` (p, q) from memory, `correct` (p, m) 0–1,
-    `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct` (p, norms, m) by
-    the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
+    `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
+    (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
+    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct`
+    (p, norms, m) by the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
     """
 
     detected: Array
+    cold_share: Array
+    reported: Array
     d_prime: Array
     confusion: Array
     correct: Array
@@ -137,7 +143,7 @@ def run(job: Job, number: int) -> BatchResult:
     )
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
     observer = Observer.load()
-    felt = respond(played, crowd, observer, NORMS)
+    felt = respond(played, crowd, observer, NORMS, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     others = [
         np.diagonal(
@@ -153,7 +159,9 @@ def run(job: Job, number: int) -> BatchResult:
     first, second = np.triu_indices(len(job.icons), 1)
     first_people = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
     return BatchResult(
-        detected=np.asarray(felt.probability),
+        detected=felt.detection.probability,
+        cold_share=felt.detection.cold_share,
+        reported=felt.detection.reported_sum(),
         d_prime=d_prime[:, first, second],
         confusion=named,
         correct=np.diagonal(named, axis1=1, axis2=2).copy(),
@@ -210,12 +218,13 @@ class Execution:
 class PooledResult:
     """Responses of all people to m icons.
 
-    `detected` (m,) means; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m); `each_correct` (people, m);
-    `bits`, `plugin`, `stress` (people,); `by_norm` (m,) proportion correct of each icon by the other norms.
-    `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and of one person.
+    `detection` (m,) is that of a person drawn at random; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m);
+    `each_correct` (people, m); `bits`, `plugin`, `stress` (people,); `by_norm` (m,) proportion correct of each icon by
+    the other norms. `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and
+    of one person.
     """
 
-    detected: Array
+    detection: Detection
     pairs: Array
     pooled: Array
     each_correct: Array
@@ -226,6 +235,11 @@ class PooledResult:
     standard_error: float
     person_standard_error: float
     thin: ReceptorTemperatures
+
+    @property
+    def detected(self) -> Array:
+        """Probability that a person drawn at random reports each icon, (m,)."""
+        return self.detection.probability
 
     @property
     def correct(self) -> Array:
@@ -258,9 +272,10 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
     icons, people = len(job.icons), job.people
     parts: dict[int, BatchResult] = {}
     pooled: dict[int, Array] = {}
+    reported: dict[int, Array] = {}
     blur = 0.0
     for number, found in _each_batch(job, execution):
-        pooled[number] = found.confusion.sum(axis=0)
+        pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
         blur = max(blur, sampling_error(found.confusion, SAMPLES))
         parts[number] = _light(found)
         step()
@@ -270,12 +285,15 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
         found: Array = np.concatenate([getattr(part, name) for part in ordered])
         return found
 
-    total = np.zeros((icons, icons))
-    for number in range(job.batches):
-        total += pooled[number]
+    total = _added([pooled[number] for number in range(job.batches)])
     mean, other = normalised(total / people), joined("other_correct").mean(axis=0)
     return PooledResult(
-        detected=joined("detected").mean(axis=0),
+        detection=pooled_detection(
+            joined("detected"),
+            joined("cold_share"),
+            _added([reported[k] for k in range(job.batches)]),
+            report_step(DT_S),
+        ),
         pairs=joined("d_prime"),
         pooled=mean,
         each_correct=joined("correct"),
@@ -315,8 +333,16 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
 
 
 def _light(found: BatchResult) -> BatchResult:
-    """A batch without the confusions of every person, which are most of it and are needed only as their sum."""
-    return replace(found, confusion=np.empty((0, 0, 0)))
+    """A batch without the confusions and response times, which are most of it and are needed only as their sum."""
+    return replace(found, confusion=np.empty((0, 0, 0)), reported=np.empty((0, 0, 0)))
+
+
+def _added(parts: Sequence[Array]) -> Array:
+    """The sum in order, so that it does not depend on which batch was ready first."""
+    total = np.zeros_like(parts[0])
+    for part in parts:
+        total += part
+    return total
 
 
 @lru_cache(maxsize=2)

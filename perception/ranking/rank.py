@@ -32,6 +32,7 @@ from ..selection.choose import Choice, choose
 from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, objection
 from ..sensation.coverage import outside_data
+from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept, perceive
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
@@ -114,6 +115,13 @@ def rank(
     ValueError
         For a set without icons, unknown names, a single draw, and a choice that cannot be made.
 
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    >>> ranking.worst_pair
+    ('warming-step', 'linear-warming')
     """
     from thermicon.circuit import duration_s, simulate_all
 
@@ -224,6 +232,7 @@ def _assemble(
     observer: Observer,
 ) -> _Made:
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
+    onsets, channels = all_.detection.onset_s, all_.detection.channel
     pairs = []
     episodes = remembered(percepts, observer)
     for i, j in combinations(range(len(icons)), 2):
@@ -251,8 +260,8 @@ def _assemble(
             IconScore(
                 name=icon.name,
                 detected_probability=float(detected[k]),
-                onset_s=percept.onset_s,
-                channel=percept.channel,
+                onset_s=None if math.isnan(onsets[k]) else float(onsets[k]),
+                channel=channel_name(int(channels[k])),
                 peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
                 attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
                 delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),

@@ -32,13 +32,38 @@ PERCENTAGE_POINT = 0.01
 
 @dataclass(frozen=True, slots=True)
 class IconScore:
-    """One icon. Probability of detection and proportion correct are means over people; the rest is nominal.
+    """One icon of a ranking: detection, onset, channel and proportion correct are of the people, the rest is nominal.
 
-    `onset_s` and `channel` are None where the nominal person feels nothing; peak change (K),
-    attack (K/s) and delay (s) are at the cold and the warm receptor. `reason` states why the icon is not
-    safe, cannot be reached, or both; `cautions` are the soft safety limits that it exceeds; `outside_data`
-    states where no data support the prediction. `rules_score` is the share that is passed of its rules and of
-    its pairs, `rules_margin` the smallest normalised margin among them.
+    Attributes
+    ----------
+    name
+        Name of the icon.
+    detected_probability
+        Probability that a person drawn at random reports the icon, beyond reports of nothing, 0–1.
+    onset_s
+        Median response time of the trials that end in a report, s; None where fewer than half of them do.
+    channel
+        Channel that most reports go by; None where fewer than half of the trials end in one.
+    peak_change_K, attack_K_per_s, delay_s
+        Largest change in K, steepest rate in K/s, and delay behind the skin in s, at the cold and the warm receptor.
+    proportion_correct
+        Share of trials with the right name, 0–1.
+    reachable, safe
+        Whether the rig reaches the icon, and whether no hard safety limit is exceeded.
+    reason
+        Why it is not safe, cannot be reached, or both; None where it can be played.
+    rules
+        Results of the rules of thumb.
+    rules_score, rules_margin
+        Share that is passed of its rules and its pairs, and the smallest normalised margin among them.
+    cautions
+        Soft safety limits that it exceeds.
+    outside_data
+        Where no data support the prediction.
+
+    See Also
+    --------
+    rank : Returns a ranking, whose `icons` these are.
     """
 
     name: str
@@ -66,11 +91,30 @@ class IconScore:
 
 @dataclass(frozen=True, slots=True)
 class PairScore:
-    """One pair: median d′ over people, share of trials in which it is confused (mean of both directions), why, rules.
+    """One pair of icons: how far apart they are, how often they are confused, and why.
 
-    `rules_margin` is the margin by which rules separate it, in shares of a threshold (None: by direction alone). `edit`
-    is the cheapest edit that separates the two, or the reason why there is none (None: not requested); `parts` are the
-    components of the distance for a nominal person.
+    Attributes
+    ----------
+    a, b
+        Names of the icons.
+    d_prime
+        Median d′ from memory over people.
+    confused_probability
+        Share of trials in which one is named as the other, the mean of both directions, 0–1.
+    why
+        Reasons in words, for a nominal person.
+    rules
+        Results of the rules of thumb.
+    rules_margin
+        Margin by which rules separate the pair, in shares of a threshold; None: by direction alone.
+    edit
+        The cheapest edit that separates the two, or the reason why there is none; None: not requested.
+    parts
+        Components of the distance for a nominal person.
+
+    See Also
+    --------
+    rank : Returns a ranking, whose `pairs` these are.
     """
 
     a: str
@@ -93,15 +137,69 @@ class PairScore:
 class Ranking:
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
-    Proportion correct is 0–1 and information is in bits, each with the 2.5–97.5 % interval over people.
-    `rig_changes` are the keys of the rig that were changed, such as `contact.area_cm2=4`.
-    `stress` and the standard errors (the largest of a pooled cell, and of a cell of one person) state
-    the accuracy of the confusions, not their spread over people.
-    `parameter_intervals` is the uncertainty from the observer's parameters (None: not requested). `by` states what
-    the icons and the worst pair are ranked by; the model's numbers are present in both cases. `chosen` is the best
-    subset, where requested; `spread` is what figures need of single people. `task` is the identification task;
-    `carry_over` is what each icon leaves behind for the next where there is a gap (None: nothing). `by_norm` is the
-    proportion correct of each icon by the other norms.
+    Attributes
+    ----------
+    version
+        Version of the program.
+    rig
+        Name of the rig.
+    seed, people
+        Seed, and number of virtual people.
+    tracking
+        What every person gets: `replay`, `display` or `ideal`.
+    by
+        What the icons and the worst pair are ranked by, `model` or `rules`; the model's numbers are present in both
+        cases.
+    norm
+        How a difference over time is counted.
+    content_hash
+        Hash of icons, rig and observer.
+    icons, pairs
+        Scores, in file order.
+    confusion
+        Pooled probabilities (icons, icons): rows are presented, columns answered.
+    proportion_correct, proportion_correct_interval
+        Mean over people, 0–1, and the 2.5–97.5 % interval over them.
+    information_bits, information_bits_interval
+        The same for information, bits.
+    bits_per_s
+        Information over the mean length of an icon, bits per s.
+    information_bits_plugin
+        What an experiment of `trials` trials would report, bits.
+    trials
+        Trials of the predicted experiment.
+    worst_pair
+        Names of the pair that is confused most often; None for one icon.
+    rules_disagree
+        Where rules and model judge differently.
+    by_norm
+        Proportion correct of each icon by the other norms.
+    stress, standard_error, person_standard_error
+        Accuracy of the confusions: how far the embedding bends the distances, and the largest sampling error of a
+        pooled cell and of a cell of one person.
+    rules
+        Rules on the rig.
+    parameter_intervals
+        Uncertainty from the observer's parameters; None: not requested.
+    rig_changes
+        Keys of the rig that were changed, such as `contact.area_cm2=4`.
+    chosen
+        The best subset, where requested.
+    spread
+        What figures need of single people.
+    task
+        The identification task.
+    carry_over
+        What each icon leaves behind for the next where there is a gap; None: nothing.
+
+    Raises
+    ------
+    ValueError
+        For a confusion matrix of another shape than the icons, or whose rows do not sum to 1.
+
+    See Also
+    --------
+    rank : Predicts a ranking.
     """
 
     version: str

@@ -53,11 +53,43 @@ class SubsetChoice:
 class Choice:
     """The chosen icons in the order of the file, and whether it is proven that no other choice is better.
 
-    `value` and `bound` are at the range of the pool: median d′ of the worst pair over all people, or proportion
-    correct, bits or bits a second of the first `people`. `excluded` are icons that could not be chosen, and why.
-    `best_share` is the proportion of the first 50 people for whom no other choice has a better worst pair,
-    `loss` is the median loss of these people in d′ (both None but for `worst`). `parameter_intervals` are what the
-    observer's parameters leave open for the chosen (None: not asked for).
+    Attributes
+    ----------
+    icons
+        Names of the chosen.
+    objective
+        What was maximised.
+    value
+        Its value at the range of the pool: median d′ of the worst pair over all people, or proportion correct, bits or
+        bits a second of the first `people`.
+    optimal
+        Whether no other choice is better.
+    bound
+        A value that no choice exceeds.
+    worst_pair
+        Names of the pair with the smallest d′.
+    total_s, total_J
+        Time in s and energy in J of all chosen icons together.
+    pool
+        Number of icons that could be chosen.
+    people
+        Number of people behind `value`.
+    seen
+        Number of choices looked at.
+    excluded
+        Icons that could not be chosen, and why.
+    best_share
+        Share of the first 50 people for whom no other choice has a better worst pair; None but for `worst`.
+    loss
+        Median loss of these people, d′; None but for `worst`.
+    at_own_range
+        The chosen icons alone, as a set of their own.
+    parameter_intervals
+        What the observer's parameters leave open for the chosen; None: not requested.
+
+    See Also
+    --------
+    choose : Returns a choice.
     """
 
     icons: tuple[str, ...]
@@ -121,11 +153,56 @@ def choose(
     task: Task = USUAL,
     left: CarryOver | None = None,
 ) -> Choice:
-    """Choose among icons of which `d_prime` (people, icons, icons) and the nominal traces are known.
+    """Choose among icons of which the d′ of every person and the nominal traces are known.
 
-    `task` is what `d_prime` was found in, and `left` what icons leave behind for the next there (None: nothing).
+    Parameters
+    ----------
+    asked
+        The request.
+    icons
+        The pool.
+    rig
+        The rig that plays it.
+    traces
+        Nominal traces of the icons.
+    d_prime
+        d′ from memory (people, icons, icons).
+    crowd
+        The people.
+    seed
+        Seed of the noise of identification.
+    tracking
+        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+    task
+        The task that `d_prime` was found in.
+    left
+        What icons leave behind for the next there; None: nothing.
 
-    Raises `ChoiceError` where too few icons are usable or no choice keeps the limits.
+    Returns
+    -------
+    Choice
+        The chosen icons, and whether it is proven that no other choice is better.
+
+    Raises
+    ------
+    ChoiceError
+        Where too few icons are usable or no choice keeps the limits.
+
+    See Also
+    --------
+    rank : With `choosing`, computes what this needs and calls it.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> from thermicon.perception import rank
+    >>> asked = Selection(2)
+    >>> made = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0, choosing=asked)
+    >>> len(made.chosen.icons)
+    2
     """
     pool = usable_icons(asked, icons, traces, rig)
     places = list(pool.places)

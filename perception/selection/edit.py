@@ -49,10 +49,24 @@ MOST_RECOUNTED = 50
 
 @dataclass(frozen=True, slots=True)
 class Edit:
-    """One line of one icon, before and after; cost, added seconds, and the median d′ of the pair after it.
+    """One line of one icon, before and after.
 
-    `recounted` is the share of people who remember another number of episodes after the edit: where it lies between
-    0 and 1, some gain much and others little.
+    Attributes
+    ----------
+    icon, old, new
+        Name of the icon, and the line before and after.
+    cost, added_s, d_prime
+        |log| of the ratio of the new number to the old, plus a tenth for every second that it adds; how much longer the
+        icon becomes, s; median d′ of the pair after the edit.
+    edited
+        The icon after it.
+    recounted
+        Share of people who remember another number of episodes after the edit; between 0 and 1 some gain much and
+        others little.
+
+    See Also
+    --------
+    cheapest_edit : Finds an edit.
     """
 
     icon: str
@@ -88,7 +102,17 @@ class Edit:
 
 @dataclass(frozen=True, slots=True)
 class NoEdit:
-    """Why no single edit is offered, in one sentence."""
+    """Why no single edit is offered, in one sentence.
+
+    Attributes
+    ----------
+    reason
+        The sentence.
+
+    See Also
+    --------
+    cheapest_edit : Finds an edit, or returns this.
+    """
 
     reason: str
 
@@ -121,11 +145,43 @@ def cheapest_edit(
     before: Array | None = None,
     task: Task = USUAL,
 ) -> Edit | NoEdit:
-    """The cheapest edit of `a` or `b` that separates them by a median d′ of `wanted` (default: the criterion).
+    """Find the cheapest edit of one of two icons that separates them by a median d′.
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`. `before` is the median d′ of all pairs, where known, in the same `task`.
-    Raises `KeyError` for a name that is not there, `ValueError` for a `wanted` that is not above 0.
+    by more than 0.1 d′ below twice `wanted`.
+
+    Parameters
+    ----------
+    icons, rig
+        All icons of the set, and the rig that plays them.
+    a, b
+        Names of the two.
+    wanted
+        Median d′ to be reached; by default that of a distinguishable pair.
+    people, seed
+        Number of virtual people and the seed they are drawn from, or the people.
+    tracking, norm
+        What every person gets, and how a difference over time is counted, as in `rank`.
+    before, task
+        Median d′ of all pairs (icons, icons), where it is known, and the task it was found in.
+
+    Returns
+    -------
+    Edit or NoEdit
+        The edit, or why there is none.
+
+    Raises
+    ------
+    KeyError, ValueError
+        For a name that is not there; for a `wanted` that is not above 0.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> two = list(read_cue("six-icons"))[:2]
+    >>> cheapest_edit(two, Rig.load("thenar"), "cooling-step", "warming-step", people=4).reason
+    'the pair is distinguishable already: d′ ..., criterion 2.56'
     """
     if not 0 < wanted < math.inf:
         raise ValueError(f"a pair is separated by a d′ above 0, not {wanted:g}")

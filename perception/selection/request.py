@@ -18,17 +18,41 @@ if TYPE_CHECKING:
 
 
 class ChoiceError(ValueError):
-    """The requested choice cannot be made; the text states why and what would help."""
+    """The requested choice cannot be made; the text states why and what would help.
+
+    Examples
+    --------
+    >>> Selection(1)
+    Traceback (most recent call last):
+    ...
+    thermicon.perception.selection.request.ChoiceError: 1 cannot be chosen: ...
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """How many icons to choose and what for; `must` are names of icons that are in any choice.
+    """A request: how many icons to choose, and what for.
 
-    `objective` is `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`. All chosen icons together last
-    at most `most_s` (s) and take at most `most_J` (J) of the driver, where given. Raises `ChoiceError` for what cannot
-    be requested of any set.
+    Attributes
+    ----------
+    count
+        Number of icons, 2 or more.
+    objective
+        What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+    must
+        Names of icons that are in any choice.
+    most_s
+        Most time that all chosen icons together last, s; None: any.
+    most_J
+        Most energy that they take of the driver, J; None: any.
 
+    Raises
+    ------
+    ChoiceError
+        For what cannot be requested of any set.
+
+    Examples
+    --------
     >>> Selection(3, must=("a", "a")).must
     ('a',)
     """

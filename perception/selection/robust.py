@@ -56,7 +56,25 @@ class SetRobustness:
 
 @dataclass(frozen=True, slots=True)
 class SetComparison:
-    """Probability that set A is better than set B (ties count half), standard error, and median gain of A over B."""
+    """How probably set A is better than set B.
+
+    Attributes
+    ----------
+    probability
+        Share of draws in which A is better; ties count half.
+    standard_error
+        Standard error of `probability`.
+    gain
+        Median gain of A over B, in units of the objective.
+    objective
+        What is compared.
+    draws
+        Number of persons and rigs.
+
+    See Also
+    --------
+    compare_sets : Compares two sets.
+    """
 
     probability: float
     standard_error: float
@@ -82,8 +100,39 @@ def compare_sets(
     tracking: str | None = None,
     norm: str = USUAL_NORM,
 ) -> SetComparison:
-    """Probability that set A is better than set B for a person and a rig drawn at random.
+    """Predict how probably set A is better than set B for a person and a rig drawn at random.
 
+    Parameters
+    ----------
+    a, b
+        The sets.
+    rig
+        The nominal rig; contact, ambient and gain vary within its uncertainty.
+    objective
+        What is compared: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+    draws
+        Number of persons and rigs.
+    seed
+        Seed of the draws.
+    tracking
+        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+
+    Returns
+    -------
+    SetComparison
+        The probability with its standard error, and the median gain.
+
+    Raises
+    ------
+    ChoiceError
+        For a set of fewer than two icons, and for no draws.
+    ValueError
+        For an unknown norm.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> six = read_cue("six-icons")

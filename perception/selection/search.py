@@ -42,7 +42,29 @@ ALIKE = -1.0
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """The best set and the starting set, each appraised by all people, and the number of evaluations."""
+    """The best set and the starting set, each appraised by all people, and the number of evaluations.
+
+    Attributes
+    ----------
+    found
+        The best set.
+    start
+        Icons that the search started from.
+    before, after
+        Scores of the starting and of the best set.
+    objective
+        What was maximised.
+    seed
+        Seed of the search.
+    evaluations
+        Number of icons evaluated for the nominal person.
+    refined
+        Number of them that were tried after the first sample, near the best sets.
+
+    See Also
+    --------
+    search : Returns a result.
+    """
 
     found: IconSet
     start: tuple[Icon, ...]
@@ -74,9 +96,49 @@ def search(
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.
 
     Icons of the file that are not families stay as they are. Spans are continuous between their ends, counts and lists
-    are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set. Raises
-    `ChoiceError` for a file without families, for fewer than two icons, or where no set can be played.
-    `evaluations` counts the icons evaluated for the nominal person.
+    are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set.
+
+    Parameters
+    ----------
+    icons
+        The set with its families.
+    rig
+        The rig that plays it.
+    count
+        Number of icons in all; None: one per family.
+    objective
+        What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
+    evaluations
+        Number of icons that are evaluated for the nominal person.
+    people, seed
+        Number of virtual people who appraise the result, and the seed of people, noise and search.
+    tracking
+        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
+    norm
+        How a difference over time is counted: `max`, `rms` or `integral`.
+    progress
+        Called with (steps done, steps in all).
+
+    Returns
+    -------
+    SearchResult
+        The set that was found, and the one it started from.
+
+    Raises
+    ------
+    ChoiceError
+        For a file without families, for fewer than two icons, or where no set can be played.
+    ValueError
+        For an unknown norm.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import parse
+    >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow(k in 1..4 step 1 K) { warm by k at 2 K/s }"
+    >>> result = search(parse(text), Rig.load("thenar"), evaluations=20, people=2)
+    >>> result.after.d_prime >= result.before.d_prime
+    True
     """
     fixed, free = _asked(icons, count, objective)
     run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)

@@ -31,7 +31,21 @@ RATE_HZ = 100.0
 
 @dataclass(frozen=True, slots=True)
 class Stimulus:
-    """Played stimuli, k of them to one common end: step `dt_s`, traces, and how many of their rows count."""
+    """Stimuli played on a bench to one common end.
+
+    Attributes
+    ----------
+    dt_s
+        Step of the clock, s.
+    rows
+        How many rows of the traces count.
+    traces
+        The runs.
+
+    See Also
+    --------
+    Bench : Its method `play` plays stimuli.
+    """
 
     dt_s: float
     rows: int
@@ -91,8 +105,24 @@ class Stimulus:
 
 @dataclass(frozen=True, slots=True)
 class Bench:
-    """A rig that rests at `baseline_C`, with stimuli prescribed at the `surface` of skin or display.
+    """A rig that rests at a baseline, with stimuli prescribed at the surface of skin or display.
 
+    Attributes
+    ----------
+    rig
+        The rig.
+    baseline_C
+        Temperature of that surface at rest, °C.
+    surface
+        `skin` or `display`.
+
+    Raises
+    ------
+    ValueError
+        For another surface.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig
     >>> bench = Bench(Rig.load("thenar"))
     >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0)

@@ -1,8 +1,9 @@
-"""Sensation → was it felt, when, and by which channel.
+"""Sensation → is it felt: the probability that a trial ends in a report, the time of those reports, and their channel.
 
 A yes/no observer says yes when the change of sensation plus unit noise passes a criterion, which is inferred from
 published answers. Crossings come at Rice's rate, as in `first_passage`; how often noise alone passes a criterion is
-`false_alarms`. Onset is the mean sensation's crossing plus conduction plus decision.
+`false_alarms`. This is the definition of *felt* for every output: an icon is felt where at least half of the trials end
+in a report, its onset is the median response time of those trials, its channel the one that most of them go by.
 """
 
 from __future__ import annotations
@@ -13,24 +14,77 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array, as_rows
-from ..kernels.parallel import over_rows
+from ..arrays import Array
+from ..criteria import FELT_FROM
 from ..observer.observer import CHANNELS, Channel, Observer
-from .first_passage import quarters
+from .first_passage import report_courses, time_of
+
+STEP_S = 0.02
+"""Step of response times, over which they are linear: far below the spread of any of them."""
+UNTIMED = "there are no response times: call detect with times=True"
+LATEST_S = 5.0
+"""Longest delay from the end of the sensations to a report that response times resolve; slower ones count as this."""
+
+
+def report_step(dt_s: float) -> float:
+    """Step (s) of the response times to sensations that are dt_s apart: whole samples, about `STEP_S`.
+
+    >>> report_step(0.01), report_step(0.05)
+    (0.02, 0.05)
+    """
+    return dt_s * max(1, round(STEP_S / dt_s))
 
 
 @dataclass(frozen=True, slots=True)
 class Detection:
-    """Arrays over traces: `probability` (0–1), `onset_s` (NaN: never), `channel` (−1 none, 0 cold, 1 warm).
+    """Trials that end in a report, arrays over traces: `probability` (...,), `cold_share` (...,) of the reports.
 
-    `crossing_s` has a last axis of two, cold and warm: when the mean sensation at the receptor
-    passed the criterion, before conduction and decision.
+    `reported` (..., n_time) is the probability of a report by each time, `dt_s` apart; None where it was not asked for.
+    Reports of noise alone are left out: an icon without any change has probability 0.
     """
 
     probability: Array
-    onset_s: Array
-    channel: NDArray[np.int64]
-    crossing_s: Array
+    cold_share: Array
+    reported: Array | None
+    dt_s: float
+
+    @property
+    def felt(self) -> NDArray[np.bool_]:
+        """Whether at least half of the trials end in a report."""
+        return np.asarray(self.probability >= FELT_FROM)
+
+    @property
+    def onset_s(self) -> Array:
+        """Median response time (...,) of the trials that end in a report, s; NaN where the icon is not felt."""
+        if self.reported is None:
+            raise ValueError(UNTIMED)
+        rows = self.reported.reshape(-1, self.reported.shape[-1])
+        time: Array = self.dt_s * np.arange(rows.shape[1], dtype=np.float64)
+        found = [time_of(row, time, 0.5 * float(row[-1])) if row[-1] >= FELT_FROM else math.nan for row in rows]
+        return np.array(found).reshape(self.probability.shape)
+
+    def reported_sum(self) -> Array:
+        """Number of persons, the first axis, who have reported by each time, with that axis kept (1, ..., n_time)."""
+        if self.reported is None:
+            raise ValueError(UNTIMED)
+        total: Array = self.reported.sum(axis=0, keepdims=True)
+        return total
+
+    @property
+    def channel(self) -> NDArray[np.int64]:
+        """Channel (...,) that most reports go by: −1 not felt, 0 cold, 1 warm."""
+        return np.where(self.felt, np.where(self.cold_share >= 0.5, 0, 1), -1).astype(np.int64)
+
+
+def pooled(probability: Array, cold_share: Array, reported: Array, dt_s: float) -> Detection:
+    """Detection by a person drawn at random, from each person's probability and cold share (persons, ...).
+
+    `reported` (..., n_time) is the sum over the persons of the probability of a report by each time, `dt_s` apart.
+    """
+    total, by_cold = probability.sum(axis=0), (probability * cold_share).sum(axis=0)
+    share = np.divide(by_cold, total, out=np.zeros_like(total), where=total > 0.0)
+    persons = len(probability)
+    return Detection(total / persons, share, reported / persons, dt_s)
 
 
 def detect(
@@ -43,48 +97,37 @@ def detect(
     criterion_cold: ArrayLike = 1.0,
     criterion_warm: ArrayLike = 1.0,
     decision_s: ArrayLike | None = None,
+    times: bool = True,
 ) -> Detection:
-    """Run the yes/no procedure on sensations of shape (..., n_time).
+    """Run the yes/no procedure on sensations of shape (..., n_time), with response `times` or without, which is faster.
 
     What is detected is the change of sensation from the first sample, whose gain differs from presentation to
-    presentation. `probability` is corrected for false alarms of the same length: 0 when there is nothing to feel.
-    The criteria are multiples of the observer's; the four keywords are one number or one for each leading index.
+    presentation; the window of a crossing is that of the sensations. The criteria are multiples of the observer's; the
+    four keywords are one number or one for each leading index.
     """
-    from ..kernels import kernels
-
-    cold, shape = as_rows(psi_cold)
-    warm, warm_shape = as_rows(psi_warm)
-    if shape != warm_shape:
-        raise ValueError(f"cold and warm sensation differ in shape: {shape} and {warm_shape}")
-    crossing = np.empty((cold.shape[0], 2))
-    log_missed = np.empty(cold.shape[0])
-    multiples = [np.broadcast_to(each, shape[:-1]).reshape(-1) for each in (criterion_cold, criterion_warm)]
-    criteria = observer.criterion * np.stack(multiples, axis=-1)
-    tau, raised = observer.noise_correlation_s, np.exp(observer.p * quarters(observer.gain_noise))
-
-    def work(part: slice) -> None:
-        kernels.detect(
-            cold[part], warm[part], dt_s, criteria[part], tau, observer.a, raised, crossing[part], log_missed[part]
-        )
-
-    over_rows(work, cold.shape[0], cold.size)
-    wait = dt_s * (cold.shape[1] - 1)
-    silent = log_no_crossings(criteria, tau, wait).sum(axis=-1)
-    probability = np.clip(-np.expm1(log_missed - silent), 0.0, 1.0).reshape(shape[:-1])
-
-    crossing = crossing.reshape(*shape[:-1], 2)
     path = np.asarray(observer.path_hand_m if path_m is None else path_m, dtype=np.float64)
-    delay = observer.decision_s if decision_s is None else np.asarray(decision_s, dtype=np.float64)
-    conduction = [observer.delays_s(channel, path) for channel in CHANNELS]
-    felt = np.stack([crossing[..., k] + conduction[k] + delay for k in range(2)], axis=-1)
-    first = np.where(np.isnan(felt), np.inf, felt)
-    onset = first.min(axis=-1)
-    channel = np.where(np.isinf(onset), -1, first.argmin(axis=-1)).astype(np.int64)
-    return Detection(probability, np.where(np.isinf(onset), np.nan, onset), channel, crossing)
+    conduction = observer.delays_s("cold", path), observer.delays_s("warm", path)
+    decision = observer.decision_s if decision_s is None else decision_s
+    step = report_step(dt_s)
+    every = round(step / dt_s)
+    count = math.ceil((np.shape(psi_cold)[-1] + LATEST_S / dt_s) / every) if times else 0
+    probability, reported, share = report_courses(
+        psi_cold,
+        psi_warm,
+        dt_s,
+        observer,
+        conduction,
+        decision,
+        (criterion_cold, criterion_warm),
+        times=count,
+        corrected=True,
+        every=every,
+    )
+    return Detection(probability, share, reported if times else None, step)
 
 
 def channel_name(index: int) -> Channel | None:
-    """Name of a channel index of `Detection.channel`; None where nothing was felt."""
+    """Name of a channel index of `Detection.channel`; None where the icon is not felt."""
     return None if index < 0 else CHANNELS[index]
 
 
@@ -109,19 +152,11 @@ def criterion_of(rate: float, correlation_s: float, wait_s: float) -> float:
 
 
 def log_no_crossing(criterion: float, correlation_s: float, wait_s: float) -> float:
-    """Log probability that one channel's noise stays below the criterion.
+    """Log probability that one channel's noise stays below the criterion: the rule of `first_passage` without change.
 
     The noise is unit Gaussian with autocorrelation e^(−t²/2τ²); crossings of a level not yet
     passed come at Rice's rate over the probability of being below.
     """
-    return float(log_no_crossings(np.array(criterion), correlation_s, wait_s))
-
-
-def log_no_crossings(criteria: Array, correlation_s: float, wait_s: float) -> Array:
-    """The same for criteria (...,)."""
-    from scipy.special import ndtr
-
-    below = ndtr(criteria)
-    rate = np.exp(-0.5 * criteria * criteria) / (2.0 * np.pi * correlation_s)
-    logs: Array = np.log(below) - wait_s * rate / below
-    return logs
+    below = 0.5 * math.erfc(-criterion / math.sqrt(2.0))
+    rate = math.exp(-0.5 * criterion * criterion) / (2.0 * math.pi * correlation_s)
+    return math.log(below) - wait_s * rate / below

@@ -44,7 +44,7 @@ def delay_s(trace: Trace, channel: Channel) -> float | None:
 
 
 def onset_s(trace: Trace, observer: Observer | None = None) -> float | None:
-    """Felt onset by the nominal person, s on the response clock; None where nothing is felt."""
+    """Onset for the nominal person, s on the response clock; None where the icon is not felt."""
     return perceive(trace, observer).onset_s
 
 

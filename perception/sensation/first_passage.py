@@ -4,6 +4,7 @@ Sensation is its mean plus unit noise of autocorrelation e^(−t²/2τ²). The r
 a criterion not passed yet is Rice's for a moving mean, over the probability of being below it; this
 takes crossings as independent, good as long as they are rare or the rise is fast (tests compare it
 with drawn noise). A response comes later by the conduction of its channel and by decision.
+The rule itself is compiled, in `kernels.passage`; detection and response times share it.
 """
 
 from __future__ import annotations
@@ -15,11 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, as_rows
-from ..observer.channels import CHANNELS
+from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
-
-FARTHEST = -8.0
-"""Criterion minus mean, in d′, beyond which the noise is surely above it; keeps the density finite."""
 
 
 def log_survival(psi: ArrayLike, dt_s: float, criterion: ArrayLike, observer: Observer) -> Array:
@@ -27,19 +25,12 @@ def log_survival(psi: ArrayLike, dt_s: float, criterion: ArrayLike, observer: Ob
 
     What counts is the change of sensation from its first sample, in either direction.
     """
-    from scipy.special import ndtr
+    from ..kernels.passage import survive
 
     rows, shape = as_rows(psi)
-    correlation_s = observer.noise_correlation_s
-    criteria = _each(criterion, rows.shape[0])[:, None]
-    change = np.abs(rows - rows[:, :1])
-    gap = np.maximum(criteria - 0.5 * (change[:, 1:] + change[:, :-1]), FARTHEST)
-    speed = np.diff(change, axis=1) / dt_s
-    z = speed * correlation_s
-    rise = np.exp(-0.5 * z * z) / (np.sqrt(2.0 * np.pi) * correlation_s) + speed * ndtr(z)
-    rate = rise * np.exp(-0.5 * gap * gap) / (np.sqrt(2.0 * np.pi) * ndtr(gap))
-    start = np.log(ndtr(criteria))
-    survived: Array = start - np.concatenate([np.zeros_like(start), np.cumsum(dt_s * rate, axis=1)], axis=1)
+    survived = np.empty_like(rows)
+    for row, own, left in zip(rows, _each(criterion, rows.shape[0]), survived, strict=True):
+        survive(row, dt_s, own, observer.noise_correlation_s, False, left)
     return survived.reshape(shape)
 
 
@@ -69,12 +60,7 @@ class ResponseTimes:
         """
         if not 0.0 < share < 1.0:
             raise ValueError(f"a share of trials lies between 0 and 1, not {share:g}")
-        found = np.full(self.cold_share.shape, np.inf)
-        for row, given in enumerate(self.probability):
-            if given[-1] >= share:
-                k = max(int(np.searchsorted(given, share)), 1)
-                found[row] = np.interp(share, given[k - 1 : k + 1], self.time_s[k - 1 : k + 1])
-        return found
+        return np.array([time_of(given, self.time_s, share) for given in self.probability])
 
     def __repr__(self) -> str:
         low, middle, high = (float(np.median(self.quantile(share))) for share in (0.25, 0.5, 0.75))
@@ -104,29 +90,70 @@ def response_times(
     >>> bool(0.5 < found.quantile()[0] < 0.9)
     True
     """
-    felt = {c: as_rows(psi)[0] for c, psi in zip(CHANNELS, (psi_cold, psi_warm), strict=True)}
-    rows, samples = felt["cold"].shape
-    criteria = {c: observer.criterion * _each(own, rows) for c, own in zip(CHANNELS, criterion, strict=True)}
-    conduction = {c: _each(own, rows) for c, own in zip(CHANNELS, conduction_s, strict=True)}
-    decisions = [_each(decision_s, rows) * np.exp(spread) for spread in quarters(observer.decision_noise)]
-    latest = max(float(each.max()) for each in conduction.values()) + max(float(each.max()) for each in decisions)
-    time = dt_s * np.arange(samples + int(np.ceil(latest / dt_s)) + 1)
-    still, by_cold, trials = np.zeros((rows, time.size)), np.zeros(rows), 0
-    for gain in quarters(observer.gain_noise):
-        logs = {c: log_survival(_with_gain(felt[c], gain, observer), dt_s, criteria[c], observer) for c in CHANNELS}
-        for decision in decisions:
-            trials += 1
-            arrived = {
-                c: np.stack([_arrived(logs[c][k], time, dt_s, conduction[c][k] + decision[k]) for k in range(rows)])
-                for c in CHANNELS
-            }
-            left = np.exp(arrived["cold"] + arrived["warm"])
-            still += left
-            by_cold += (-np.diff(arrived["cold"], axis=1) * 0.5 * (left[:, 1:] + left[:, :-1])).sum(axis=1)
-    still, by_cold = still / trials, by_cold / trials
-    given = 1.0 - still[:, -1]
-    share = np.divide(by_cold, given, out=np.zeros(rows), where=given > 0.0)
-    return ResponseTimes(time, 1.0 - still, np.clip(share, 0.0, 1.0))
+    rows, samples = as_rows(psi_cold)[0].shape
+    slowest = float(np.exp(quarters(observer.decision_noise)).max() * np.max(decision_s))
+    latest = max(float(np.max(each)) for each in conduction_s) + slowest
+    times = samples + int(np.ceil(latest / dt_s)) + 1
+    _, given, share = report_courses(
+        psi_cold, psi_warm, dt_s, observer, conduction_s, decision_s, criterion, times=times, corrected=False
+    )
+    return ResponseTimes(dt_s * np.arange(times), given.reshape(rows, times), share.reshape(rows))
+
+
+def report_courses(
+    psi_cold: ArrayLike,
+    psi_warm: ArrayLike,
+    dt_s: float,
+    observer: Observer,
+    conduction_s: tuple[ArrayLike, ArrayLike],
+    decision_s: ArrayLike,
+    criterion: tuple[ArrayLike, ArrayLike],
+    *,
+    times: int,
+    corrected: bool,
+    every: int = 1,
+) -> tuple[Array, Array, Array]:
+    """Probability (...,) of a report, of one by each of so many times (..., times), and cold's share of it.
+
+    Arguments are as in `response_times`; times lie `every` samples apart. Corrected, reports of noise alone are left
+    out. Without times (0) only the first is computed.
+    """
+    from ..kernels.reports import report
+
+    (cold, shape), (warm, warm_shape) = as_rows(psi_cold), as_rows(psi_warm)
+    if shape != warm_shape:
+        raise ValueError(f"cold and warm sensation differ in shape: {shape} and {warm_shape}")
+    rows, lead = cold.shape[0], shape[:-1]
+
+    def both(values: tuple[ArrayLike, ArrayLike]) -> Array:
+        return np.stack([np.broadcast_to(np.asarray(own, dtype=np.float64), lead).reshape(-1) for own in values], -1)
+
+    criteria, late = observer.criterion * both(criterion), both(conduction_s)
+    decisions = both((decision_s, 0.0))[:, :1] * np.exp(quarters(observer.decision_noise))
+    raised = np.exp(observer.p * quarters(observer.gain_noise))
+    probability, reported, share = np.empty(rows), np.empty((rows, times)), np.zeros(rows)
+
+    def work(part: slice) -> None:
+        report(
+            cold[part], warm[part], dt_s, criteria[part], observer.noise_correlation_s, observer.a, raised,
+            late[part], decisions[part], corrected, every, probability[part], reported[part], share[part],
+        )  # fmt: skip
+
+    over_rows(work, rows, cold.size)
+    return probability.reshape(lead), reported.reshape(*lead, times), share.reshape(lead)
+
+
+def time_of(given: Array, time_s: Array, probability: float) -> float:
+    """When (s) the probability (n_time,) of a report first reaches a value; inf where it never does.
+
+    >>> time_of(np.array([0.0, 0.2, 0.6]), np.array([0.0, 1.0, 2.0]), 0.4)
+    1.5
+    """
+    reached = given >= probability
+    k = int(reached.argmax())
+    if not reached[k]:
+        return float(np.inf)
+    return float(np.interp(probability, given[k - 1 : k + 1], time_s[k - 1 : k + 1])) if k else float(time_s[0])
 
 
 def quarters(sd: float) -> Array:
@@ -140,20 +167,5 @@ def quarters(sd: float) -> Array:
     return sd * np.array([NormalDist().inv_cdf(share) for share in (0.125, 0.375, 0.625, 0.875)])
 
 
-def _with_gain(psi: Array, log_gain: float, observer: Observer) -> Array:
-    """Sensations of drives that are larger by a gain: u^p/b is e^(ψ/a) − 1."""
-    if log_gain == 0.0:
-        return psi
-    louder: Array = observer.a * np.log1p(np.exp(observer.p * log_gain) * np.expm1(psi / observer.a))
-    return louder
-
-
 def _each(values: ArrayLike, rows: int) -> Array:
     return np.broadcast_to(np.asarray(values, dtype=np.float64).reshape(-1), (rows,))
-
-
-def _arrived(log_survived: Array, time: Array, dt_s: float, late_s: float) -> Array:
-    """Log probability that no crossing has arrived by each time; before the delay nothing has."""
-    then = time - late_s
-    held: Array = np.interp(then, dt_s * np.arange(log_survived.size), log_survived, left=0.0)
-    return held

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, as_rows
+from ..criteria import FELT_FROM
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.variants import receptor_input
@@ -29,12 +30,42 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Percept:
-    """Sensation over time in d′ units, on the clock named by `clock`.
+    """Sensation over time in d′ units, and whether the nominal person reports it.
 
-    The receptor clock starts with the cue and counts no conduction; `onset_s` is on the response
-    clock (crossing + conduction + decision) and None where nothing was felt, like `channel`.
-    `conduction_s` is what the percept clock is later by, cold and warm; `outside_data` has a sentence for
-    every way in which the trace lies outside what the prediction rests on.
+    Three clocks are distinguished: the receptor clock starts with the cue, the percept clock is later by conduction,
+    the response clock by conduction and decision.
+
+    Attributes
+    ----------
+    psi_cold, psi_warm
+        Sensation of each channel (n_time,), d′, on the clock named by `clock`.
+    dt_s
+        Step of the clock, s.
+    onset_s
+        Median response time of the trials that end in a report, s on the response clock (first passage + conduction +
+        decision); None where the icon is not felt, which is where fewer than half of the trials do.
+    channel
+        Channel that most reports go by; None where the icon is not felt.
+    detected_probability
+        Share of trials of this person that end in a report, beyond reports of nothing, 0–1.
+    icon
+        Name of the icon.
+    clock
+        `receptor`.
+    conduction_s
+        What the percept clock is later by, cold and warm, s.
+    outside_data
+        A sentence for every way in which the trace lies outside what the prediction rests on.
+
+    Raises
+    ------
+    ValueError
+        For sensations that are not two finite traces of one length, and for an onset or a channel that contradicts the
+        probability.
+
+    See Also
+    --------
+    perceive : Predicts a percept.
     """
 
     psi_cold: Array
@@ -59,6 +90,13 @@ class Percept:
             raise ValueError(f"psi_cold has {self.psi_cold.size} samples and psi_warm {self.psi_warm.size}")
         if not self.dt_s > 0.0:
             raise ValueError(f"dt_s = {self.dt_s:g} s must be above 0")
+        if not 0.0 <= self.detected_probability <= 1.0:
+            raise ValueError(f"detected_probability = {self.detected_probability:g} must lie in 0 to 1")
+        if {self.onset_s is not None, self.channel is not None, self.felt} != {self.felt}:
+            raise ValueError(
+                f"an onset and a channel belong to an icon that is felt (from p {FELT_FROM:g} on), not to onset_s = "
+                f"{self.onset_s}, channel = {self.channel}, p {self.detected_probability:g}"
+            )
 
     @property
     def time_s(self) -> Array:
@@ -86,6 +124,18 @@ class Percept:
         peak = self.peak_s(channel)
         return None if peak is None else peak + self.conduction_s[channel == "warm"]
 
+    @property
+    def felt(self) -> bool:
+        """Whether at least half of the trials of this person end in a report."""
+        return self.detected_probability >= FELT_FROM
+
+    @property
+    def summary(self) -> str:
+        """Whether the nominal person feels it, when and how surely, as in `felt at 1.05 s by cold, p 1.000`."""
+        if not self.felt:
+            return f"not felt, p {self.detected_probability:.3f}"
+        return f"felt at {self.onset_s:.2f} s by {self.channel}, p {self.detected_probability:.3f}"
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw both sensations; returns the axes."""
         from ..plots.draw import plot_sensation
@@ -94,9 +144,8 @@ class Percept:
 
     def __repr__(self) -> str:
         beyond = ", outside the data" if self.outside_data else ""
-        felt = "not felt" if self.onset_s is None else f"felt at {self.onset_s:.2f} s by {self.channel}"
         return (
-            f"Percept({self.icon or 'unnamed'}: {felt}, p {self.detected_probability:.3f}, "
+            f"Percept({self.icon or 'unnamed'}, nominal person: {self.summary}, "
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
             f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
         )
@@ -108,10 +157,36 @@ class Percept:
 
 
 def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:
-    """Percept of one simulated trace by a nominal person (or `observer`, of temperature or of heat flow).
+    """Predict what the nominal person feels of one simulated trace: receptor drive, sensation, detection.
 
-    `area_m2` is the trace's own area of contact unless given; the site is the trace's. The chain is
-    receptor drive, sensation, detection.
+    Parameters
+    ----------
+    trace
+        A trace of `simulate`, with a uniform clock; its site decides thresholds and nerve path. The response window is
+        the length of the trace: simulate a tail, such as 10 s, to include the return.
+    observer
+        The person, of temperature or of heat flow; None: the nominal one.
+    area_m2
+        Area of contact, m²; None: that of the trace.
+
+    Returns
+    -------
+    Percept
+        Sensation of both channels, and the probability, time and channel of a report by this person.
+
+    Raises
+    ------
+    ValueError
+        For a trace of fewer than two rows or without a uniform clock.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=10.0)
+    >>> percept = perceive(trace)
+    >>> percept.felt, percept.channel, 1.0 < percept.onset_s < 1.3
+    (True, 'cold', True)
     """
     person = Observer.load() if observer is None else observer
     area = trace.area_m2 if area_m2 is None else area_m2

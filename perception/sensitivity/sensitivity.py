@@ -63,10 +63,26 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """Effects, ordered by their influence on the proportion correct, from `runs` predictions.
+    """Effects of the parameters on a prediction, ordered by their influence on the proportion correct.
 
-    All runs have the same people and the same noise. `proportion_correct` (0–1) and `information_bits` are the
-    prediction with every parameter at its value; `samples` is the number of base samples.
+    Attributes
+    ----------
+    rig, rig_changes
+        Name of the rig, and its changed keys.
+    people, seed
+        Number of virtual people, the same in every run, and the seed.
+    norm
+        How a difference over time is counted.
+    samples, runs
+        Number of base samples and of predictions.
+    proportion_correct, information_bits
+        The prediction with every parameter at its value: 0–1, and bits.
+    effects
+        Effect of each parameter.
+
+    See Also
+    --------
+    sensitivity : Runs the study.
     """
 
     rig: str
@@ -166,11 +182,29 @@ def sensitivity(
     progress
         Called with (runs done, runs in all).
 
+    Returns
+    -------
+    Sensitivity
+        Effects of the parameters, the most influential first.
+
     Raises
     ------
     ValueError
         For fewer than two icons, a number of samples that is not a power of 2 from 2 on, and an unknown norm.
 
+    See Also
+    --------
+    rank : Predicts with every parameter at its value.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> six = read_cue("six-icons")
+    >>> sensitivity([six["cooling-step"]], Rig.load("thenar"))
+    Traceback (most recent call last):
+    ...
+    ValueError: ...
     """
     members, chosen = list(icons), check_norm(norm)
     if len(members) < 2:

@@ -41,10 +41,35 @@ def forced_choice(
     proportion: float = UNIT_PROPORTION,
     people: People | None = None,
 ) -> Measurement:
-    """Threshold (K) in a choice of two intervals, one with a ramp that is held, correct with `proportion`.
+    """Measure a threshold in a choice of two intervals, one with a ramp that is held.
 
     The choice is correct with Φ(d′/√2), d′ being the largest sensation of either channel above rest.
 
+    Parameters
+    ----------
+    observer, bench, channel
+        The nominal person, what plays the ramps, and `cold` or `warm`.
+    rate_K_per_s
+        Rate of the ramp, K/s.
+    hold_s
+        How long it is held, s.
+    proportion
+        Proportion correct at threshold; by default that of d′ = 1.
+    people
+        Virtual people; None: the nominal person alone.
+
+    Returns
+    -------
+    Measurement
+        Threshold of each person, K.
+
+    Raises
+    ------
+    ValueError
+        For a proportion that is not between 0.5 and 1.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig
     >>> found = forced_choice(Observer.load(), Bench(Rig.load("thenar")), "cold")
     >>> round(found.value, 3), found.unit
@@ -75,10 +100,38 @@ def yes_no(
     false_alarms: float | None = None,
     people: People | None = None,
 ) -> Measurement:
-    """Threshold (K) at which a share of ramps, `hits`, is reported, corrected for false alarms.
+    """Measure the threshold at which a share of ramps is reported, beyond false alarms.
 
-    `false_alarms` is their share in an empty trial as long as the shortest one; None keeps the
-    observer's cautious criterion.
+    Parameters
+    ----------
+    observer, bench, channel
+        The nominal person, what plays the ramps, and `cold` or `warm`.
+    rate_K_per_s
+        Rate of the ramp, K/s.
+    hold_s
+        How long it is held, s.
+    hits
+        Share of ramps that is reported at threshold.
+    false_alarms
+        Share of false alarms in an empty trial as long as the shortest one; None keeps the observer's criterion.
+    people
+        Virtual people; None: the nominal person alone.
+
+    Returns
+    -------
+    Measurement
+        Threshold of each person, K.
+
+    Raises
+    ------
+    ValueError
+        For a share that is not between 0 and 1.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> yes_no(Observer.load(), Bench(Rig.load("thenar")), "cold").unit
+    'K'
     """
     if not 0.0 < hits < 1.0:
         raise ValueError(f"the share of hits lies between 0 and 1, not {hits:g}")
@@ -105,9 +158,36 @@ def method_of_limits(
     limit_K: float = 12.0,
     people: People | None = None,
 ) -> Measurement:
-    """Threshold (K): how far a steady ramp has come at the bench's surface when half of the trials are answered.
+    """Measure how far a steady ramp has come at the bench's surface when half of the trials are answered.
 
-    The answer waits for the cautious criterion, conduction and decision; it may be a false alarm.
+    The answer waits for the criterion, conduction and decision; it may be a false alarm.
+
+    Parameters
+    ----------
+    observer, bench, channel
+        The nominal person, what plays the ramp, and `cold` or `warm`.
+    rate_K_per_s
+        Rate of the ramp, K/s.
+    limit_K
+        Where the ramp ends, K.
+    people
+        Virtual people; None: the nominal person alone.
+
+    Returns
+    -------
+    Measurement
+        Threshold of each person, K; inf where the end comes first.
+
+    Raises
+    ------
+    CueErrors
+        For a rate or a limit that is not above 0.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> method_of_limits(Observer.load(), Bench(Rig.load("thenar")), "cold").unit
+    'K'
     """
     played, found = _responses(observer, bench, channel, rate_K_per_s, limit_K, people)
     moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
@@ -126,7 +206,31 @@ def choice_reaction_time(
     size_K: float = 8.0,
     people: People | None = None,
 ) -> ResponseTimes:
-    """Distributions, one a person, of the time from the start of a ramp to the answer warm or cold."""
+    """Predict the time from the start of a ramp to the answer warm or cold.
+
+    Parameters
+    ----------
+    observer, bench, channel
+        The nominal person, what plays the ramp, and `cold` or `warm`.
+    rate_K_per_s
+        Rate of the ramp, K/s.
+    size_K
+        Where it ends, K.
+    people
+        Virtual people; None: the nominal person alone.
+
+    Returns
+    -------
+    ResponseTimes
+        A distribution for each person.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> times = choice_reaction_time(Observer.load(), Bench(Rig.load("thenar")), "cold")
+    >>> bool(0.3 < times.quantile()[0] < 2.0)
+    True
+    """
     return _responses(observer, bench, channel, rate_K_per_s, size_K, people, observer.choice_s)[1]
 
 
@@ -143,10 +247,44 @@ def method_of_levels(
     seed: int = 0,
     people: People | None = None,
 ) -> Measurement:
-    """Threshold (K) of a staircase of ramps: smaller after yes, larger after no, in steps halved at every turn.
+    """Measure a threshold by a staircase of ramps: smaller after yes, larger after no, in steps halved at every turn.
 
-    A run starts at `first_K` with steps as large, ends when the step is below `last_K`, and counts the
-    mean of its last reported and last unreported level. Each person runs once; the nominal one `runs` times.
+    A run ends when the step is below `last_K`, and counts the mean of its last reported and last unreported level.
+
+    Parameters
+    ----------
+    observer, bench, channel
+        The nominal person, what plays the ramps, and `cold` or `warm`.
+    rate_K_per_s
+        Rate of the ramps, K/s.
+    hold_s
+        How long each is held, s.
+    first_K
+        First level and first step, K.
+    last_K
+        Step below which a run ends, K.
+    runs
+        Runs of the nominal person; each of the people runs once.
+    seed
+        Seed of the answers.
+    people
+        Virtual people; None: the nominal person alone.
+
+    Returns
+    -------
+    Measurement
+        Threshold of each run, K; inf where even the largest ramp was not reported.
+
+    Raises
+    ------
+    ValueError
+        For no run, and for steps that are not above 0 with the last below the first.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> method_of_levels(Observer.load(), Bench(Rig.load("thenar")), "cold", runs=4).unit
+    'K'
     """
     if runs < 1 or not 0.0 < last_K < first_K:
         raise ValueError(f"levels need a run and 0 < last_K < first_K, not {runs}, {last_K:g} and {first_K:g}")

@@ -68,7 +68,25 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class ValidationReport:
-    """Everything the report shows; `trade_offs` has the pairs of every variant, in the order of VARIANTS."""
+    """Everything that the validation report shows.
+
+    Attributes
+    ----------
+    version
+        Version of the program.
+    people, draws, seed, trials
+        Arguments of the run.
+    sections
+        Targets with their verdicts.
+    trade_offs
+        Pairs of targets of every variant, in the order of VARIANTS.
+    evidence
+        Curves and answers behind the figures.
+
+    See Also
+    --------
+    validate : Returns the report.
+    """
 
     version: str
     people: int
@@ -102,10 +120,37 @@ def validate(
 ) -> ValidationReport:
     """Predict every published target and judge it; the same arguments give the same report.
 
-    `people` stand behind spreads between persons, `draws` plausible observers behind intervals (0: none) and
-    trade-offs; `trials` is the length of the identification experiment. `published` replaces the shipped
-    table of published numbers. Raises `ValueError` for no people or a single draw, `RecordError` for a table
-    that lacks what a target names.
+    Parameters
+    ----------
+    people
+        Number of virtual people behind spreads between persons.
+    draws
+        Number of plausible observers behind intervals and trade-offs; 0: none.
+    seed
+        Seed of people and observers.
+    trials
+        Length of the identification experiment.
+    published
+        A table in place of the shipped one of published numbers.
+    progress
+        Called with (steps done, steps in all).
+
+    Returns
+    -------
+    ValidationReport
+        Every target, predicted beside published.
+
+    Raises
+    ------
+    ValueError
+        For no people, a single draw, and a table that lacks what a target names.
+
+    Examples
+    --------
+    >>> validate(people=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: ...
     """
     from .evidence import collect_evidence
 

@@ -61,6 +61,19 @@ def test_settings_from_the_command_line_are_toml_values() -> None:
     assert THENAR.with_set([]) is THENAR
 
 
+def test_another_site_alone_leaves_the_skin_and_says_so() -> None:
+    (warning,) = THENAR.with_set(["skin.site=forearm"]).warnings
+    assert warning.startswith("skin.site = forearm changes the name of the site")
+    assert (
+        "layers and receptor depths are still those of rig thenar: use --rig forearm or --rig tcs2, or set" in warning
+    )
+    (unknown,) = THENAR.with_set(["skin.site=sole"]).warnings
+    assert "use a rig file of that site, or set skin.layer" in unknown
+    assert THENAR.with_set(["skin.site=forearm", "skin.layer.0.thickness_mm=0.022"]).warnings == ()
+    assert THENAR.with_set(["skin.site=thenar"]).warnings == ()
+    assert Rig.load("shani2021").with_set(["contact.area_cm2=4"]).warnings == Rig.load("shani2021").warnings
+
+
 @pytest.mark.parametrize(
     ("key", "value", "words"),
     [

@@ -199,11 +199,11 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
 def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
     from thermicon.notebooks.text.rank_text import disagreement_lines
 
-    found = [{"icon": "a", "text": "a: rules say felt, the model 0.52 detected (felt from 0.9)"}]
+    found = [{"icon": "a", "text": "a: rules say felt, the model 0.42 detected (felt from 0.5)"}]
     said = list(disagreement_lines(found))
     assert said == [
-        "Rules and model disagree: rules require a change and a rate, the model detection by a cautious observer",
-        "  - a: rules say felt, the model 0.52 detected (felt from 0.9)",
+        "Rules and model disagree: rules require a change and a rate, the model a report in half of the trials",
+        "  - a: rules say felt, the model 0.42 detected (felt from 0.5)",
     ]
 
 

@@ -52,6 +52,14 @@ def test_the_trace_has_the_promised_columns_and_rows(cli: Cli, two: Path, tmp_pa
     assert not list(tmp_path.glob(".*"))
 
 
+def test_another_site_alone_is_warned_of(cli: Cli, two: Path) -> None:
+    said = cli("simulate", two, "--set", "skin.site=forearm")
+    assert said.exit_code == 0
+    words = " ".join(said.stderr.split())
+    assert "warning: skin.site = forearm changes the name of the site" in words
+    assert "use --rig forearm or --rig tcs2, or set skin.layer" in words
+
+
 def test_one_icon_a_rate_and_a_tail(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "trace.csv"
     assert cli("simulate", two, "--icon", "warm-step", "--rate", 20, "--tail", 2, "-o", out).exit_code == 0

@@ -44,7 +44,7 @@ def test_an_overview_names_what_was_changed_and_the_clock_of_the_onset(percept: 
     sensation = figure.axes[-1]
     assert sensation.get_ylabel() == "sensation (d′)\nreceptor clock"
     label = sensation.get_legend().get_texts()[-1].get_text()
-    assert label == f"reported as cold\nat {percept.onset_s:.2f} s\n(response clock)"
+    assert label == f"reported as cold\nat {percept.onset_s:.2f} s by the\nnominal person\n(response clock)"
 
 
 def test_nouns_print_as_one_line_and_draw_themselves(percept: Percept) -> None:

@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 from tests.notebooks.surerig import sure_rig
+from thermicon.icons import parse
 from thermicon.notebooks.files.exporting import prepare_icons, write
 from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
+from thermicon.perception import rank
 
 TWO = """cue 1
 icon dip { cool by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
@@ -48,6 +50,20 @@ def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "drives").iterdir()) == ["dip.csv", "dip.json"]
     assert str(tmp_path / "drives") in bench.said("written")
     assert json.loads((tmp_path / "drives" / "dip.json").read_text(encoding="utf-8"))["safety"]["colour"] == "green"
+
+
+def test_detection_is_that_of_the_ranking_and_says_whose_it_is(tmp_path: Path) -> None:
+    bench = Bench(tmp_path)
+    bench.view.which.value = "all"
+    bench.wait()
+    ranking = rank(parse(TWO), sure_rig(), people=200, parameters=0)
+    assert "detected by 200 virtual people" in bench.said("delivered")
+    bench.view.button.click()
+    for score in ranking.icons:
+        sidecar = json.loads((tmp_path / f"{score.name}.json").read_text(encoding="utf-8"))
+        assert sidecar["perception"]["detected_by"] == "200 virtual people"
+        designed = sidecar["perception"]["detected_probability"]["designed"]
+        assert designed == pytest.approx(score.detected_probability, abs=1e-6)
 
 
 def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:

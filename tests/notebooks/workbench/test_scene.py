@@ -234,7 +234,7 @@ def test_a_target_on_the_wrong_side_of_this_rigs_rest_is_an_error_of_its_line(di
 def test_another_site_and_other_notes_are_told_once(rig: Rig) -> None:
     made = scene("cue 1\nset { site forearm }\nicon still { rest for 1 s }\n", rig, notes=("first", "first"))
     assert made.notes[:2] == ("first", "the set is for the site forearm, the rig thenar is for thenar")
-    assert "still is not felt by this observer" in made.notes
+    assert "still is not felt by the nominal person, who reports it in 0 % of trials" in made.notes
     assert with_notes(made, "refused", "first").notes[:2] == ("refused", "first")
 
 

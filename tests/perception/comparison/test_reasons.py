@@ -69,7 +69,7 @@ def test_other_directions_give_no_peaks(cue: Any, observer: Observer) -> None:
     assert reasons[1].text == (
         "directions differ: a cools (-4.00 K at the cold receptor); b warms (+3.00 K at the warm receptor)"
     )
-    assert reasons[2].text.startswith("felt at 0.")
+    assert reasons[2].text.startswith("nominal person: felt at 0.")
 
 
 @pytest.mark.parametrize("norm", TRACE_NORMS)
@@ -147,7 +147,7 @@ def test_as_much_as_is_said_of_what_is_equal(cue: Any, observer: Observer) -> No
 
 def test_unfelt_icons_are_named(cue: Any, observer: Observer) -> None:
     texts = [r.text for r in why(cue, observer, {"change": -0.05}, {"change": -4.0})]
-    assert "not felt: a" in texts
+    assert "not felt by the nominal person: a" in texts
 
 
 def test_largest_difference_names_time_and_channel(cue: Any, observer: Observer) -> None:

@@ -50,7 +50,10 @@ def test_a_small_slow_warming_fails(cue: Any, observer: Observer) -> None:
 def test_an_icon_that_is_not_felt_has_no_latency(cue: Any, observer: Observer) -> None:
     latency = scored(cue, observer, change=0.15)["latency (warm)"]
     assert (latency.passed, latency.value, latency.margin) == (False, None, None)
-    assert latency.text == "latency: the icon is not felt, so it has no onset to compare with 0.5 to 0.9 s"
+    assert (
+        latency.text
+        == "latency: the nominal person does not feel the icon, so it has no onset to compare with 0.5 to 0.9 s"
+    )
 
 
 def test_latency_is_held_against_its_window(cue: Any, observer: Observer) -> None:

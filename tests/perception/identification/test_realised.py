@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate_current
@@ -34,7 +36,7 @@ def test_an_icon_that_fades_is_told_with_detection_and_pair() -> None:
     faint, _ = judge_delivered(["faint", "none"], designed, delivered)
     assert faint.detection.designed > faint.detection.delivered + 0.05
     detection, pair = faint.losses()
-    assert detection.startswith("detection falls from ")
+    assert detection.startswith("detection by the nominal person falls from ")
     assert detection.endswith("by more than the stated 0.05")
     assert pair.startswith("d′ to none falls from ")
     assert pair.endswith("by more than the stated 10%")
@@ -52,12 +54,18 @@ def test_it_prints_the_worst_pair_and_becomes_a_dictionary() -> None:
     change = PerceivedChange(
         "a", DeliveredChange(1.0, 0.9), (("b", DeliveredChange(2.0, 1.9)), ("c", DeliveredChange(3.0, 2.0)))
     )
-    assert repr(change) == "PerceivedChange(a: detected 1.000 → 0.900, d′ to c 3 → 2)"
+    assert repr(change) == "PerceivedChange(a: detected 1.000 → 0.900 by the nominal person, d′ to c 3 → 2)"
     told = change.to_dict()
     assert told["detected_probability"] == {"designed": 1.0, "delivered": 0.9}
+    assert told["detected_by"] == "the nominal person"
+    assert replace(change, people=200).to_dict()["detected_by"] == "200 virtual people"
+    assert replace(change, people=1).detected_by == "1 virtual person"
     assert told["d_prime"] == {"b": {"designed": 2.0, "delivered": 1.9}, "c": {"designed": 3.0, "delivered": 2.0}}
     assert told["losses"] == list(change.losses())
-    assert repr(PerceivedChange("a", DeliveredChange(1.0, 1.0), ())) == "PerceivedChange(a: detected 1.000 → 1.000)"
+    assert (
+        repr(PerceivedChange("a", DeliveredChange(1.0, 1.0), ()))
+        == "PerceivedChange(a: detected 1.000 → 1.000 by the nominal person)"
+    )
 
 
 def test_an_unknown_norm_is_refused() -> None:

@@ -1,4 +1,4 @@
-"""The compiled receptor stage and first passage, against closed forms, the other implementation and drawn noise."""
+"""The compiled receptor stage and first passage, against closed forms, courses and drawn noise."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_rise_of_cool_skin_is_not_warm() -> None:
     assert drive(course + 10.0, 1.0, limit=31.0).max() > 3.0
 
 
-def test_first_passage_agrees_with_the_other_implementation() -> None:
+def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
     time = DT * np.arange(200)
     course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
     observer = replace(Observer.load(), noise_correlation_s=0.3)
@@ -63,7 +63,7 @@ def test_first_passage_agrees_with_the_other_implementation() -> None:
     times, passed = passage(np.log(course), np.log(gains), criteria)
     for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
         psi = TRANSDUCER.psi(gain * course)
-        # The other implementation counts the change from the first sample; here that is as good as none.
+        # A course counts the change from its first sample; here that is as good as none.
         change = np.concatenate([[0.0], psi - psi[0]])[None, 1:]
         logs = log_survival(change, DT, criterion - float(psi[0]), observer)[0]
         answered = 1.0 - np.exp(logs)

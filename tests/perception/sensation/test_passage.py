@@ -4,8 +4,10 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from thermicon.perception import Observer
+from thermicon.perception.arrays import Array
 from thermicon.perception.sensation.detection import detect, false_alarms
 from thermicon.perception.sensation.first_passage import ResponseTimes, log_survival, response_times
 
@@ -13,17 +15,35 @@ from thermicon.perception.sensation.first_passage import ResponseTimes, log_surv
 def test_nothing_is_answered_as_often_as_false_alarms_say(observer: Observer) -> None:
     flat = np.zeros(501)
     survived = 2.0 * log_survival(flat, 0.01, 2.5, observer)[-1]
-    assert -math.expm1(survived) == pytest.approx(false_alarms(2.5, 0.3, 5.0), rel=1e-9)
+    assert -math.expm1(survived) == pytest.approx(false_alarms(2.5, 0.3, 5.0), rel=1e-4)
     assert log_survival(flat, 0.01, 2.5, observer)[0] == pytest.approx(math.log(NormalDist().cdf(2.5)))
 
 
-def test_the_end_agrees_with_the_compiled_detection(observer: Observer) -> None:
+def reference(psi: Array, dt_s: float, criterion: float, tau: float) -> Array:
+    """The rule written out with scipy's normal distribution instead of tables."""
+    change = np.abs(psi - psi[:, :1])
+    gap = criterion - 0.5 * (change[:, 1:] + change[:, :-1])
+    z = np.diff(change, axis=1) / dt_s * tau
+    rate = (norm.pdf(z) + z * norm.cdf(z)) / tau * norm.pdf(gap) / norm.cdf(gap)
+    start = np.full((len(psi), 1), norm.logcdf(criterion))
+    return np.asarray(start - np.concatenate([np.zeros_like(start), np.cumsum(dt_s * rate, axis=1)], axis=1))
+
+
+def test_the_compiled_rule_is_the_written_one(observer: Observer) -> None:
+    t = np.arange(0.0, 3.0, 0.01)
+    psi = np.stack([np.minimum(0.8 * t, 1.5), 2.5 * np.sin(t), 4.0 * t, 30.0 * np.minimum(t, 0.2)])
+    survived, written = np.exp(log_survival(psi, 0.01, 3.3, observer)), np.exp(reference(psi, 0.01, 3.3, 0.3))
+    assert survived == pytest.approx(written, abs=2e-4)
+    assert written[2, -1] < 1e-6 < 0.8 < written[0, -1]
+
+
+def test_detection_is_the_end_of_it_beyond_false_alarms(observer: Observer) -> None:
     t = np.arange(0.0, 3.0, 0.01)
     psi = np.stack([np.minimum(0.8 * t, 1.5), 2.5 * np.sin(t)])
     missed = log_survival(psi, 0.01, observer.criterion, observer)[:, -1]
     silent = log_survival(np.zeros_like(psi), 0.01, observer.criterion, observer)[:, -1]
     found = detect(psi, np.zeros_like(psi), 0.01, observer)
-    assert found.probability == pytest.approx(-np.expm1(missed - silent), abs=2e-3)
+    assert found.probability == pytest.approx(-np.expm1(missed - silent), abs=1e-9)
 
 
 def test_times_agree_with_drawn_noise(observer: Observer) -> None:

@@ -1,0 +1,95 @@
+"""Detection of an icon by virtual people, as designed and as a device delivers it.
+
+Designed, it is played as `rank` plays it. What the device changes at the receptors of the nominal person is added to
+the temperatures of every person, as much larger or smaller as the icon itself is for that person. That is exact for
+what scales with the icon, and wrong by about a tenth of the change otherwise, since skins differ in lag.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import CHANNELS, Channel
+from ..observer.observer import Observer
+from ..observer.people import draw_people
+from ..sensation.features import receptor_C
+from .delivered import DeliveredChange
+from .population import ReceptorTemperatures, population_detection
+
+if TYPE_CHECKING:
+    from thermicon.circuit import DeliveredDrive, Trace
+
+PEOPLE, SEED = 200, 0
+"""The people of `rank` unless it is asked for others, so that both show the same number."""
+TAIL_S, RATE_HZ = 10.0, 100.0
+
+
+def detected_as_delivered(
+    delivery: DeliveredDrive,
+    designed: Trace,
+    delivered: Trace,
+    *,
+    end_s: float | None = None,
+    people: int = PEOPLE,
+    seed: int = SEED,
+    tracking: str | None = None,
+) -> DeliveredChange:
+    """Probability that a person drawn at random reports an icon, as designed (as in `rank`) and as delivered.
+
+    `designed` and `delivered` are its traces on the nominal rig, on the clock of the file. `end_s` is when the run of
+    the set ends (None: 10 s after this icon). Raises `RigError` where the
+    skin of a person cannot be held at the icon's baseline.
+
+    >>> from thermicon.circuit import Device, Rig, deliver
+    >>> from thermicon.icons import read_cue
+    >>> made = deliver(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
+    >>> detected_as_delivered(made, made.designed_trace, made.trace, people=4).delivered > 0.9
+    True
+    """
+    from thermicon.circuit import duration_s, simulate_many
+
+    icon, rig = delivery.icon, delivery.rig
+    crowd, observer = draw_people(people, seed), Observer.load()
+    end = run_end_s([duration_s(icon, rig)]) if end_s is None else end_s
+    batch = simulate_many(
+        [icon], crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, tracking=tracking,
+        probes=[f"{channel}_receptor_C" for channel in CHANNELS],
+    )  # fmt: skip
+    as_designed = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    cold, warm = (
+        met + _change(met - met[..., :1], channel, designed, delivered, batch.time_s + delivery.lead_s)
+        for channel, met in zip(CHANNELS, (batch.cold_C, batch.warm_C), strict=True)
+    )
+    as_delivered = replace(as_designed, cold_C=cold, warm_C=warm)
+    before, after = (
+        float(population_detection(each, crowd, observer).probability.mean()) for each in (as_designed, as_delivered)
+    )
+    return DeliveredChange(before, after)
+
+
+def run_end_s(durations_s: Iterable[float]) -> float:
+    """When `rank` ends the run of a set: 10 s after its longest icon, on a whole row, s.
+
+    >>> run_end_s([4.0, 2.5])
+    14.0
+    """
+    return math.ceil((max(durations_s) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+
+
+def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:
+    """What the device changes at the receptors of people (people, icons, n_time), K, who meet the icon as `met_K`.
+
+    The nominal change is multiplied by the least-squares ratio of a person's icon to the nominal one.
+    """
+    before, after = (np.interp(at_s, each.time_s, receptor_C(each, channel)) for each in (designed, delivered))
+    icon = before - before[0]
+    size = float(icon @ icon)
+    gain = (met_K @ icon)[..., None] / size if size > 0.0 else 1.0
+    change: Array = gain * (after - before)
+    return change

@@ -1,0 +1,79 @@
+"""Observer files: whether one has every number that an observer needs, and whether it belongs to the first model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from thermicon.circuit.records import RecordError, Table, load_records
+from thermicon.icons.near_words import nearest_words
+
+NEEDED = (
+    "neutral zone", "slow adaptation time", "threshold drive", "conduction velocity", "area exponent",
+    "softness of the limits", "threshold on the forearm", "static gain", "dynamic gain", "integration time",
+    "slope of sensation", "transducer exponent", "gain noise", "reference area", "criterion of speeded answers",
+    "noise correlation time", "path length to the cord", "decision time", "choice time", "decision time between trials",
+    "onset uncertainty", "lapse rate", "memory noise", "mean rating", "rating at threshold", "rating exponent",
+    "scatter of ratings", "share of the scatter of ratings", "cost of a missing episode",
+    "window of counted impulses", "start of static discharge",
+)  # fmt: skip
+"""Quantities of every variant; a variant's own have its ending."""
+
+NEEDED_OF = {"temperature": ("limit",), "heat flow": ("neutral heat flow",)}
+"""Quantities that depend on the sensory variable."""
+
+RENAMED = {
+    "slow adaptation time constant": "slow adaptation time",
+    "integration time constant": "integration time",
+    "drive of a threshold step": "threshold drive",
+    "threshold at the wrist": "threshold on the forearm",
+    "criterion": "criterion of speeded answers",
+}
+"""Quantities of the first model that the present one has under another name, with values of its own."""
+
+RETIRED = (
+    "fast adaptation time constant", "fast adaptation weight", "gain control strength", "gain control scale",
+    "gain control time constant",
+)  # fmt: skip
+"""Quantities of the first model that the present one does not have."""
+
+SHIPPED = Path(__file__).parents[1] / "data" / "observer.toml"
+CURE = (
+    f"begin with a copy of the shipped file, {SHIPPED}, and change numbers there; or infer all of them again from your "
+    "evidence with python -m thermicon.perception.inference.run and python -m thermicon.perception.validation.calibrate"
+)
+MOST_NAMED = 6
+
+
+def read_observer_file(path: Path) -> Table:
+    """Records of a file; a RecordError names the file, what is wrong, and a cure."""
+    try:
+        return load_records(path)
+    except UnicodeDecodeError as problem:
+        raise RecordError(f"{path.name}: is not UTF-8 text (byte {problem.start}): {CURE}") from None
+
+
+def check_complete(table: Table, variable: str, variant: str) -> None:
+    """Raise a RecordError where quantities are missing for a variant, whose own names end as `variant` says."""
+    known = {record.quantity for record in table}
+    wanted = (*NEEDED, *NEEDED_OF[variable])
+    missing = [name for name in wanted if name not in known and f"{name}{variant}" not in known]
+    if not missing:
+        return
+    old = [name for name in (*RETIRED, *RENAMED) if name in known]
+    if old:
+        renamed = [f"{name!r} is now {RENAMED[name]!r}" for name in old if name in RENAMED]
+        now = f"; {', '.join(renamed)}, with other values" if renamed else ""
+        raise RecordError(
+            f"{table.name}: belongs to the first model of the observer (it has {_named(old)}), whose numbers the "
+            f"present one does not use. Missing here: {_named(missing)}{now}. Cure: {CURE}"
+        )
+    near = {name: nearest_words(name, sorted(known - set(wanted)), 1, 0.75) for name in missing}
+    meant = [f"{close[0]!r} may be meant for {name!r}" for name, close in near.items() if close]
+    hint = f" ({'; '.join(meant[:MOST_NAMED])})" if meant else ""
+    count = "a number that an observer needs is" if len(missing) == 1 else "numbers that an observer needs are"
+    raise RecordError(f"{table.name}: {count} missing: {_named(missing)}{hint}. Cure: {CURE}")
+
+
+def _named(names: list[str]) -> str:
+    more = [f"and {len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED else []
+    return ", ".join([*(repr(name) for name in names[:MOST_NAMED]), *more])

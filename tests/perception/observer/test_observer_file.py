@@ -1,0 +1,97 @@
+"""Observer files that cannot be used: what is missing, what it is called now, and what to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from thermicon.circuit.records import RecordError, Table, dump_records, load_records
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, RENAMED, RETIRED, SHIPPED, check_complete
+from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+
+FIRST_MODEL = """
+[[record]]
+quantity = "neutral zone"
+unit = "°C"
+source = "Shani & Lineykin 2021"
+low = 30.0
+high = 36.0
+
+[[record]]
+quantity = "slow adaptation time constant"
+unit = "s"
+source = "no direct source"
+value = 20.0
+channel = "cold"
+
+[[record]]
+quantity = "drive of a threshold step"
+unit = "K"
+source = "computed"
+value = 0.08
+channel = "cold"
+
+[[record]]
+quantity = "gain control strength"
+unit = "1"
+source = "no direct source"
+value = 0.5
+"""
+"""The keys of the model that adaptation with a fast part and gain control belonged to."""
+
+
+def test_a_file_of_the_first_model_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "lab.toml"
+    path.write_text(FIRST_MODEL, encoding="utf-8")
+    with pytest.raises(RecordError, match=r"^lab.toml: belongs to the first model") as caught:
+        Observer.load(path)
+    text = str(caught.value)
+    assert "it has 'gain control strength', 'slow adaptation time constant', 'drive of a threshold step'" in text
+    assert "Missing here: 'slow adaptation time', 'threshold drive', " in text
+    assert "'drive of a threshold step' is now 'threshold drive'" in text
+    assert str(SHIPPED) in text
+    assert "thermicon.perception.inference.run" in text
+
+
+def without(quantity: str, instead: str | None = None) -> Table:
+    records = tuple(
+        r if r.quantity != quantity else type(r)(instead or "x", r.unit, r.source, r.central)
+        for r in load_records(SHIPPED)
+        if r.quantity != quantity or instead
+    )
+    return Table("mine.toml", records)
+
+
+def test_a_missing_number_is_named_with_the_nearest(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(dump_records(without("gain noise", "gain nois")), encoding="utf-8")
+    with pytest.raises(
+        RecordError, match=r"a number that an observer needs is missing: 'gain noise' \('gain nois' may"
+    ):
+        Observer.load(path)
+    with pytest.raises(RecordError, match=r"^mine.toml: a number .* missing: 'limit'\. Cure: begin with a copy of"):
+        Observer.from_table(without("limit"))
+
+
+@pytest.mark.parametrize(("variable", "model"), VARIANTS)
+def test_whatever_is_needed_is_asked_for(variable: Variable, model: Model) -> None:
+    """Every quantity of the list that an observer is built from leads to this error, and to no other."""
+    for quantity in (*NEEDED, *NEEDED_OF[variable]):
+        kept = tuple(r for r in load_records(SHIPPED) if not r.quantity.startswith(quantity))
+        with pytest.raises(RecordError, match=rf"missing: .*'{quantity}'"):
+            Observer.from_table(Table("x", kept), variable=variable, model=model)
+
+
+def test_the_shipped_file_is_complete_and_of_the_present_model() -> None:
+    shipped = load_records(SHIPPED)
+    check_complete(shipped, "temperature", "")
+    assert not {record.quantity for record in shipped} & {*RENAMED, *RETIRED}
+
+
+def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "binary.toml"
+    path.write_bytes(b"[[record]]\nquantity = '\xff'")
+    with pytest.raises(RecordError, match=r"^binary.toml: is not UTF-8 text \(byte 23\): begin with a copy"):
+        Observer.load(path)
