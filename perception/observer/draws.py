@@ -20,6 +20,7 @@ from thermicon.icons.near_words import did_you_mean
 from ..arrays import Array
 from .channels import CHANNELS
 from .draws_file import DrawsHeader, read_draws, shipped_file
+from .from_draw import observer_with
 from .observer import Observer, variant_records
 from .variants import Model, Variable, check_variant, source_of
 
@@ -123,7 +124,7 @@ class PosteriorDraws:
     def observer(self, k: int) -> Observer:
         """The observer of one draw."""
         variable, model = self.variant
-        return Observer.from_table(self.table(k), variable=variable, model=model)
+        return observer_with(Observer.load(variable=variable, model=model), self.draw(k))
 
     @property
     def nearest_median(self) -> int:

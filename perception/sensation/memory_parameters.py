@@ -1,0 +1,41 @@
+"""Constants of memory that no posterior knows of: their intervals, and observers with other values of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from ..observer.channels import Norm, noise_norm, trace_norm
+from ..observer.observer import Observer
+from .parameters import ObserverParameter, observer_parameters
+
+FIELDS = {"share of the scatter of ratings": "share", "cost of a missing episode": "missing"}
+"""Constants of remembered episodes beside the noise, and what they are called in `EpisodeMemory`."""
+ONSET = "onset uncertainty"
+
+
+def memory_parameters(norm: Norm, site: str = "thenar") -> tuple[ObserverParameter, ...]:
+    """The uncertain constants of memory that a norm makes use of.
+
+    >>> [parameter.name for parameter in memory_parameters("episodes")]
+    ['share of the scatter of ratings', 'memory noise (episodes)']
+    """
+    names = {*FIELDS, ONSET, f"memory noise ({noise_norm(norm)})"}
+    return tuple(parameter for parameter in observer_parameters(norm, site) if parameter.name in names)
+
+
+def with_memory(observer: Observer, values: Mapping[str, float], norm: Norm) -> Observer:
+    """The observer with other constants of memory, by the names of `memory_parameters`."""
+    noise = values.get(f"memory noise ({noise_norm(norm)})")
+    trace = trace_norm(norm)
+    changes: dict[str, Any] = {}
+    if ONSET in values:
+        changes["onset_uncertainty_s"] = values[ONSET]
+    if trace is not None and noise is not None:
+        changes[f"memory_{trace}"] = noise
+    if trace is None:
+        fields = {field: values[name] for name, field in FIELDS.items() if name in values}
+        timing = {} if noise is None else {"timing": noise}
+        changes["memory"] = replace(observer.memory, **fields, **timing)
+    return replace(observer, **changes)
