@@ -16,7 +16,8 @@ from .validation.procedures import choice_reaction_time, forced_choice, method_o
 from .comparison.distance_components import DistanceComponent, distance_components
 from .selection.request import ChoiceError, Selection
 from .selection.choose import Choice, choose
-from .selection.edit import Edit, NoEdit, cheapest_edit
+from .selection.edit import cheapest_edit
+from .selection.edit_result import Edit, NoEdit
 from .selection.search import SearchResult, search
 from .selection.robust import SetComparison, compare_sets
 from .ranking.ranking import IconScore, PairScore, Ranking

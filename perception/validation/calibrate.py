@@ -11,10 +11,10 @@ from dataclasses import replace
 
 from thermicon.circuit.records import Record, Table, dump_records
 
-from ..identification.rate_task import MEMORY_NORMS, memory_noise, memory_record
+from ..identification.rate_task import memory_noise, memory_record
 from ..inference.evidence import load_evidence
 from ..inference.results import Constant, load_constants
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, MEMORY_NORMS, Channel
 from ..observer.observer import DATA, Observer, load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import neutral_flux
