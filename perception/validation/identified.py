@@ -16,16 +16,18 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
+from ..identification.distance import percept_distances
 from ..identification.intervals import EVERY, PEOPLE
 from ..identification.intervals import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
-from ..identification.population import ReceptorTemperatures, identify, respond
+from ..identification.population import PopulationResponse, ReceptorTemperatures, identify
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
 from ..ranking.batches import EXPERIMENTS, RATE_HZ
 from ..ranking.rank import TAIL_S
+from ..sensation.percept import perceive_many, uniform_clock
 from .plausible import plausible_observers
 from .predicted import Predicted
 from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
@@ -83,14 +85,32 @@ class Shown:
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer) -> Array:
-            felt = respond(thin, few, observer)
+            felt = _felt(thin, few, observer)
             return identify(felt, "max", few, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        whole = identify(respond(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
+        whole = identify(_felt(played, self.crowd, nominal), "max", self.crowd, nominal, self.seed, SAMPLES)[1]
         others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
         drawn = tuple(in_order(thinly, others))
         kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
         return Identified(variable, model, self.labels, whole.probability, thinly(nominal), kept)
+
+
+def _felt(played: ReceptorTemperatures, crowd: People, observer: Observer) -> PopulationResponse:
+    """Distances between the icons, as `respond` has them, without detection, which no confusion depends on."""
+    dt, rows = uniform_clock(played.time_s)
+    cold, warm = perceive_many(
+        played.cold_C[..., :rows],
+        played.warm_C[..., :rows],
+        dt,
+        observer,
+        area_m2=played.area_m2,
+        site=played.site,
+        threshold_cold=crowd.threshold_cold[:, None],
+        threshold_warm=crowd.threshold_warm[:, None],
+    )
+    peaks = (cold.max(axis=-1), warm.max(axis=-1))
+    undetected = np.full(peaks[0].shape, np.nan)
+    return PopulationResponse(percept_distances(cold, warm, dt, observer), undetected, dt * (rows - 1), peaks)
 
 
 def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
