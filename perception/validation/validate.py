@@ -15,6 +15,7 @@ from thermicon.circuit.records import Table
 
 from ..observer.observer import load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable
+from .conditioning import Conditioning, load_conditioning
 from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
 from .tradeoffs import Answers, TradeOff, trade_offs
@@ -68,7 +69,10 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class ValidationReport:
-    """Everything the report shows; `trade_offs` has the pairs of every variant, in the order of VARIANTS."""
+    """Everything the report shows; `trade_offs` has the pairs of every variant, in the order of VARIANTS.
+
+    `conditioning` is what the constants were inferred from, with their left-out predictions.
+    """
 
     version: str
     people: int
@@ -78,6 +82,7 @@ class ValidationReport:
     sections: tuple[Section, ...]
     trade_offs: tuple[tuple[TradeOff, ...], ...]
     evidence: Evidence
+    conditioning: Conditioning
 
     def counts(self, variant: int) -> tuple[int, int]:
         """How many judged rows hold for a variant, of how many."""
@@ -142,7 +147,8 @@ def assemble(
             lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, *variant) for variant in VARIANTS)))
         sections.append(Section(target, tuple(lines)))
     pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIANTS)))
-    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence)
+    known_from = load_conditioning()
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, known_from)
 
 
 def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
