@@ -127,8 +127,22 @@ def choice_reaction_time(
     people: People | None = None,
 ) -> ResponseTimes:
     """Distributions, one a person, of the time from the start of a ramp to the answer warm or cold."""
+    return ramp_responses(observer, bench, channel, rate_K_per_s, size_K, people, choice_s=observer.choice_s)[1]
+
+
+def ramp_responses(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    rate_K_per_s: float,
+    size_K: float,
+    people: People | None = None,
+    *,
+    choice_s: float = 0.0,
+) -> tuple[Stimulus, ResponseTimes]:
+    """A ramp in K/s up to a size in K, and when people answer it; `choice_s` is what a choice adds, s."""
     played = _ramp(bench, channel, rate_K_per_s, size_K)
-    return _responses(played, observer, crowd_of(observer, bench.rig.site, people), choice_s=observer.choice_s)
+    return played, _responses(played, observer, crowd_of(observer, bench.rig.site, people), choice_s=choice_s)
 
 
 def method_of_levels(

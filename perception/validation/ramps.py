@@ -6,9 +6,10 @@ about six are played and felt.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -39,20 +40,28 @@ class Ramps:
     channel: Channel
     rate_K_per_s: float
     hold_s: float
+    every_size_K: tuple[float, ...] = tuple(SIZES_K.tolist())
     _played: dict[int, Stimulus] = field(default_factory=dict, repr=False)
 
     @property
     def sizes_K(self) -> Array:
         """Sizes of the ramps (sizes,), K."""
-        return SIZES_K[LONGEST_S * self.rate_K_per_s >= SIZES_K]
+        every = np.array(self.every_size_K)
+        return every[LONGEST_S * self.rate_K_per_s >= every]
 
     def played(self, k: int) -> Stimulus:
         """The ramp of the k-th size."""
         if k not in self._played:
-            size = float(SIZES_K[k])
+            size = self.every_size_K[k]
             end = np.ceil(100.0 * (size / self.rate_K_per_s + self.hold_s)) / 100.0
             self._played[k] = self.bench.play([ramp(self.channel, size, self.rate_K_per_s)], end)
         return self._played[k]
+
+    def peak_drive(self, k: int, observer: Observer) -> float:
+        """Largest drive of the ramps' own channel, in `observer.drive_unit`, of the k-th size."""
+        played = self.played(k)
+        received = played.received(observer.variable, self.channel)[0]
+        return float(receptor_drive(received, played.dt_s, self.channel, observer).max())
 
     def peak(self, k: int, observer: Observer, crowd: Crowd) -> Array:
         """Largest sensation of either channel above rest (people,), d′, of the k-th size."""
@@ -77,9 +86,26 @@ class Ramps:
 
 
 @lru_cache(maxsize=32)
-def ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -> Ramps:
+def ramps(
+    bench: Bench,
+    channel: Channel,
+    rate_K_per_s: float,
+    hold_s: float,
+    sizes_K: tuple[float, ...] = tuple(SIZES_K.tolist()),
+) -> Ramps:
     """The ramps of a procedure, kept with what was played of them."""
-    return Ramps(bench, channel, rate_K_per_s, hold_s)
+    return Ramps(bench, channel, rate_K_per_s, hold_s, sizes_K)
+
+
+def checked_sizes(procedure: str, sizes_K: Sequence[float], least: int) -> tuple[float, ...]:
+    """Sizes in K, rising and above 0; a ValueError says what is wrong with others."""
+    sizes = tuple(float(size) for size in sizes_K)
+    if len(sizes) < least:
+        raise ValueError(f"{procedure}: at least {least} sizes are needed, not {len(sizes)}: add to sizes_K")
+    if not all(a < b for a, b in pairwise((0.0, *sizes))):
+        listed = ", ".join(f"{size:g}" for size in sizes)
+        raise ValueError(f"{procedure}: sizes_K must rise from above 0 K, not {listed}: they are without sign")
+    return sizes
 
 
 def size_reaching(at: Callable[[int], Array], sizes_K: Array, target: float) -> Array:
