@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING
 
 from thermicon.perception.inference.tables import UNITS, number, signed
-from thermicon.perception.validation.comparisons import experiment_title
 from thermicon.perception.validation.conditioning import ConditionedRow, Conditioning
 from thermicon.perception.validation.magnitudes import CHANGES_K
 
@@ -15,6 +14,7 @@ from ..pages.conditioning_page import (
     TITLE,
     ablated_name,
     edge_text,
+    heading,
     magnitude_cells,
     missed_text,
     row_unit,
@@ -46,8 +46,7 @@ def show_conditioning(known: Conditioning) -> None:
         for each in known.rows:
             if each.row.experiment == key:
                 rows.add_row(*_row(each))
-        title = experiment_title(key)
-        show(f"{key}: {title}" if key[1:].isdigit() else title, rows, "")
+        show(heading(key), rows, "")
     show("Left out, these rows are missed:", *(f"  - {missed_text(each)}" for each in known.missed), "")
     show("Constants", _constants(known), MARKS, unmoved_text(known), edge_text(known), "")
     show("What each mechanism is worth (differences of log evidence under 2 say nothing)", _ablation(known), "")

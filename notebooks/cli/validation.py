@@ -112,10 +112,10 @@ def write_report(report: ValidationReport, folder: Path) -> None:
 
     Raises `OutputError` where the folder cannot be written.
     """
-    from thermicon.perception.validation.published_figure import published_figure
+    from thermicon.perception.validation.published_figure import NAME, published_figure
 
     from ..pages.blocks import as_html, as_markdown
-    from ..pages.validation_page import LEAD, TITLE, page
+    from ..pages.validation_page import TITLE, page
 
     blocks, pictures, lead = page(report), draw_pictures(report), _drawn(published_figure(report), "pdf")
     texts = {
@@ -133,7 +133,7 @@ def write_report(report: ValidationReport, folder: Path) -> None:
         (draft / FIGURES).mkdir()
         for name, held in pictures.items():
             (draft / FIGURES / f"{name}.png").write_bytes(held)
-        (draft / FIGURES / f"{LEAD}.pdf").write_bytes(lead)
+        (draft / FIGURES / f"{NAME}.pdf").write_bytes(lead)
         for name, text in texts.items():
             (draft / name).write_text(text, encoding="utf-8")
         _replace(draft, folder)

@@ -32,7 +32,7 @@ def conditioning_blocks(known: Conditioning) -> Iterator[MarkdownBlock]:
     yield Text(summary_text(known))
     head = ("row", "published ± 95 %", *(f"fitted, {name}" for name in NAMES), "left out [95 %]", "miss (SD)")
     for key in dict.fromkeys(each.row.experiment for each in known.rows):
-        yield Heading(f"{experiment_title(key)} ({key})" if key != experiment_title(key) else key, 3)
+        yield Heading(heading(key), 3)
         yield Grid(head, tuple(_row(each) for each in known.rows if each.row.experiment == key))
     yield Heading("Rows that are missed, and the mechanism suspected", 3)
     yield Bullets(tuple(missed_text(each) for each in known.missed))
@@ -57,6 +57,16 @@ def conditioning_blocks(known: Conditioning) -> Iterator[MarkdownBlock]:
     yield grid(("channel", *NAMES), [(channel, *cells) for channel, cells in magnitude_cells(known).items()])
 
 
+def heading(key: str) -> str:
+    """Name an experiment, with its key where there is open data under it.
+
+    >>> heading("E3"), heading("wrist")
+    ('E3: Method of limits on the forearm', 'Forced choice at the wrist')
+    """
+    title = experiment_title(key)
+    return f"{key}: {title}" if key[1:].isdigit() else title
+
+
 def summary_text(known: Conditioning) -> str:
     """State how many left-out rows are covered, and how wide the intervals are."""
     inside, rows = len(known.rows) - len(known.missed), len(known.rows)
@@ -65,8 +75,9 @@ def summary_text(known: Conditioning) -> str:
     return (
         f"Left out with its experiment, {inside} of {rows} published numbers lie inside the 95 % interval of their "
         f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {number(factor)} either way for {logs} "
-        f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Numbers without an "
-        "interval are fitted, and say nothing of prediction."
+        f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers say "
+        "nothing of prediction. Intervals of published numbers contain their standard error and the discrepancy that "
+        "the inference allows a model of this kind."
     )
 
 

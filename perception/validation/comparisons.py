@@ -7,7 +7,6 @@ error; other targets come with their prediction from temperature and the interva
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -107,9 +106,9 @@ def _of_target(section: Section, line: Line) -> Comparison:
         return Comparison(*start, None, note=note)
     reference, published = known[0], _sorted(*(end / known[0] for end in known[1:]))
     low, high = judged.predicted.low, judged.predicted.high
-    ends: Iterator[float] | tuple[None, None] = (None, None)
+    ends: tuple[float, float] | tuple[None, None] = (None, None)
     if low is not None and high is not None:
-        ends = iter(_sorted(low / reference, high / reference))
+        ends = _sorted(low / reference, high / reference)
     return Comparison(*start, value / reference, *ends, *published)
 
 

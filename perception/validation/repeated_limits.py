@@ -79,14 +79,16 @@ class RepeatedLimits:
     def _mean_log(self) -> Array:
         counted = np.isfinite(self.each_K)
         total, number = np.where(counted, self._logs(), 0.0).sum(axis=1), counted.sum(axis=1)
-        return np.divide(total, number, out=np.full(len(number), np.nan), where=number > 0)
+        means: Array = np.divide(total, number, out=np.full(len(number), np.nan), where=number > 0)
+        return means
 
     def _variance(self) -> Array:
         """Variance over trials (people,) of log thresholds; 0 where fewer than two count."""
         counted = np.isfinite(self.each_K)
         apart = np.where(counted, self._logs() - self._mean_log()[:, None], 0.0)
         number = counted.sum(axis=1) - 1
-        return np.divide((apart**2).sum(axis=1), number, out=np.zeros(len(number)), where=number > 0)
+        variance: Array = np.divide((apart**2).sum(axis=1), number, out=np.zeros(len(number)), where=number > 0)
+        return variance
 
     def __repr__(self) -> str:
         people, trials = self.each_K.shape

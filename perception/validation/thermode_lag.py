@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..sensation.bench import Bench
@@ -128,7 +129,7 @@ def thermode_lag(rig: Rig, *, rate_K_per_s: float = 2.5, size_K: float = 10.0, b
     return ThermodeLag(rig.name, rate_K_per_s, rising, falling, float(SHIFTS_S[best]), rms[best], largest)
 
 
-def _steady(time: Array, start_s: float, end_s: float) -> Array:
+def _steady(time: Array, start_s: float, end_s: float) -> NDArray[np.bool_]:
     """Rows in the last part of a flank."""
-    rows: Array = (time >= start_s + STEADY * (end_s - start_s)) & (time <= end_s)
+    rows: NDArray[np.bool_] = (time >= start_s + STEADY * (end_s - start_s)) & (time <= end_s)
     return rows
