@@ -106,10 +106,15 @@ def _of_target(section: Section, line: Line) -> Comparison:
         return Comparison(*start, None, note=note)
     reference, published = known[0], _sorted(*(end / known[0] for end in known[1:]))
     low, high = judged.predicted.low, judged.predicted.high
-    ends: tuple[float, float] | tuple[None, None] = (None, None)
-    if low is not None and high is not None:
-        ends = _sorted(low / reference, high / reference)
-    return Comparison(*start, value / reference, *ends, *published)
+    ends = None if low is None or high is None else _sorted(low / reference, high / reference)
+    return Comparison(
+        *start,
+        value / reference,
+        low=None if ends is None else ends[0],
+        high=None if ends is None else ends[1],
+        published_low=published[0],
+        published_high=published[1],
+    )
 
 
 def _reference(line: Line) -> tuple[float, float, float] | None:

@@ -20,9 +20,9 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..observer.variants import Model, Variable
+from ..procedures.classical import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
 from ..sensation.bench import Bench, ramp
 from .predicted import DRAWS, Asked, Predicted, predict
-from .procedures import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)

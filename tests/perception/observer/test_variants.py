@@ -17,8 +17,8 @@ from thermicon.perception.observer.variants import (
     receptor_column,
     receptor_input,
 )
+from thermicon.perception.procedures.classical import forced_choice
 from thermicon.perception.sensation.bench import Bench, ramp
-from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)

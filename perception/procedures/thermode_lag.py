@@ -41,6 +41,10 @@ class ThermodeLag:
     rms_K, largest_K
         What is left after that delay, and the largest difference without it, K.
 
+    See Also
+    --------
+    thermode_lag : plays a triangle on a thermode.
+
     """
 
     rig_name: str

@@ -27,8 +27,8 @@ from thermicon.perception.inference.experiments import PEAKS_C, STRIP_CM2, TWO_S
 from thermicon.perception.inference.laboratory import Laboratory
 from thermicon.perception.inference.results import load_constants
 from thermicon.perception.observer.observer import variant_records
-from thermicon.perception.validation.psychometric import PsychometricFunction
-from thermicon.perception.validation.repeated_limits import RepeatedLimits
+from thermicon.perception.procedures.psychometric import PsychometricFunction
+from thermicon.perception.procedures.repeated_limits import RepeatedLimits
 
 CHANNELS = ("cold", "warm")
 NOBODY_DIFFERS = (

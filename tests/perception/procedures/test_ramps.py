@@ -6,12 +6,12 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
 from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.procedures import classical
+from thermicon.perception.procedures.classical import method_of_limits
+from thermicon.perception.procedures.measured import crowd_of
+from thermicon.perception.procedures.ramps import SIZES_K, ramps, size_reaching
 from thermicon.perception.sensation.bench import Bench
-from thermicon.perception.validation import procedures
-from thermicon.perception.validation.measured import crowd_of
 from thermicon.perception.validation.plausible import plausible_observers
-from thermicon.perception.validation.procedures import method_of_limits
-from thermicon.perception.validation.ramps import SIZES_K, ramps, size_reaching
 
 
 @pytest.fixture(scope="module")
@@ -69,5 +69,5 @@ def test_slow_ramps_lack_the_sizes_that_take_too_long(bench: Bench) -> None:
 def test_the_start_of_a_ramp_is_enough_for_limits(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     people = draw_people(30, seed=5)
     soon = method_of_limits(Observer.load(), bench, "warm", people=people).each
-    monkeypatch.setattr(procedures, "EARLY", 1.0)
+    monkeypatch.setattr(classical, "EARLY", 1.0)
     assert soon.tolist() == method_of_limits(Observer.load(), bench, "warm", people=people).each.tolist()

@@ -12,7 +12,7 @@ from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.bench import Bench
-from .procedures import ramp_responses
+from .classical import ramp_responses
 
 PROCEDURE = "repeated limits"
 LN10 = math.log(10.0)
@@ -30,6 +30,10 @@ class RepeatedLimits:
         Change at the press (people, trials), K without sign; NaN for an anticipation, inf where nobody pressed.
     conditions
         What was played.
+
+    See Also
+    --------
+    repeated_limits : presses at the first change.
 
     """
 

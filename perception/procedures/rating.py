@@ -44,6 +44,10 @@ class Ratings:
     conditions
         What was played.
 
+    See Also
+    --------
+    magnitude_rating : rates ramps.
+
     """
 
     channel: Channel
@@ -122,9 +126,7 @@ def magnitude_rating(
     Raises
     ------
     ValueError
-        For fewer than two sizes, or sizes that do not rise.
-    RecordError
-        Where the records lack a constant of ratings.
+        For fewer than two sizes, or sizes that do not rise; and where the records lack a constant of ratings.
 
     Notes
     -----

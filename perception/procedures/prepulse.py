@@ -41,6 +41,10 @@ class CoolingAfterPulse:
     conditions
         What was played.
 
+    See Also
+    --------
+    cooling_after_pulse : plays the pulse and the fall.
+
     """
 
     peak_C: float
@@ -118,9 +122,7 @@ def cooling_after_pulse(
     Raises
     ------
     ValueError
-        For a peak that is not above the baseline.
-    RecordError
-        Where the records lack a constant of the task.
+        For a peak that is not above the baseline; and where the records lack a constant of the task.
 
     Notes
     -----

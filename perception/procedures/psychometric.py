@@ -43,6 +43,10 @@ class PsychometricFunction:
     conditions
         What was played, with the criterion.
 
+    See Also
+    --------
+    psychometric_function : asks whether ramps were felt.
+
     """
 
     channel: Channel
@@ -136,9 +140,7 @@ def psychometric_function(
     Raises
     ------
     ValueError
-        For fewer than three sizes, or sizes that do not rise.
-    RecordError
-        Where the records lack the criterion.
+        For fewer than three sizes, or sizes that do not rise; and where the records lack the criterion.
 
     See Also
     --------
