@@ -30,7 +30,7 @@ def conditioning_blocks(known: Conditioning) -> Iterator[MarkdownBlock]:
     """Yield the section: rows, misses, constants, ablation, onsets and sizes."""
     yield Heading(TITLE)
     yield Text(summary_text(known))
-    head = ("row", "published ± 95 %", *(f"fitted, {name}" for name in NAMES), "left out [95 %]", "miss (SD)")
+    head = ("row", "published [95 %]", *(f"fitted, {name}" for name in NAMES), "left out [95 %]", "miss (SD)")
     for key in dict.fromkeys(each.row.experiment for each in known.rows):
         yield Heading(heading(key), 3)
         yield Grid(head, tuple(_row(each) for each in known.rows if each.row.experiment == key))

@@ -56,6 +56,11 @@ MECHANISM_SOURCES = {
     "cord": "Leone et al. 2020 (way from cord to brain)",
 }
 """Sources of numbers that are not inferred, by mechanism."""
+VARIANT_SOURCES = {
+    "heat flow": "Shani & Lineykin 2021: that heat flow predicts sensation better",
+    "ring-de-dear": "Ring & de Dear 1991: static and dynamic discharge of receptors",
+}
+"""Sources of the other variants of the receptors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,7 +191,8 @@ def _shared(each: InferredConstant) -> bool:
 
 def _explained(run: AblatedRow) -> AblatedMechanism:
     if not run.without or run.without == "all of them":
-        return AblatedMechanism(run, "", ())
+        variant = () if run.without else (run.model, run.variable)
+        return AblatedMechanism(run, "", tuple(VARIANT_SOURCES[key] for key in variant if key in VARIANT_SOURCES))
     mechanism = find_mechanism(run.without)
     known = {each.name: each.source for each in load_constants()}
     sources = [known[name] for name in mechanism.fixed if name in known]
