@@ -123,7 +123,9 @@ def _mean_rating(channel: Channel) -> Record:
         value=math.exp(sum(logs) / len(logs)),
         channel=channel,
         site="forearm",
-        conditions="geometric mean over 1 to 5 strips of 1.96 cm²; sets only where the scatter of ratings is taken",
+        conditions=(
+            "geometric mean over 1 to 5 strips of 1.96 cm²; only sets where the scatter of ratings is taken to hold"
+        ),
         confidence="medium",
         use="calibrate",
     )
