@@ -12,11 +12,17 @@ from .identification.confusion import Confusion, confuse
 from .identification.measures import information_bits, proportion_correct
 from .observer.people import draw_people
 from .sensation.bench import Bench, Stimulus
-from .validation.procedures import choice_reaction_time, forced_choice, method_of_levels, method_of_limits, yes_no
+from .procedures.classical import choice_reaction_time, forced_choice, method_of_levels, method_of_limits, yes_no
+from .procedures.prepulse import CoolingAfterPulse, cooling_after_pulse
+from .procedures.psychometric import PsychometricFunction, psychometric_function
+from .procedures.rating import Ratings, magnitude_rating
+from .procedures.repeated_limits import RepeatedLimits, repeated_limits
+from .procedures.thermode_lag import ThermodeLag, thermode_lag
 from .comparison.distance_components import DistanceComponent, distance_components
 from .selection.request import ChoiceError, Selection
 from .selection.choose import Choice, choose
-from .selection.edit import Edit, NoEdit, cheapest_edit
+from .selection.edit import cheapest_edit
+from .selection.edit_result import Edit, NoEdit
 from .selection.search import SearchResult, search
 from .selection.robust import SetComparison, compare_sets
 from .ranking.ranking import IconScore, PairScore, Ranking
@@ -75,4 +81,14 @@ __all__ = [
     "method_of_limits",
     "method_of_levels",
     "choice_reaction_time",
+    "psychometric_function",
+    "PsychometricFunction",
+    "repeated_limits",
+    "RepeatedLimits",
+    "magnitude_rating",
+    "Ratings",
+    "cooling_after_pulse",
+    "CoolingAfterPulse",
+    "thermode_lag",
+    "ThermodeLag",
 ]

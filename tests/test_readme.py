@@ -202,7 +202,8 @@ def draw_mechanisms(folder: Path) -> None:
 
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
-    from thermicon.perception import perceive
+    from thermicon.perception import Observer, perceive
+    from thermicon.perception.identification.episodes import remembered
     from thermicon.perception.inference.effects import EFFECTS
     from thermicon.perception.inference.onset_stages import onset_stages
     from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
@@ -223,10 +224,11 @@ def draw_mechanisms(folder: Path) -> None:
         "narrowing": plot_narrowing(load_constants()),
     }
     rig, icons = Rig.load("thenar"), load_library("six-icons")
-    shown = [
-        perceive(simulate(icons[name], rig, tail_s=6.0)) for name in ("linear-cooling", "double-dip", "cold-to-warm")
-    ]
-    episodes_figure(shown).savefig(folder / "mechanism-episodes.png", dpi=90)
+    names = ("linear-cooling", "double-dip", "cold-to-warm")
+    percepts = [perceive(simulate(icons[name], rig, tail_s=6.0)) for name in names]
+    episodes = remembered(percepts)
+    icons_remembered = [(percept, episodes.listed(0, k)) for k, percept in enumerate(percepts)]
+    episodes_figure(icons_remembered, Observer.load().criterion).savefig(folder / "mechanism-episodes.png", dpi=90)
     for name, axes in drawn.items():
         figure = axes.get_figure(root=True)
         assert isinstance(figure, Figure)

@@ -75,7 +75,7 @@ Tracking = Annotated[
 ]
 NormName = Annotated[
     str,
-    typer.Option("--norm", metavar="NAME", help="How a difference over time is summarised: max, rms or integral."),
+    typer.Option("--norm", metavar="NAME", help="What is remembered: episodes, naming; traces by max, rms, integral."),
 ]
 Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Seconds simulated after the last corner.")]
 

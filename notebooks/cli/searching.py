@@ -70,8 +70,10 @@ def search_command(
     if objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     check_tracking(tracking)
-    if norm not in ("max", "rms", "integral"):
-        raise usage(f"{norm!r} is not one of max, rms, integral", "--norm")
+    from thermicon.perception.observer.channels import NORMS
+
+    if norm not in NORMS:
+        raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
         check_separate([file], [output])

@@ -24,6 +24,7 @@ HOW = {
     "reference area": "the area of the published thresholds; measure thresholds on your own display instead",
     "slope of sensation": "amplitude difference thresholds, at several amplitudes",
     "memory noise": "let people name a few icons from memory and count",
+    "share of the scatter of ratings": "let people name icons that differ in intensity alone, from memory",
     "transducer exponent": "how fast the share of reports rises with the size of a change near threshold",
     "gain noise": "the scatter of one person's repeated thresholds, beyond that of the criterion",
     "criterion of speeded answers": "false alarms and reaction times of the same people",

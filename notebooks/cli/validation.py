@@ -7,11 +7,11 @@ import json
 import shutil
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ..files.outputs import OutputError, check_folder
+from ..files.outputs import STDOUT, OutputError, check_folder, check_output, complete_or_absent
 from ..text.messages import note, usage
 
 if TYPE_CHECKING:
@@ -37,6 +37,10 @@ def validate_command(
         ),
     ] = 64,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
+    json_out: Annotated[
+        Path | None,
+        typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON; - prints it."),
+    ] = None,
 ) -> None:
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
@@ -54,15 +58,23 @@ def validate_command(
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if output is not None:
         check_folder(output)
+    if json_out is not None:
+        check_output(json_out, (), "JSON")
     from thermicon.perception.validation.validate import validate
 
     from ..text.messages import progress_bar
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
-    if output is None:
+    if json_out == STDOUT:
+        typer.echo(json_text(report), nl=False)
+    elif json_out is not None:
+        with complete_or_absent(json_out) as draft:
+            draft.write_text(json_text(report), encoding="utf-8")
+        note(f"wrote {json_out}")
+    if output is None and json_out != STDOUT:
         show_report(report)
-    else:
+    if output is not None:
         write_report(report, output)
         for name in (PAGE, TEXT, DATA):
             note(f"wrote {output / name}")
@@ -74,7 +86,9 @@ def show_report(report: ValidationReport) -> None:
 
     from ..pages.validation_page import NAMES, number_text, unit_text
     from ..text.tables import show, table
+    from .conditioning_tables import show_conditioning
 
+    show_conditioning(report.conditioning)
     mark = {"holds": "✓", "misses": "✗", "shown": " "}
     for section in report.sections:
         made = table("", "published", *HEADS, numbers=HEADS)
@@ -88,7 +102,7 @@ def show_report(report: ValidationReport) -> None:
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
         "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
-        "predictions, not measurements; constants were inferred from rows marked fitted, and from no other row. -o DIR "
+        "predictions, not measurements; rows marked fitted are among the experiments above. -o DIR "
         "writes sources, intervals, sizes of the misses, suspected mechanisms and figures.",
     )
 
@@ -98,16 +112,16 @@ def write_report(report: ValidationReport, folder: Path) -> None:
 
     Raises `OutputError` where the folder cannot be written.
     """
-    from thermicon.perception.validation.validate_file import report_file
+    from thermicon.perception.validation.published_figure import NAME, published_figure
 
     from ..pages.blocks import as_html, as_markdown
     from ..pages.validation_page import TITLE, page
 
-    blocks, pictures = page(report), draw_pictures(report)
+    blocks, pictures, lead = page(report), draw_pictures(report), _drawn(published_figure(report), "pdf")
     texts = {
         PAGE: as_html(blocks, TITLE, pictures),
         TEXT: as_markdown(blocks, FIGURES),
-        DATA: json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n",
+        DATA: json_text(report),
     }
     made = not folder.exists()
     try:
@@ -119,6 +133,7 @@ def write_report(report: ValidationReport, folder: Path) -> None:
         (draft / FIGURES).mkdir()
         for name, held in pictures.items():
             (draft / FIGURES / f"{name}.png").write_bytes(held)
+        (draft / FIGURES / f"{NAME}.pdf").write_bytes(lead)
         for name, text in texts.items():
             (draft / name).write_text(text, encoding="utf-8")
         _replace(draft, folder)
@@ -132,18 +147,28 @@ def write_report(report: ValidationReport, folder: Path) -> None:
 
 def draw_pictures(report: ValidationReport) -> dict[str, bytes]:
     """Every figure of the report as PNG, by name."""
+    from thermicon.perception.validation.published_figure import CAPTION, NAME, published_figure
     from thermicon.perception.validation.tradeoffs import FEWEST
     from thermicon.perception.validation.validate_maps import FIGURES as DRAWN
     from thermicon.perception.validation.validate_maps import TRADE_OFF
 
-    wanted = [one for those in DRAWN.values() for one in those]
+    wanted = [(NAME, CAPTION, published_figure), *(one for those in DRAWN.values() for one in those)]
     wanted += [TRADE_OFF] if report.draws >= FEWEST else []
-    return {name: _png(draw(report)) for name, _, draw in wanted}
+    return {name: _drawn(draw(report), "png") for name, _, draw in wanted}
 
 
-def _png(figure: Figure) -> bytes:
+def json_text(report: ValidationReport) -> str:
+    """Every number of the report as JSON."""
+    from thermicon.perception.validation.validate_file import report_file
+
+    return json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def _drawn(figure: Figure, kind: Literal["png", "pdf"]) -> bytes:
+    """A figure as a file, without a date, so that the same report gives the same bytes."""
     held = io.BytesIO()
-    figure.savefig(held, format="png", dpi=DPI, metadata={"Software": None})
+    nothing = {"Software": None} if kind == "png" else {"CreationDate": None, "Producer": None, "Creator": None}
+    figure.savefig(held, format=kind, dpi=DPI, metadata=nothing)
     return held.getvalue()
 
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.validation.published_figure import CAPTION
+from thermicon.perception.validation.published_figure import NAME as LEAD
 from thermicon.perception.validation.tradeoffs import FEWEST, STRONG, TradeOff
 from thermicon.perception.validation.validate import Judged, Line, Section, ValidationReport, variant_name
 from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF
 from thermicon.perception.validation.verdicts import criterion_of_row, plain, value_text
 
 from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Picture, Text
+from .conditioning_page import conditioning_blocks
 
 TITLE = "Validation: predicted and published values"
 NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
@@ -18,7 +21,13 @@ NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
 
 def page(report: ValidationReport) -> list[MarkdownBlock]:
     """Return all blocks of the page, starting with the table of targets."""
-    return [*_head(report), *_better(report), *(b for s in report.sections for b in _section(s)), *_trades(report)]
+    return [
+        *_head(report),
+        *_better(report),
+        *conditioning_blocks(report.conditioning),
+        *(b for s in report.sections for b in _section(s)),
+        *_trades(report),
+    ]
 
 
 def number_text(line: Line, one: Judged, unit: str = "") -> str:
@@ -67,11 +76,12 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
 
 def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
     yield Heading(TITLE, 1)
+    yield Picture(LEAD, CAPTION)
     yield Text(
-        "Every number here is compared with a published result. The observer's constants were inferred from the rows "
-        "marked fitted, together with other experiments, and from no other row: all others are predictions. No "
-        "parameter is fitted here, and there is no target for the number of passes: each miss is shown with its size "
-        "and its suspected mechanism."
+        "Every number here is compared with a published result. The observer's constants were inferred from ten "
+        "experiments, to which the rows marked fitted belong; each of these experiments is also predicted from the "
+        "others. All other rows are predictions. No parameter is fitted here, and there is no target for the number of "
+        "passes: each miss is shown with its size and its suspected mechanism."
     )
     yield Text(
         "Three variants are compared: receptors that respond to temperature and receptors that respond to heat flow, "

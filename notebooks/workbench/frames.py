@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from thermicon.icons.number_text import percent, signed
+from thermicon.icons.number_text import signed
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -181,11 +181,13 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         curves.take("warm", "warm", percept.psi_warm, "warm", DASHED, 1.75),
     ]
     marks = [
-        _mark(moment.time_s, moment.label, moment.channel if moment.kind != "onset" else None, None)
+        _mark(moment.time_s, f"{moment.label}, p {percept.detected_probability:.2f}", None, None)
+        if moment.kind == "onset"
+        else _mark(moment.time_s, moment.label, moment.channel, None)
         for moment in drawing.moments
     ]
-    share = percent(percept.detected_probability)
-    label = f"sensation (d′), {percept.clock} clock; nominal person: reported in {share} of trials"
+    # A label that changed with the icon would have the page build its panels anew.
+    label = f"sensation (d′) of the nominal person, {percept.clock} clock"
     return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False)
 
 

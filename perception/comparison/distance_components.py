@@ -26,8 +26,19 @@ NOTICEABLE = 1.0
 class DistanceComponent:
     """One component of the distance of two icons, in d′ from memory; `a` and `b` are its values for each icon.
 
-    `a` and `b` are of the strongest episode of each icon, in multiples of threshold (intensity), those per second
-    (rate) or s (duration, pause); None for an icon that is not felt, and for `direction`, what only one icon has.
+    Attributes
+    ----------
+    name
+        `direction` (what only one icon has), `intensity`, `rate`, `duration` or `pause`.
+    value
+        The part of the d′ of the pair that it carries.
+    a, b
+        Values of the strongest episode of each icon, in multiples of threshold (intensity), those per second (rate) or
+        s (duration, pause); None for an icon that is not felt, and for `direction`.
+
+    See Also
+    --------
+    distance_components : Computes all five.
 
     Examples
     --------

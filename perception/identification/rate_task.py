@@ -20,7 +20,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, TRACE_NORMS, Norm, TraceNorm, trace_norm
+from ..observer.channels import CHANNELS, MEMORY_NORMS, TRACE_NORMS, Norm, TraceNorm, trace_norm
 from ..observer.observer import Observer
 from ..observer.variants import source_of
 from ..sensation.bench import Bench, Stimulus, ramp
@@ -30,8 +30,6 @@ from .distance import memory_from_task, percept_distances
 from .episodes import Episodes, episode_distances
 
 TAIL_S = 10.0
-MEMORY_NORMS: tuple[Norm, ...] = ("episodes", *TRACE_NORMS)
-"""Norms with a memory noise of their own; both forms of episodes share one."""
 LOG_NOISE = (math.log(1e-3), math.log(20.0))
 
 

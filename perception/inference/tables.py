@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from thermicon.circuit.records import Record
 
-from ..identification.rate_task import MEMORY_NORMS
+from ..observer.channels import MEMORY_NORMS
 from ..observer.mechanisms import find_mechanism
 from ..observer.observer import load_thresholds, observer_records
 from ..observer.people import people_records

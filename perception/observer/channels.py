@@ -13,6 +13,8 @@ TRACE_NORMS: tuple[TraceNorm, ...] = get_args(TraceNorm)
 NORMS: tuple[Norm, ...] = get_args(Norm)
 """What is remembered of an icon: its episodes, in logarithms or as ratings that are named directly, or its traces."""
 USUAL_NORM: Norm = "episodes"
+MEMORY_NORMS: tuple[Norm, ...] = ("episodes", *TRACE_NORMS)
+"""Norms with a memory noise of their own; both forms of episodes share one."""
 
 
 def check_norm(norm: str) -> Norm:

@@ -102,7 +102,9 @@ class Observer:
     lapse
         Share of trials in which any name is given, 0–1.
     memory_max, memory_rms, memory_integral
-        Noise of identification for each norm of distance, log units of drive.
+        Noise of remembered traces for each norm, log units of drive.
+    memory
+        How well episodes are remembered.
     p
         Exponent of sensation near threshold.
     gain_noise

@@ -7,35 +7,31 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 
-from ..identification.episodes import remembered
-from ..observer.observer import Observer
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..identification.episodes import Episode
     from ..sensation.percept import Percept
 
 HEADROOM = 1.42
 """Room above the highest peak for the words of an episode, in multiples of it."""
 
 
-def plot_episodes(percept: Percept, observer: Observer | None = None, ax: Axes | None = None) -> Axes:
-    """Draw both sensations with the episodes of a nominal person as bands; return the axes.
+def plot_episodes(percept: Percept, episodes: Sequence[Episode], criterion: float, ax: Axes | None = None) -> Axes:
+    """Draw both sensations, the criterion (d′), and what is remembered of them as bands; return the axes.
 
     The length of an episode that the end of the trace cuts is not remembered, and not written.
     """
-    person = Observer.load() if observer is None else observer
     axes = new_axes(ax, (6.0, 3.0))
     axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
     axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
-    axes.axhline(person.criterion, color="0.35", lw=0.9, ls=":", label="criterion")
-    highest = max(float(percept.psi_cold.max()), float(percept.psi_warm.max()), 1.5 * person.criterion)
-    episodes = remembered([percept], person).listed(0, 0)
+    axes.axhline(criterion, color="0.35", lw=0.9, ls=":", label="criterion")
+    highest = max(float(percept.psi_cold.max()), float(percept.psi_warm.max()), 1.5 * criterion)
     for k, episode in enumerate(episodes):
         psi = percept.psi_cold if episode.channel == "cold" else percept.psi_warm
         colour = COOL if episode.channel == "cold" else WARM
-        felt = (percept.time_s >= episode.start_s) & (psi >= 0.5 * person.criterion)
+        felt = (percept.time_s >= episode.start_s) & (psi >= 0.5 * criterion)
         after = percept.time_s[(percept.time_s >= episode.start_s) & ~felt]
         end_s = float(after[0]) if after.size else float(percept.time_s[-1])
         if k + 1 < len(episodes):
@@ -52,14 +48,14 @@ def plot_episodes(percept: Percept, observer: Observer | None = None, ax: Axes |
     return axes
 
 
-def episodes_figure(percepts: Sequence[Percept], observer: Observer | None = None) -> Figure:
-    """Draw the episodes of several icons, one below the other."""
+def episodes_figure(icons: Sequence[tuple[Percept, Sequence[Episode]]], criterion: float) -> Figure:
+    """Draw several icons with their episodes, one below the other."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6.4, 2.5 * len(percepts) + 0.4), layout="constrained")
-    panels = figure.subplots(len(percepts), sharex=True, squeeze=False)[:, 0]
-    for percept, axes in zip(percepts, panels, strict=True):
-        plot_episodes(percept, observer, axes)
+    figure = Figure(figsize=(6.4, 2.5 * len(icons) + 0.4), layout="constrained")
+    panels = figure.subplots(len(icons), sharex=True, squeeze=False)[:, 0]
+    for (percept, episodes), axes in zip(icons, panels, strict=True):
+        plot_episodes(percept, episodes, criterion, axes)
         axes.label_outer()
     panels[0].legend(fontsize="small", loc="upper right", ncols=3, frameon=False, bbox_to_anchor=(1.0, 1.16))
     return figure

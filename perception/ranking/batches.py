@@ -159,9 +159,9 @@ def run(job: Job, number: int) -> BatchResult:
     first, second = np.triu_indices(len(job.icons), 1)
     first_people = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
     return BatchResult(
-        detected=felt.detection.probability,
-        cold_share=felt.detection.cold_share,
-        reported=felt.detection.reported_sum(),
+        detected=felt.detected.probability,
+        cold_share=felt.detected.cold_share,
+        reported=felt.detected.reported_sum(),
         d_prime=d_prime[:, first, second],
         confusion=named,
         correct=np.diagonal(named, axis1=1, axis2=2).copy(),

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..observer.observer import check_norm
-from ..selection.edit import Edit, NoEdit
+from ..selection.edit_result import Edit, NoEdit
 
 if TYPE_CHECKING:
     from ..identification.intervals import Interval, ParameterIntervals

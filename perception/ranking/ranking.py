@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from ..identification.carry_over import CarryOver
     from ..selection.choose import Choice
-    from ..selection.edit import Edit, NoEdit
+    from ..selection.edit_result import Edit, NoEdit
 
 
 PERCENTAGE_POINT = 0.01

@@ -151,4 +151,4 @@ def population_response(
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
-    return respond(played, crowd, observer, [norm]), durations
+    return respond(played, crowd, observer, [norm], detection=False), durations

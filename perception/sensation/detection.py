@@ -60,7 +60,8 @@ class Detection:
             raise ValueError(UNTIMED)
         rows = self.reported.reshape(-1, self.reported.shape[-1])
         time: Array = self.dt_s * np.arange(rows.shape[1], dtype=np.float64)
-        found = [time_of(row, time, 0.5 * float(row[-1])) if row[-1] >= FELT_FROM else math.nan for row in rows]
+        half = zip(rows, self.felt.reshape(-1).tolist(), strict=True)
+        found = [time_of(row, time, 0.5 * float(row[-1])) if felt else math.nan for row, felt in half]
         return np.array(found).reshape(self.probability.shape)
 
     def reported_sum(self) -> Array:
@@ -73,6 +74,8 @@ class Detection:
     @property
     def channel(self) -> NDArray[np.int64]:
         """Channel (...,) that most reports go by: −1 not felt, 0 cold, 1 warm."""
+        if self.reported is None:
+            raise ValueError(UNTIMED)
         return np.where(self.felt, np.where(self.cold_share >= 0.5, 0, 1), -1).astype(np.int64)
 
 
@@ -99,7 +102,7 @@ def detect(
     decision_s: ArrayLike | None = None,
     times: bool = True,
 ) -> Detection:
-    """Run the yes/no procedure on sensations of shape (..., n_time), with response `times` or without, which is faster.
+    """Run the yes/no procedure on sensations of shape (..., n_time), with response `times` or without.
 
     What is detected is the change of sensation from the first sample, whose gain differs from presentation to
     presentation; the window of a crossing is that of the sensations. The criteria are multiples of the observer's; the

@@ -11,10 +11,10 @@ from dataclasses import replace
 
 from thermicon.circuit.records import Record, Table, dump_records
 
-from ..identification.rate_task import MEMORY_NORMS, memory_noise, memory_record
+from ..identification.rate_task import memory_noise, memory_record
 from ..inference.evidence import load_evidence
 from ..inference.results import Constant, load_constants
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, MEMORY_NORMS, Channel
 from ..observer.observer import DATA, Observer, load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import neutral_flux
@@ -123,7 +123,9 @@ def _mean_rating(channel: Channel) -> Record:
         value=math.exp(sum(logs) / len(logs)),
         channel=channel,
         site="forearm",
-        conditions="geometric mean over 1 to 5 strips of 1.96 cm²; sets only where the scatter of ratings is taken",
+        conditions=(
+            "geometric mean over 1 to 5 strips of 1.96 cm²; only sets where the scatter of ratings is taken to hold"
+        ),
         confidence="medium",
         use="calibrate",
     )

@@ -20,9 +20,9 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..observer.variants import Model, Variable
+from ..procedures.classical import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
 from ..sensation.bench import Bench, ramp
 from .predicted import DRAWS, Asked, Predicted, predict
-from .procedures import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
@@ -81,10 +81,7 @@ def limits(
     said = f"display ramp of 1 K/s, {LIMITS[site][1]:g} cm²{aged}"
     crowd = draw_people(people, seed, age_years=age_years)
 
-    def answer(channel: Channel, observer: Observer) -> float:
-        return float(method_of_limits(observer, bench, channel).each[0])
-
-    asked = [Asked("limits threshold", channel, "K", said, partial(answer, channel)) for channel in CHANNELS]
+    asked = [Asked("limits threshold", channel, "K", said, partial(_limits, bench, channel)) for channel in CHANNELS]
     made = []
     nominal = Observer.load(variable=variable, model=model)
     for one, channel in zip(
@@ -144,13 +141,10 @@ def methods(
     def choice(channel: Channel, observer: Observer) -> float:
         return float(forced_choice(observer, bench, channel).each[0])
 
-    def steady(channel: Channel, observer: Observer) -> float:
-        return float(method_of_limits(observer, bench, channel).each[0])
-
     named: list[tuple[str, Callable[[Channel, Observer], float]]] = [
         ("forced choice", choice),
         ("levels", levels),
-        ("limits", steady),
+        ("limits", partial(_limits, bench)),
     ]
     asked = [Asked(f"threshold by {name}", c, "K", said, partial(by, c)) for name, by in named for c in CHANNELS]
     return predict("method", asked, variable, model, draws, seed)
@@ -160,6 +154,12 @@ def methods(
 def _bench(rig: str, area_cm2: float, surface: str, baseline_C: float) -> Bench:
     made = Rig.load(rig).with_(**{"contact.area_cm2": area_cm2})
     return Bench(made, baseline_C, "display" if surface == "display" else "skin")
+
+
+@lru_cache(maxsize=512)
+def _limits(bench: Bench, channel: Channel, observer: Observer) -> float:
+    """Limits of the nominal person, which two experiments on the hand ask for."""
+    return float(method_of_limits(observer, bench, channel).each[0])
 
 
 def _threshold(bench: Bench, channel: Channel, observer: Observer, rate: float) -> float:

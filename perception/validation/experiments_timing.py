@@ -16,13 +16,13 @@ from thermicon.circuit import Rig
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Model, Variable
+from ..procedures.classical import yes_no
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import Percept, perceive
 from ..sensation.receptors import receptor_drive
 from ..sensation.sensation import sensation
 from .predicted import DRAWS, Asked, Predicted, predict
-from .procedures import yes_no
 from .radiant import Warming, radiant_warming
 
 PULSE_K, PULSE_S = 4.0, 8.0

@@ -84,10 +84,11 @@ class Shown:
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer) -> Array:
-            felt = respond(thin, few, observer, [norm])
+            felt = respond(thin, few, observer, [norm], detection=False)
             return identify(felt, norm, few, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        whole = identify(respond(played, self.crowd, nominal, [norm]), norm, self.crowd, nominal, self.seed, SAMPLES)[1]
+        felt = respond(played, self.crowd, nominal, [norm], detection=False)
+        whole = identify(felt, norm, self.crowd, nominal, self.seed, SAMPLES)[1]
         others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
         drawn = tuple(in_order(thinly, others))
         kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))

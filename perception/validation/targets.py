@@ -25,7 +25,10 @@ PAIRED = APPLY[4:]
 
 @dataclass(frozen=True, slots=True)
 class Published:
-    """What was published for a row: `value`, `low`, `high` in `unit` (None: a direction only), as text and whence."""
+    """What was published for a row: `value`, `low`, `high` in `unit` (None: a direction only), as text and whence.
+
+    `fitted` marks what the constants were inferred from, which is no prediction.
+    """
 
     text: str
     source: str
@@ -34,6 +37,7 @@ class Published:
     value: float | None = None
     low: float | None = None
     high: float | None = None
+    fitted: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +141,8 @@ def published_for(row: Row, table: Table) -> Published:
         cold, warm = (_record(row, table, channel) for channel in ("cold", "warm"))
         if cold.channel != "both":
             value = combined(apply, cold.central, warm.central)
-            return Published(_said(row, _digits(value)) + _fitted(cold), cold.source, _under(cold), "1", value)
+            text = _said(row, _digits(value)) + _fitted(cold)
+            return Published(text, cold.source, _under(cold), "1", value, fitted=cold.use == "calibrate")
     record = _record(row, table, row.channel if row.channel in ("cold", "warm") else "")
     unit = "" if record.unit in ("1", "sign") else f" {record.unit}"
     low, high = record.low, record.high
@@ -147,7 +152,8 @@ def published_for(row: Row, table: Table) -> Published:
     span = f"{_digits(low)} to {_digits(high)}" if low is not None and high is not None else ""
     text = f"{number} [{span}]" if number and span else number or span
     said = _said(row, f"{text}{unit}") + _fitted(record)
-    return Published(said, record.source, _under(record), record.unit, record.value, low, high)
+    fitted = record.use == "calibrate"
+    return Published(said, record.source, _under(record), record.unit, record.value, low, high, fitted)
 
 
 def combined(apply: str, cold: float, warm: float) -> float:
@@ -170,7 +176,7 @@ def _said(row: Row, number: str) -> str:
 
 
 def _fitted(record: Record) -> str:
-    """A mark for what the constants were inferred from, which is no prediction."""
+    """The mark of what the constants were inferred from."""
     return ", fitted" if record.use == "calibrate" else ""
 
 

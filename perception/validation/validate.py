@@ -15,6 +15,7 @@ from thermicon.circuit.records import Table
 
 from ..observer.observer import load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable
+from .conditioning import Conditioning, load_conditioning
 from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
 from .tradeoffs import Answers, TradeOff, trade_offs
@@ -80,6 +81,8 @@ class ValidationReport:
         Targets with their verdicts.
     trade_offs
         Pairs of targets of every variant, in the order of VARIANTS.
+    conditioning
+        What the constants were inferred from, with left-out predictions.
     evidence
         Curves and answers behind the figures.
 
@@ -96,6 +99,7 @@ class ValidationReport:
     sections: tuple[Section, ...]
     trade_offs: tuple[tuple[TradeOff, ...], ...]
     evidence: Evidence
+    conditioning: Conditioning
 
     def counts(self, variant: int) -> tuple[int, int]:
         """How many judged rows hold for a variant, of how many."""
@@ -187,7 +191,8 @@ def assemble(
             lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, *variant) for variant in VARIANTS)))
         sections.append(Section(target, tuple(lines)))
     pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIANTS)))
-    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence)
+    known_from = load_conditioning()
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, known_from)
 
 
 def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:

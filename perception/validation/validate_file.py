@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from ..observer.variants import VARIANTS
+from .conditioning_file import conditioning_file
 from .predicted import Predicted
 from .tradeoffs import TradeOff
 from .validate import Judged, Line, ValidationReport, variant_name
@@ -52,6 +53,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             for one in evidence.alike
         ],
         "predictions": [_predicted(one) for one in evidence.predicted],
+        "conditioning": conditioning_file(report.conditioning),
     }
 
 
@@ -68,6 +70,7 @@ def _line(line: Line) -> dict[str, Any]:
             "unit": was.unit,
             "source": was.source,
             "conditions": was.conditions,
+            "fitted": was.fitted,
         },
         "criterion": {"text": criterion_of_row(line.row, was), "source": line.row.source},
         "better": line.nearer or None,

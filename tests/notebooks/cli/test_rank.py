@@ -48,7 +48,7 @@ def ranked(cli: Cli, two: Path, tmp_path: Path) -> dict[str, Any]:
 
 def test_the_json_has_the_promised_keys(ranked: dict[str, Any]) -> None:
     assert set(ranked) >= TOP
-    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["norm"]) == ("thenar", 3, 20, "max")
+    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["norm"]) == ("thenar", 3, 20, "episodes")
     assert ranked["tracking"] == "display"  # what control display asks for
     for icon in ranked["icons"]:
         assert set(icon) >= ICON

@@ -25,8 +25,8 @@ def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Pat
     assert words.startswith("Two for a test parameter interval correct bits correct low–high ")
     assert f"Measure these first; all others influence the prediction less: - {frame['parameter'][0]}" in words
     assert "(total Sobol indices); beside them the proportion correct at the low and at the high end" in words
-    assert "predictions for 3 virtual people on the thenar rig (seed 0, max norm), " in words
-    assert {"memory noise (max)", "contact resistance"} <= set(frame["parameter"])
+    assert "predictions for 3 virtual people on the thenar rig (seed 0, episodes norm), " in words
+    assert {"memory noise (episodes)", "contact resistance"} <= set(frame["parameter"])
     assert picture.stat().st_size > 10_000
     assert not list(tmp_path.glob(".*"))
 
@@ -40,7 +40,7 @@ def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path) -> None:
 def test_a_what_if(cli: Cli, two: Path) -> None:
     printed = cli("sensitivity", two, *QUICK, "--set", "contact.area_cm2=4")
     words = " ".join(printed.stdout.split())
-    assert "on the thenar rig with contact.area_cm2=4 (seed 0, max norm)" in words
+    assert "on the thenar rig with contact.area_cm2=4 (seed 0, episodes norm)" in words
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ def test_a_what_if(cli: Cli, two: Path) -> None:
         (("--samples", 10), "'--samples': 10 is not a power of 2, which sobol needs, such as 64"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
         (("--method", "luck"), "'--method': 'luck' is not one of sobol"),
-        (("--norm", "mean"), "'--norm': 'mean' is not one of max, rms, integral"),
+        (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming, max, rms, integral"),
     ],
 )
 def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
@@ -76,13 +76,14 @@ def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path
 
 def test_nothing_that_moves_and_what_to_do() -> None:
     from thermicon.notebooks.cli.sensitivity import HOW, how, sentences
-    from thermicon.perception import Sensitivity
+    from thermicon.perception import NORMS, Sensitivity
     from thermicon.perception.sensation.parameters import observer_parameters
     from thermicon.perception.sensitivity.simulation_grid import OTHERS
 
     still = Sensitivity("thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
     assert sentences(still)[0] == "None of these parameters influences the prediction."
     assert "1 virtual person on the thenar rig" in sentences(still)[-1]
-    known = {parameter.name.split(" (")[0] for parameter in observer_parameters()} | set(OTHERS)
+    every = (parameter for norm in NORMS for parameter in observer_parameters(norm))
+    known = {parameter.name.split(" (")[0] for parameter in every} | set(OTHERS)
     assert set(HOW) <= known
     assert how("integration time constant") == ""

@@ -15,7 +15,9 @@ from thermicon.notebooks.cli.main import validation
 from thermicon.notebooks.cli.validation import draw_pictures, show_report, write_report
 from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.pages.blocks import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
+from thermicon.notebooks.pages.conditioning_page import TITLE
 from thermicon.notebooks.pages.validation_page import page, target_rows
+from thermicon.perception.inference.tables import number
 from thermicon.perception.validation.validate import ValidationReport, validate
 
 NOTEBOOK = Path(__file__).parents[3] / "notebooks/07_validation.ipynb"
@@ -76,10 +78,53 @@ def test_the_table_of_targets_comes_first(report: ValidationReport) -> None:
     assert [row[0].text for row in first.rows] == [str(k) for k in range(1, 9)]
     assert second.columns[-1] == "better"
     assert list(first.rows) == target_rows(report)
-    titles = [block.text for block in blocks if isinstance(block, Heading)]
-    assert titles[1].startswith("Temperature or heat flow")
+    titles = [block.text for block in blocks if isinstance(block, Heading) and block.level < 3]
+    assert titles[1:3] == ["Temperature or heat flow: which variable explains which result", TITLE]
     assert titles[-1] == "Trade-offs"
-    assert [title[0] for title in titles[2:-1]] == [str(k) for k in range(1, 9)]
+    assert [title[0] for title in titles[3:-1]] == [str(k) for k in range(1, 9)]
+
+
+def test_the_page_leads_with_every_published_number(report: ValidationReport, written: Path) -> None:
+    first = next(block for block in page(report) if isinstance(block, Picture))
+    assert page(report)[1] == first
+    assert first.name == "published-predicted"
+    assert (written / "figures/published-predicted.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_the_evidence_behind_the_constants_is_on_the_page(report: ValidationReport, written: Path) -> None:
+    text = (written / "validation.md").read_text(encoding="utf-8").split(f"## {TITLE}")[1].split("\n## 1 ")[0]
+    known = report.conditioning
+    for each in known.rows:
+        label = each.row.label.removesuffix(", both")
+        (line,) = [one for one in text.splitlines() if re.match(rf"\| {re.escape(label)}( \([^|]*\))? \|", one)]
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        assert cells[1].startswith(number(each.row.published))
+        assert cells[2:5] == [number(one) for one in (each.row.fitted, each.row.heat_flow, each.row.ring_de_dear)]
+        assert cells[5].startswith(f"{'✓' if each.covered else '✗'} {number(each.row.left_out)} [")
+    for each in known.constants:
+        assert f"| {each.constant.name} |" in text
+    for each in known.ablation:
+        assert f"without {each.run.without}" in text
+        assert all(source.partition("|")[0] in text for source in each.sources)
+    for stages in known.stages:
+        assert f"| {stages.icon} | {stages.channel} | {stages.receptor_s:.2f} |" in text
+    assert "3 K: d′ 17.7; 10 K: 34 steps" in text
+
+
+def test_json_to_a_file_or_to_stdout(
+    report: ValidationReport, cli: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("thermicon.perception.validation.validate.validate", lambda **_: report)
+    said = cli("validate", "--json", tmp_path / "v.json")
+    assert said.exit_code == 0  # type: ignore[attr-defined]
+    assert "wrote" in said.stderr  # type: ignore[attr-defined]
+    assert TITLE in said.stdout  # type: ignore[attr-defined]
+    printed = cli("validate", "--json", "-")
+    assert printed.stdout == (tmp_path / "v.json").read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    assert set(json.loads(printed.stdout)) >= {"targets", "conditioning"}  # type: ignore[attr-defined]
+    missing = cli("validate", "--json", tmp_path / "nowhere" / "v.json")
+    assert missing.exit_code == 1  # type: ignore[attr-defined]
+    assert "nowhere" in missing.stderr  # type: ignore[attr-defined]
 
 
 @pytest.mark.slow
@@ -112,6 +157,9 @@ def test_the_table_on_a_terminal(report: ValidationReport, capsys: pytest.Captur
     for section in report.sections:
         assert f"{section.target.number} {section.target.title}" in said
     assert "✓ holds, ✗ misses" in said
+    assert "49 of 54 published numbers" in " ".join(said.split())
+    for each in report.conditioning.missed:
+        assert each.suspected.split(":")[0] in " ".join(said.split())
     assert max(len(line) for line in said.splitlines()) <= 80
 
 
@@ -174,8 +222,8 @@ def test_every_cell_of_the_notebook_runs_and_shows_something(tmp_path: Path) -> 
     kinds = [{kind for output in cell.outputs for kind in output.get("data", {"text": 1})} for cell in code]
     assert kinds[0] == set()
     assert all(kinds[1:])
-    assert sum("image/png" in kind for kind in kinds) == 9
-    assert len(nbformat.writes(notebook)) < 300_000
+    assert sum("image/png" in kind for kind in kinds) == 10
+    assert len(nbformat.writes(notebook)) < 450_000
 
 
 @pytest.mark.slow

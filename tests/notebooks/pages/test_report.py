@@ -121,7 +121,7 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
         assert " ".join(str(icon)[str(icon).index("icon ") :].split()) in words
     low, high = result["set"]["proportion_correct_interval"]
     assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
-    for part in ("direction", "intensity", "rate", "duration", "pattern", "onset"):
+    for part in ("direction", "intensity", "rate", "duration", "pause"):
         assert words.count(part) >= 2
     for heading in ("Settings", "Ranking", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
         assert f"<h2>{heading}</h2>" in made

@@ -62,6 +62,9 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     assert [level["at"] for level in panels["current"]["levels"]] == [1.5, -1.5]
     assert panels["current"]["series"][0]["step"]
     assert {mark["label"].split()[0] for mark in panels["sensation"]["marks"]} == {"onset", "felt", "physical"}
+    assert panels["sensation"]["label"] == "sensation (d′) of the nominal person, receptor clock"
+    (onset,) = (mark["label"] for mark in panels["sensation"]["marks"] if mark["label"].startswith("onset"))
+    assert onset.endswith(" s, response clock, p 1.00")
     skin = next(series for series in panels["temperature"]["series"] if series["key"] == "skin")
     assert made.drawing is not None
     assert np.allclose(frame.buffers[skin["buffer"]], made.drawing.trace.skin_C, atol=1e-5)

@@ -12,7 +12,8 @@ from thermicon.perception.identification.carry_over import CarryOver, carry_over
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
-from thermicon.perception.selection.edit import Edit, cheapest_edit
+from thermicon.perception.selection.edit import cheapest_edit
+from thermicon.perception.selection.edit_result import Edit
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")

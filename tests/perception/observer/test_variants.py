@@ -17,9 +17,9 @@ from thermicon.perception.observer.variants import (
     receptor_column,
     receptor_input,
 )
+from thermicon.perception.procedures.classical import forced_choice
 from thermicon.perception.sensation.bench import Bench, ramp
 from thermicon.perception.sensation.sensation import sensitivity
-from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)

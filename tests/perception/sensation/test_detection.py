@@ -116,6 +116,8 @@ def test_without_times_there_is_no_onset(observer: Observer) -> None:
     found = detect(np.zeros(50), np.zeros(50), 0.01, observer, times=False)
     with pytest.raises(ValueError, match="there are no response times: call detect with times=True"):
         _ = found.onset_s
+    with pytest.raises(ValueError, match="there are no response times"):
+        _ = found.channel
 
 
 def test_only_change_from_the_start_is_detected(observer: Observer) -> None:

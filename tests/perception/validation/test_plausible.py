@@ -5,9 +5,9 @@ from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import observer_records
 from thermicon.perception.observer.variants import VARIANTS, Model, Variable, source_of
+from thermicon.perception.procedures.classical import forced_choice
 from thermicon.perception.sensation.bench import Bench
 from thermicon.perception.validation.plausible import plausible_observers, uncertain_records
-from thermicon.perception.validation.procedures import forced_choice
 
 
 @pytest.mark.parametrize(("variable", "model"), VARIANTS)

@@ -8,8 +8,9 @@ thresholds, conduction and decision, not in skin or touch.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from statistics import NormalDist
 
 import numpy as np
@@ -19,16 +20,13 @@ from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.bench import Bench, Stimulus, ramp
-from ..sensation.detection import criterion_of, detect
+from ..sensation.detection import criterion_of
 from ..sensation.first_passage import ResponseTimes, response_times
 from .measured import Crowd, Measurement, crowd_of
+from .ramps import FEEBLE, ramps, size_reaching
 
 UNIT_PROPORTION = NormalDist().cdf(2.0**-0.5)
 """Proportion correct of d′ = 1 in a choice of two, Φ(1/√2) = 0.76: what calibration takes a threshold to be."""
-SIZES_K = np.geomspace(0.005, 8.0, 33)
-"""Sizes that are played; thresholds between them are interpolated on log size."""
-LONGEST_S = 600.0
-FEEBLE = 1e-12
 
 
 def forced_choice(
@@ -77,14 +75,18 @@ def forced_choice(
     """
     if not 0.5 < proportion < 1.0:
         raise ValueError(f"the proportion correct in a choice of two lies between 0.5 and 1, not {proportion:g}")
-    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    played, crowd = ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
     d_prime = np.sqrt(2.0) * NormalDist().inv_cdf(proportion)
-    felt = _peaks(played, observer, crowd)
+
+    def log_peak(k: int) -> Array:
+        logs: Array = np.log(np.maximum(played.peak(k, observer, crowd), FEEBLE))
+        return logs
+
     return Measurement(
         "forced choice of two",
         channel,
         "K",
-        _where_reached(np.log(np.maximum(felt, FEEBLE)), float(np.log(d_prime))),
+        size_reaching(log_peak, played.sizes_K, float(np.log(d_prime))),
         f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {proportion:.3g} correct",
     )
 
@@ -135,16 +137,15 @@ def yes_no(
     """
     if not 0.0 < hits < 1.0:
         raise ValueError(f"the share of hits lies between 0 and 1, not {hits:g}")
-    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    played, crowd = ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
     asked = observer
     if false_alarms is not None:
         asked = replace(observer, criterion=criterion_of(false_alarms, observer.noise_correlation_s, hold_s))
-    said = _said_yes(played, asked, crowd)
     return Measurement(
         "yes/no",
         channel,
         "K",
-        _where_reached(said, hits),
+        size_reaching(lambda k: played.reported(k, asked, crowd), played.sizes_K, hits),
         f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {hits:g} reported, criterion {asked.criterion:.2f} d′",
     )
 
@@ -189,9 +190,8 @@ def method_of_limits(
     >>> method_of_limits(Observer.load(), Bench(Rig.load("thenar")), "cold").unit
     'K'
     """
-    played, found = _responses(observer, bench, channel, rate_K_per_s, limit_K, people)
+    played, pressed = _half_answered(observer, bench, channel, rate_K_per_s, limit_K, people)
     moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
-    pressed = found.quantile(0.5)
     inside = pressed <= limit_K / rate_K_per_s
     each = np.where(inside, np.interp(np.where(inside, pressed, 0.0), played.time_s, moved), np.inf)
     return Measurement("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
@@ -231,7 +231,22 @@ def choice_reaction_time(
     >>> bool(0.3 < times.quantile()[0] < 2.0)
     True
     """
-    return _responses(observer, bench, channel, rate_K_per_s, size_K, people, observer.choice_s)[1]
+    return ramp_responses(observer, bench, channel, rate_K_per_s, size_K, people, choice_s=observer.choice_s)[1]
+
+
+def ramp_responses(
+    observer: Observer,
+    bench: Bench,
+    channel: Channel,
+    rate_K_per_s: float,
+    size_K: float,
+    people: People | None = None,
+    *,
+    choice_s: float = 0.0,
+) -> tuple[Stimulus, ResponseTimes]:
+    """A ramp in K/s up to a size in K, and when people answer it; `choice_s` is what a choice adds, s."""
+    played = _ramp(bench, channel, rate_K_per_s, size_K)
+    return played, _responses(played, observer, crowd_of(observer, bench.rig.site, people), choice_s=choice_s)
 
 
 def method_of_levels(
@@ -288,74 +303,51 @@ def method_of_levels(
     """
     if runs < 1 or not 0.0 < last_K < first_K:
         raise ValueError(f"levels need a run and 0 < last_K < first_K, not {runs}, {last_K:g} and {first_K:g}")
-    played, crowd = _ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
+    played, crowd = ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
-    each = []
-    for said in _said_yes(played, observer, crowd):
-        each += [_staircase(said, first_K, last_K, rng) for _ in range(1 if people is not None else runs)]
+    reported = _at_any_level(cache(lambda k: played.reported(k, observer, crowd)), played.sizes_K)
+    largest, each = float(played.sizes_K[-1]), []
+    for person in range(len(crowd)):
+        each += [
+            _staircase(reported, person, largest, first_K, last_K, rng)
+            for _ in range(1 if people is not None else runs)
+        ]
     conditions = f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, from {first_K:g} K down to steps of {last_K:g} K"
     return Measurement("method of levels", channel, "K", np.array(each), conditions)
 
 
-@lru_cache(maxsize=32)
-def _ramps(bench: Bench, channel: Channel, rate_K_per_s: float, hold_s: float) -> list[Stimulus]:
-    """A ramp of every size, each until the end of its own hold; slow ones take at most `LONGEST_S`."""
-    sizes = SIZES_K[LONGEST_S * rate_K_per_s >= SIZES_K]
-    return [
-        bench.play([ramp(channel, size, rate_K_per_s)], np.ceil(100.0 * (size / rate_K_per_s + hold_s)) / 100.0)
-        for size in sizes.tolist()
-    ]
+def _at_any_level(at: Callable[[int], Array], sizes_K: Array) -> Callable[[float], Array]:
+    """Numbers of people (people,) at a level in K, on log size between the sizes that they are known for."""
+    logs = np.log(sizes_K)
+
+    @cache
+    def between(level: float) -> Array:
+        place = np.log(level)
+        k = int(np.clip(np.searchsorted(logs, place), 1, logs.size - 1))
+        pair = np.stack([at(k - 1), at(k)])
+        return np.array([np.interp(place, logs[k - 1 : k + 1], own) for own in pair.T])
+
+    return between
 
 
-def _peaks(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array:
-    """Largest sensation above rest for every person and size, shape (n, sizes)."""
-    found = []
-    for one in played:
-        both = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
-        found.append(np.maximum(*((psi - psi[..., :1]).max(axis=-1) for psi in both))[:, 0])
-    return np.stack(found, axis=1)
-
-
-def _said_yes(played: list[Stimulus], observer: Observer, crowd: Crowd) -> Array:
-    """Probability of a report, corrected for false alarms, for every person and size, shape (n, sizes)."""
-    found = []
-    for one in played:
-        cold, warm = one.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
-        multiples = [own[:, None] for own in crowd.criterion]
-        report = detect(cold, warm, one.dt_s, observer, criterion_cold=multiples[0], criterion_warm=multiples[1])
-        found.append(report.probability[:, 0])
-    return np.stack(found, axis=1)
-
-
-def _where_reached(values: Array, target: float) -> Array:
-    """Size (n,) at which values (n, sizes) first reach a target, on log size; inf where they never do.
-
-    Raises ValueError where the smallest size reaches it: the answer lies outside of what was played.
-    """
-    sizes = SIZES_K[: values.shape[1]]
-    found = np.full(values.shape[0], np.inf)
-    for person, own in enumerate(values):
-        k = int(np.argmax(own >= target))
-        if k == 0 and own[0] >= target:
-            raise ValueError(f"a step of {sizes[0]:g} K is felt already: the threshold is smaller than what is played")
-        if own[k] >= target:
-            found[person] = np.exp(np.interp(target, own[k - 1 : k + 1], np.log(sizes[k - 1 : k + 1])))
-    return found
-
-
-def _staircase(said: Array, first_K: float, last_K: float, rng: np.random.Generator) -> float:
-    """One run over the probabilities of a report (sizes,); inf when the largest size stays unreported."""
-    log_sizes = np.log(SIZES_K[: said.size])
-    largest = float(SIZES_K[said.size - 1])
+def _staircase(
+    reported: Callable[[float], Array],
+    person: int,
+    largest_K: float,
+    first_K: float,
+    last_K: float,
+    rng: np.random.Generator,
+) -> float:
+    """One run over the probability of a report at a level in K; inf when the largest level stays unreported."""
     level, step, last = first_K, first_K, {True: np.inf, False: 0.0}
     before: bool | None = None
     while step >= last_K:
-        yes = bool(rng.random() < np.interp(np.log(level), log_sizes, said))
-        if not yes and level >= largest:
+        yes = bool(rng.random() < reported(level)[person])
+        if not yes and level >= largest_K:
             return float(np.inf)
         step = 0.5 * step if before is not None and yes != before else step
         last[yes], before = level, yes
-        nearer = level - step if yes else min(level + step, largest)
+        nearer = level - step if yes else min(level + step, largest_K)
         while nearer <= 0.0:
             step *= 0.5
             nearer = level - step
@@ -372,25 +364,34 @@ def _ramp(bench: Bench, channel: Channel, rate_K_per_s: float, size_K: float) ->
     return bench.play([ramp(channel, size_K, rate_K_per_s)], round(size_K / rate_K_per_s + 2.0, 2))
 
 
+EARLY = 1.0 / 3.0
+"""Share of a ramp by whose end nearly everybody has answered: the rest is computed only for those who have not."""
+
+
+def _half_answered(
+    observer: Observer, bench: Bench, channel: Channel, rate_K_per_s: float, limit_K: float, people: People | None
+) -> tuple[Stimulus, Array]:
+    """The ramp and the time (people,) by which half of the trials are answered, s; inf where fewer are."""
+    played, crowd = _ramp(bench, channel, rate_K_per_s, limit_K), crowd_of(observer, bench.rig.site, people)
+    early = int(EARLY * played.rows)
+    pressed = _responses(played, observer, crowd, rows=early).quantile(0.5)
+    late = pressed >= played.dt_s * (early - 1)
+    if late.any():
+        pressed[late] = _responses(played, observer, crowd.part(late)).quantile(0.5)
+    return played, pressed
+
+
 def _responses(
-    observer: Observer,
-    bench: Bench,
-    channel: Channel,
-    rate: float,
-    size_K: float,
-    people: People | None,
-    choice_s: float = 0.0,
-) -> tuple[Stimulus, ResponseTimes]:
-    played = _ramp(bench, channel, rate, size_K)
-    crowd = crowd_of(observer, bench.rig.site, people)
-    cold, warm = played.felt(observer, crowd.threshold_cold, crowd.threshold_warm)
-    found = response_times(
-        cold[:, 0],
-        warm[:, 0],
+    played: Stimulus, observer: Observer, crowd: Crowd, *, choice_s: float = 0.0, rows: int | None = None
+) -> ResponseTimes:
+    """Answers to a ramp, or to its first rows."""
+    cold, warm = (psi[:, 0, :rows] for psi in played.felt(observer, crowd.threshold_cold, crowd.threshold_warm))
+    return response_times(
+        cold,
+        warm,
         played.dt_s,
         observer,
         conduction_s=crowd.conduction_s,
         decision_s=crowd.decision_s + choice_s,
         criterion=crowd.criterion,
     )
-    return played, found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import Channel
@@ -71,6 +72,16 @@ class Crowd:
 
     def __len__(self) -> int:
         return int(self.decision_s.size)
+
+    def part(self, which: NDArray[np.bool_]) -> Crowd:
+        """Some of the people."""
+        return Crowd(
+            self.threshold_cold[which],
+            self.threshold_warm[which],
+            (self.criterion[0][which], self.criterion[1][which]),
+            (self.conduction_s[0][which], self.conduction_s[1][which]),
+            self.decision_s[which],
+        )
 
 
 def crowd_of(observer: Observer, site: str, people: People | None) -> Crowd:

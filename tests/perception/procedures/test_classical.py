@@ -5,15 +5,15 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
-from thermicon.perception.sensation.bench import Bench
-from thermicon.perception.validation.measured import Measurement, crowd_of
-from thermicon.perception.validation.procedures import (
+from thermicon.perception.procedures.classical import (
     choice_reaction_time,
     forced_choice,
     method_of_levels,
     method_of_limits,
     yes_no,
 )
+from thermicon.perception.procedures.measured import Measurement, crowd_of
+from thermicon.perception.sensation.bench import Bench
 
 
 @pytest.fixture(scope="module")
