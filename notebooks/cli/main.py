@@ -197,7 +197,7 @@ def rank_command(
         typer.Option(
             "--parameters",
             metavar="N",
-            help="Draws of the model's parameters for its uncertainty interval; 0 for none.",
+            help="Draws of the posterior for the intervals of a new laboratory; 0 for none.",
         ),
     ] = 128,
     tracking: Tracking = None,

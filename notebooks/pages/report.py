@@ -107,7 +107,7 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Bloc
 
 def _settings(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, date: str) -> Iterator[Block]:
     changes = ", ".join(result["rig_changes"]) or "none"
-    draws = result["set"]["parameter_draws"]
+    draws = result["set"]["posterior_draws"]
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     rows = [
         ("command", command),
@@ -115,9 +115,9 @@ def _settings(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, da
         ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²; changes: {changes}"),
         ("people", f"{result['people']} virtual, seed {result['seed']}"),
         ("same for all people", f"{result['tracking']} tracking"),
-        ("difference over time", f"{result['norm']} norm"),
+        ("what is remembered", f"{result['norm']} norm"),
         ("task", rank_notes.task_note(result["task"]).removeprefix(", ")),
-        ("draws of the parameters", str(draws) if draws else ""),
+        ("draws of the posterior", str(draws) if draws else ""),
         ("predicted experiment", f"{result['set']['trials']} trials"),
         ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
         ("content hash", result["content_hash"]),

@@ -88,10 +88,10 @@ def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
         f"{scored('correct', own['proportion_correct'])}, {scored('bits', own['information_bits'])}, "
         f"{scored('bits-per-s', own['bits_per_s'])}"
     )
-    if own["proportion_correct_parameter_interval"]:
-        low, high = own["proportion_correct_parameter_interval"]
-        least, most = own["information_bits_parameter_interval"]
-        yield (f"  - model uncertainty (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
+    if own["proportion_correct_interval_new_laboratory"]:
+        low, high = own["proportion_correct_interval_new_laboratory"]
+        least, most = own["information_bits_interval_new_laboratory"]
+        yield (f"  - for a new laboratory (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
     energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
     yield f"  - total duration {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:

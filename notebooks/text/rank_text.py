@@ -105,15 +105,16 @@ def number_lines(result: dict[str, Any]) -> list[str]:
     whole = result["set"]
     (low, high), bits = whole["proportion_correct_interval"], whole["information_bits"]
     lines = [f"Set: {percent(whole['proportion_correct'])} correct" + _range(result, percent_span(low, high))]
-    if whole["proportion_correct_parameter_interval"]:
-        low, high = whole["proportion_correct_parameter_interval"]
-        lines.append(f"     model uncertainty (95 %): {percent_span(low, high)}")
+    if whole["proportion_correct_interval_new_laboratory"]:
+        low, high = whole["proportion_correct_interval_new_laboratory"]
+        people = whole["new_laboratory_people"]
+        lines.append(f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}")
     if bits is not None:
         least, most = whole["information_bits_interval"]
         plugin = whole["information_bits_plugin"]
         lines += [
             f"     {bits:.2f} bits" + _range(result, f"{least:.2f}–{most:.2f} bits"),
-            *_bits_range(whole["information_bits_parameter_interval"]),
+            *_bits_range(whole["information_bits_interval_new_laboratory"]),
             f"     {whole['bits_per_s']:.2f} bits/s",
             f"     a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)",
         ]
@@ -122,7 +123,7 @@ def number_lines(result: dict[str, Any]) -> list[str]:
 
 def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:
     if interval is not None:
-        yield f"     model uncertainty (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
+        yield f"     in a new laboratory (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
 
 
 def _range(result: dict[str, Any], interval: str) -> str:

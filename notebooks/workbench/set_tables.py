@@ -53,19 +53,19 @@ def notes_html(result: dict[str, Any]) -> str:
 
 
 def scores_html(ranking: Ranking) -> str:
-    """Proportion correct and bits with both intervals, over people and over the model's parameters."""
+    """Proportion correct and bits with both intervals, between people and for a new laboratory."""
     if len(ranking.icons) == 1:
         return fragment("notes", [ALONE])
-    draws = ranking.parameter_intervals
+    draws = ranking.new_laboratory
     low, high = ranking.proportion_correct_interval
     correct = [f"95 % of people: {percent_span(low, high)}"]
     least, most = ranking.information_bits_interval
     bits = [f"95 % of people: {least:.2f}–{most:.2f}"]
     if draws is not None:
-        correct.append(f"model uncertainty: {percent_span(*draws.proportion_correct)}")
-        bits.append(f"model uncertainty: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
+        correct.append(f"a new laboratory: {percent_span(*draws.proportion_correct)}")
+        bits.append(f"a new laboratory: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
     if ranking.chosen is not None:
-        correct.append("model uncertainty: see the chosen icons")
+        correct.append("a new laboratory: see the chosen icons")
     shown: tuple[tuple[str, list[str]], ...] = (
         (f"{percent(ranking.proportion_correct)} correct", correct),
         (f"{ranking.information_bits:.2f} bits", bits),

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
@@ -145,7 +146,8 @@ def new_laboratory(
     chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
     offsets, memory = held.new_laboratory(seed), memory_parameters(norm)
     shares = latin(len(memory), draws, seed)
-    invited = np.random.default_rng(np.random.SeedSequence([seed, 9])).integers(len(persons), size=(draws, len(persons)))
+    chance = np.random.default_rng(np.random.SeedSequence([seed, 9]))
+    invited = chance.integers(len(persons), size=(draws, len(persons)))
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = _scored(few, persons, Observer.load(), norm, seed, samples, task, np.arange(len(persons)))
 
@@ -161,12 +163,10 @@ def new_laboratory(
         found.append(scores)
         if step is not None:
             step()
-    correct, bits, detected, apart = (np.stack([scores[k] for scores in found]) for k in range(4))
-    middle = (predicted.proportion_correct, predicted.information_bits, predicted.detected, predicted.d_prime)
+    about = (predicted.proportion_correct, predicted.information_bits, predicted.detected, predicted.d_prime)
     most = (1.0, math.log2(icons), 1.0, math.inf)
     correct, bits, detected, apart = (
-        np.clip(each + about - nominal, 0.0, top)
-        for each, about, nominal, top in zip((correct, bits, detected, apart), middle, centre, most, strict=True)
+        np.clip(np.stack([scores[k] for scores in found]) + about[k] - centre[k], 0.0, most[k]) for k in range(4)
     )
     names = (*held.names, *(parameter.name for parameter in memory), "laboratory, cold", "laboratory, warm")
     moved = np.array([[p.at(float(s)) for p, s in zip(memory, row, strict=True)] for row in shares]).reshape(draws, -1)
@@ -193,7 +193,7 @@ def _scored(
     seed: int,
     samples: int,
     task: Task,
-    invited: Array,
+    invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
     """Proportion correct, bits, detected (icons,) and d′ (icons, icons) of those who are invited."""
     felt = respond(few, people, observer, [norm])
@@ -202,7 +202,7 @@ def _scored(
     return (
         correct[invited].mean(),
         bits[invited].mean(),
-        felt.detection.probability[invited].mean(axis=0),
+        felt.probability[invited].mean(axis=0),
         np.median(d_prime[invited], axis=0),
     )
 

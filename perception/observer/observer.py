@@ -23,6 +23,7 @@ from .delays import Conduction
 from .mechanisms import check_without, find_mechanism
 from .memory import EpisodeMemory, Ratings
 from .observer_file import check_complete, read_observer_file
+from .receptor import Receptor
 from .transducer import Transducer
 from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
 
@@ -36,38 +37,6 @@ TURNED_OFF = {
 }
 """Mechanisms with one constant: its parameter of the inference, and the field of an observer."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
-
-
-@dataclass(frozen=True, slots=True)
-class Receptor:
-    """Constants of one channel: times s, velocity m/s, exponents and factors 1.
-
-    `limit_C` is the temperature above which there is no cold, or below which there is no warmth, and `softness_K` how
-    gradually it sets in (None: no limit). `threshold_drive` is the drive that feels like a threshold, in K, W/m² or
-    impulses as the observer's variant has it. `forearm_factor` multiplies thresholds at sites of the forearm.
-    `neutral_flux` (W/m² into the skin) bounds complete adaptation where heat flow is what is felt; static and dynamic
-    gain are those of Ring & de Dear.
-    """
-
-    adaptation_s: float
-    threshold_drive: float
-    velocity_m_per_s: float
-    area_exponent: float
-    limit_C: float | None = None
-    softness_K: float = 0.5
-    forearm_factor: float = 1.0
-    neutral_flux: tuple[float, float] | None = None
-    static_Hz_per_K: float = 2.0
-    dynamic_Hz_s_per_K: float = 60.0
-
-    def __post_init__(self) -> None:
-        for name in ("adaptation_s", "threshold_drive", "velocity_m_per_s", "softness_K", "forearm_factor"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"{name} = {getattr(self, name):g} must be above 0")
-        if self.neutral_flux is not None and not self.neutral_flux[0] < self.neutral_flux[1]:
-            raise ValueError(
-                f"the neutral heat flow {self.neutral_flux[0]:g} to {self.neutral_flux[1]:g} W/m² is empty"
-            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,9 +167,10 @@ class Observer:
         Parameters
         ----------
         path
-            A parameter file; None for the shipped one.
+            A parameter file, or a .csv table of posterior draws, whose draw nearest to the median it is then; None
+            for the shipped parameters.
         variable, model
-            The variant.
+            The variant; a table of draws has its own.
         without
             Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
 
@@ -212,6 +182,12 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
+        if path is not None and Path(path).suffix.lower() == ".csv":
+            from .draws import PosteriorDraws
+
+            drawn = PosteriorDraws.load(path).observer_nearest_median()
+            off = check_without(without, "observer")
+            return drawn.with_mechanisms_off(off) if off else drawn
         table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from statistics import NormalDist
 from typing import TYPE_CHECKING
@@ -67,6 +67,14 @@ class People:
         """The persons from one number up to another."""
         return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})
 
+    def less_sensitive(self, cold: float, warm: float) -> People:
+        """The same persons with thresholds raised by so much (ln): those of another laboratory, or of another age."""
+        return replace(
+            self,
+            threshold_cold=math.exp(cold) * self.threshold_cold,
+            threshold_warm=math.exp(warm) * self.threshold_warm,
+        )
+
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
         columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
@@ -91,7 +99,14 @@ def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
     )
 
 
-def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, without: Iterable[str] = ()) -> People:
+def draw_people(
+    n: int,
+    seed: int = 0,
+    *,
+    age_years: float | None = None,
+    without: Iterable[str] = (),
+    spreads: Mapping[str, float] | None = None,
+) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
     Sensitivities and criteria of the two channels are correlated, as people's thresholds are. What differs between
@@ -108,6 +123,8 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, withou
         to 30 years.
     without
         Mechanisms of people that are turned off: `criterion between people` or `age`.
+    spreads
+        Other inferred constants of people by name, such as one draw of the posterior; None: the shipped ones.
 
     Returns
     -------
@@ -133,7 +150,10 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, withou
     record = people_records()
     streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
     column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
-    shared = observer_records().one("correlation of cold and warm").central
+    constants = {} if spreads is None else spreads
+    shared = constants.get(
+        "correlation of cold and warm", observer_records().one("correlation of cold and warm").central
+    )
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * _normal(column[name]))
@@ -141,8 +161,12 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, withou
     def both(what: str) -> tuple[Array, Array]:
         cold, own = (_normal(column[f"{what}_{channel}"]) for channel in CHANNELS)
         warm = shared * cold + math.sqrt(1.0 - shared**2) * own
-        spreads = [record[f"{what}_{channel}"].central for channel in CHANNELS]
-        return np.exp(spreads[0] * cold), np.exp(spreads[1] * warm)
+        own_names = [SPREADS[what].format(channel) for channel in CHANNELS]
+        sd = [
+            constants.get(name, record[f"{what}_{channel}"].central)
+            for name, channel in zip(own_names, CHANNELS, strict=True)
+        ]
+        return np.exp(sd[0] * cold), np.exp(sd[1] * warm)
 
     def triangular(name: str) -> Array:
         low, high = record[name].interval
@@ -164,10 +188,14 @@ def draw_people(n: int, seed: int = 0, *, age_years: float | None = None, withou
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
         path=triangular("path") / record["path"].central,
-        decision_s=observer_records().one("decision time").central
-        * lognormal("decision_s", record["decision_s"].central),
+        decision_s=constants.get("decision time", observer_records().one("decision time").central)
+        * lognormal("decision_s", constants.get("decision time between people", record["decision_s"].central)),
         lapse=triangular("lapse"),
     )
+
+
+SPREADS = {"threshold": "{} sensitivity between people", "criterion": "criterion between people"}
+"""Inferred constants behind the columns of both channels."""
 
 
 def people_records() -> dict[str, Record]:

@@ -20,7 +20,7 @@ from thermicon.circuit.program import code_digest as digest_of
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised, sampling_error
-from ..identification.intervals import EVERY, PEOPLE
+from ..identification.laboratory import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task

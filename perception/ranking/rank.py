@@ -21,9 +21,8 @@ from ..comparison.rule_score import disagreements, icon_score, pair_margin, wors
 from ..comparison.rules import icon_rules, pair_rules, rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.episodes import remembered
-from ..identification.intervals import DRAWS, parameter_intervals
+from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
-from ..identification.population import Scores
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import DATA, Norm, Observer, check_norm
@@ -91,7 +90,7 @@ def rank(
     by
         `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
     parameters
-        Draws for the intervals from the observer's parameters (0: none).
+        Draws from the posterior of the constants, for the intervals that a new laboratory will find (0: none).
     choosing
         Request for the best subset; the intervals are then those of the chosen icons.
     edits
@@ -172,10 +171,10 @@ def rank(
             left=left,
         )
         report()
-    whole = None if picked is not None else Scores(all_.correct, all_.bits, all_.detected)
-    intervals = None
-    if draws and whole is not None:
-        intervals = parameter_intervals(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
+    elsewhere = None
+    if draws and picked is None:
+        whole = Nominal(float(all_.correct.mean()), float(all_.bits.mean()), all_.detected, all_.middle)
+        elsewhere = new_laboratory(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
     elif draws and picked is not None:
         picked = _with_interval(
             picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, (task, left), report
@@ -207,7 +206,7 @@ def rank(
         standard_error=all_.standard_error,
         person_standard_error=all_.person_standard_error,
         rules=rig_rules(rig),
-        parameter_intervals=intervals,
+        new_laboratory=elsewhere,
         chosen=picked,
         spread=spread_over_people(all_.d_prime, all_.each_correct),
         task=task,
@@ -306,14 +305,15 @@ def _with_interval(
     asked: tuple[Task, CarryOver | None],
     step: Callable[[], None],
 ) -> Choice:
-    """A choice with the interval from parameters: of the chosen, since nobody will name all of the pool."""
+    """A choice with the intervals for a new laboratory: of the chosen, since nobody will name all of the pool."""
     places = [names.index(name) for name in picked.icons]
     own = picked.at_own_range
-    at_once = Scores(np.array([own.proportion_correct]), np.array([own.information_bits]), all_.detected[places])
-    found = parameter_intervals(
-        all_.thin.of(places), crowd, at_once, norm, draws=draws, seed=seed, task=task_among(*asked, places), step=step
+    middle = all_.middle[np.ix_(places, places)]
+    alone = Nominal(own.proportion_correct, own.information_bits, all_.detected[places], middle)
+    found = new_laboratory(
+        all_.thin.of(places), crowd, alone, norm, draws=draws, seed=seed, task=task_among(*asked, places), step=step
     )
-    return replace(picked, parameter_intervals=found)
+    return replace(picked, new_laboratory=found)
 
 
 def _playable(made: _Made) -> tuple[PairScore, ...]:

@@ -15,14 +15,14 @@ from ..observer.observer import check_norm
 from ..selection.edit_result import Edit, NoEdit
 
 if TYPE_CHECKING:
-    from ..identification.intervals import Interval, ParameterIntervals
+    from ..identification.laboratory import Interval, NewLaboratory
     from .ranking import IconScore, PairScore, Ranking
 
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
     model = ranking.by == "model"
-    asked = ranking.parameter_intervals if model else None
+    asked = ranking.new_laboratory if model else None
     detected: tuple[Interval | None, ...] = asked.detected if asked else (None,) * len(ranking.icons)
     made: dict[str, Any] = plain(
         {
@@ -40,7 +40,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
                 {**_icon(icon, model, d), "carry_over": _carried(ranking, place)}
                 for place, (icon, d) in enumerate(zip(ranking.icons, detected, strict=True))
             ],
-            "pairs": [_pair(pair, model) for pair in ranking.pairs],
+            "pairs": [_pair(pair, model, _elsewhere(ranking, pair, asked)) for pair in ranking.pairs],
             "confusion": {
                 "labels": list(ranking.labels),
                 "probability": ranking.confusion.tolist() if model else None,
@@ -100,7 +100,7 @@ def plain(held: Any) -> Any:
     return held
 
 
-def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dict[str, Any]:
+def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str, Any]:
     many = model and len(ranking.icons) > 1
     return {
         "proportion_correct": ranking.proportion_correct if model else None,
@@ -114,9 +114,11 @@ def _set(ranking: Ranking, model: bool, asked: ParameterIntervals | None) -> dic
         "rules_disagree": list(ranking.rules_disagree),
         "norm_sensitivity": ranking.norm_sensitivity if model else {},
         "norm_changes": ranking.norm_changes if model else {},
-        "proportion_correct_parameter_interval": asked.proportion_correct if asked else None,
-        "information_bits_parameter_interval": asked.information_bits if asked and many else None,
-        "parameter_draws": asked.draws if asked else None,
+        "proportion_correct_interval_new_laboratory": asked.proportion_correct if asked else None,
+        "information_bits_interval_new_laboratory": asked.information_bits if asked and many else None,
+        "posterior_draws": asked.draws if asked else None,
+        "posterior": asked.posterior if asked else None,
+        "new_laboratory_people": asked.people if asked else None,
         "rules_score": ranking.rules_score,
         "rules": [r.to_dict() for r in ranking.rules],
     }
@@ -143,7 +145,7 @@ def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, 
         "rules_score": icon.rules_score,
         "rules_margin": icon.rules_margin,
         "outside_data": list(icon.outside_data),
-        "detected_parameter_interval": detected,
+        "detected_interval_new_laboratory": detected,
     }
 
 
@@ -168,12 +170,18 @@ def _map(ranking: Ranking) -> dict[str, Any]:
     }
 
 
-def _pair(pair: PairScore, model: bool) -> dict[str, Any]:
+def _elsewhere(ranking: Ranking, pair: PairScore, asked: NewLaboratory | None) -> Interval | None:
+    """Interval of the d′ of a pair for a new laboratory."""
+    return None if asked is None else asked.pair(ranking.labels.index(pair.a), ranking.labels.index(pair.b))
+
+
+def _pair(pair: PairScore, model: bool, elsewhere: Interval | None) -> dict[str, Any]:
     edit = pair.edit if model else None
     return {
         "a": pair.a,
         "b": pair.b,
         "d_prime": pair.d_prime if model else None,
+        "d_prime_interval_new_laboratory": elsewhere,
         "confused_probability": pair.confused_probability if model else None,
         "why": list(pair.why) if model else [r.text for r in pair.rules],
         "rules": [r.to_dict() for r in pair.rules],

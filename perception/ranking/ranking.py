@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
 from ..comparison.rules import DISTINGUISHABLE, RuleResult
-from ..identification.intervals import ParameterIntervals
+from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
@@ -179,8 +179,8 @@ class Ranking:
         pooled cell and of a cell of one person.
     rules
         Rules on the rig.
-    parameter_intervals
-        Uncertainty from the observer's parameters; None: not requested.
+    new_laboratory
+        What a new laboratory will find: people, constants and laboratory together; None: not requested.
     rig_changes
         Keys of the rig that were changed, such as `contact.area_cm2=4`.
     chosen
@@ -227,7 +227,7 @@ class Ranking:
     standard_error: float
     person_standard_error: float
     rules: tuple[RuleResult, ...] = ()
-    parameter_intervals: ParameterIntervals | None = None
+    new_laboratory: NewLaboratory | None = None
     rig_changes: tuple[str, ...] = ()
     chosen: Choice | None = None
     spread: PersonSpread | None = None

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.carry_over import CarryOver, task_among
-from ..identification.intervals import ParameterIntervals
+from ..identification.laboratory import NewLaboratory
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm
@@ -84,8 +84,8 @@ class Choice:
         Median loss of these people, d′; None but for `worst`.
     at_own_range
         The chosen icons alone, as a set of their own.
-    parameter_intervals
-        What the observer's parameters leave open for the chosen; None: not requested.
+    new_laboratory
+        What a new laboratory will find with the chosen; None: not requested.
 
     See Also
     --------
@@ -107,11 +107,11 @@ class Choice:
     best_share: float | None
     loss: float | None
     at_own_range: Appraisal
-    parameter_intervals: ParameterIntervals | None = None
+    new_laboratory: NewLaboratory | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
-        open_ = self.parameter_intervals
+        elsewhere = self.new_laboratory
         return {
             "icons": list(self.icons),
             "objective": self.objective,
@@ -129,8 +129,10 @@ class Choice:
             "median_loss": self.loss,
             "at_own_range": {
                 **self.at_own_range.to_dict(),
-                "proportion_correct_parameter_interval": None if open_ is None else list(open_.proportion_correct),
-                "information_bits_parameter_interval": None if open_ is None else list(open_.information_bits),
+                "proportion_correct_interval_new_laboratory": None
+                if elsewhere is None
+                else elsewhere.proportion_correct,
+                "information_bits_interval_new_laboratory": None if elsewhere is None else elsewhere.information_bits,
             },
         }
 

@@ -10,8 +10,7 @@ from ..observer.channels import Norm, noise_norm, trace_norm
 from ..observer.observer import Observer
 from .parameters import ObserverParameter, observer_parameters
 
-FIELDS = {"share of the scatter of ratings": "share", "cost of a missing episode": "missing"}
-"""Constants of remembered episodes beside the noise, and what they are called in `EpisodeMemory`."""
+OF_EPISODES = ("share of the scatter of ratings", "cost of a missing episode")
 ONSET = "onset uncertainty"
 
 
@@ -21,7 +20,7 @@ def memory_parameters(norm: Norm, site: str = "thenar") -> tuple[ObserverParamet
     >>> [parameter.name for parameter in memory_parameters("episodes")]
     ['share of the scatter of ratings', 'memory noise (episodes)']
     """
-    names = {*FIELDS, ONSET, f"memory noise ({noise_norm(norm)})"}
+    names = {*OF_EPISODES, ONSET, f"memory noise ({noise_norm(norm)})"}
     return tuple(parameter for parameter in observer_parameters(norm, site) if parameter.name in names)
 
 
@@ -35,7 +34,11 @@ def with_memory(observer: Observer, values: Mapping[str, float], norm: Norm) -> 
     if trace is not None and noise is not None:
         changes[f"memory_{trace}"] = noise
     if trace is None:
-        fields = {field: values[name] for name, field in FIELDS.items() if name in values}
-        timing = {} if noise is None else {"timing": noise}
-        changes["memory"] = replace(observer.memory, **fields, **timing)
+        own = observer.memory
+        changes["memory"] = replace(
+            own,
+            timing=own.timing if noise is None else noise,
+            share=values.get("share of the scatter of ratings", own.share),
+            missing=values.get("cost of a missing episode", own.missing),
+        )
     return replace(observer, **changes)
