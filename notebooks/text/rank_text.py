@@ -25,7 +25,7 @@ DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
     "channel what most of them go by, from 50 % on."
 )
-MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
+MOST_DISAGREEMENTS, MOST_EDITS, MOST_DOUBTS, SAME_DPRIME = 5, 20, 3, 0.05
 
 
 def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures: Mapping[str, str]) -> None:
@@ -118,7 +118,15 @@ def number_lines(result: dict[str, Any]) -> list[str]:
             f"     {whole['bits_per_s']:.2f} bits/s",
             f"     a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)",
         ]
+    lines += _doubt(whole["doubt"])
     return lines
+
+
+def _doubt(doubt: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """What carries the width of the interval for a new laboratory: the constants that a pilot should narrow first."""
+    if doubt:
+        named = ", ".join(f"{one['constant']} {percent(one['share_of_variance'])}" for one in doubt[:MOST_DOUBTS])
+        yield f"     most of the doubt comes from: {named}"
 
 
 def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:

@@ -30,7 +30,7 @@ SET = {
         "bits_per_s",
     ),
     *("information_bits_plugin", "trials", "worst_pair", "rules_disagree", "norm_sensitivity"),
-    *("proportion_correct_parameter_interval", "information_bits_parameter_interval", "rules_score", "rules"),
+    *("proportion_correct_interval_new_laboratory", "information_bits_interval_new_laboratory", "rules_score", "rules"),
 }
 
 
@@ -239,9 +239,12 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     said = cli("rank", two, "--people", 8, "--parameters", 8, "--json", out)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
-    (low, high), (least, most) = (found[f"{k}_parameter_interval"] for k in ("proportion_correct", "information_bits"))
-    assert f"     model uncertainty (95 %): {percent_span(low, high)}\n" in said.stdout
-    assert f"     model uncertainty (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
+    (low, high), (least, most) = (
+        found[f"{k}_interval_new_laboratory"] for k in ("proportion_correct", "information_bits")
+    )
+    people = found["new_laboratory_people"]
+    assert f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
+    assert f"     in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--parameters", 0).stdout
 
 

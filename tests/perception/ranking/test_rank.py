@@ -11,13 +11,17 @@ from thermicon.perception import Ranking, perceive, rank
 TOP = "thermicon rig rig_changes seed people tracking by norm content_hash task icons pairs confusion set chosen map"
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
-    "reason cautions rules rules_score rules_margin outside_data detected_parameter_interval carry_over"
+    "reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory carry_over"
 )
-PAIR = "a b d_prime confused_probability why rules edit told_apart_by_rules rules_margin no_edit parts"
+PAIR = (
+    "a b d_prime d_prime_interval_new_laboratory confused_probability why rules edit told_apart_by_rules rules_margin "
+    "no_edit parts"
+)
 SET = (
     "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
     "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity norm_changes "
-    "proportion_correct_parameter_interval information_bits_parameter_interval parameter_draws rules_score rules"
+    "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
+    "new_laboratory_people doubt rules_score rules"
 )
 
 
@@ -226,7 +230,13 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     assert list(held["set"]) == SET.split()
     for icon in held["icons"]:
         assert list(icon) == ICON.split()
-        for key in ("detected_probability", "onset_s", "channel", "proportion_correct", "detected_parameter_interval"):
+        for key in (
+            "detected_probability",
+            "onset_s",
+            "channel",
+            "proportion_correct",
+            "detected_interval_new_laboratory",
+        ):
             assert icon[key] is None
         assert 0.0 <= icon["rules_score"] <= 1.0
     for pair in held["pairs"]:
@@ -236,7 +246,12 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     whole = held["set"]
     for key in ("proportion_correct", "proportion_correct_interval", "information_bits", "information_bits_interval"):
         assert whole[key] is None
-    for key in ("bits_per_s", "information_bits_plugin", "proportion_correct_parameter_interval", "parameter_draws"):
+    for key in (
+        "bits_per_s",
+        "information_bits_plugin",
+        "proportion_correct_interval_new_laboratory",
+        "posterior_draws",
+    ):
         assert whole[key] is None
     assert whole["norm_sensitivity"] == {}
     assert held["confusion"]["probability"] is None

@@ -125,20 +125,20 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     assert "a" in one.icons
     assert list(one.to_dict()["at_own_range"]) == [
         *("worst_pair", "d_prime", "proportion_correct", "information_bits", "bits_per_s"),
-        *("proportion_correct_parameter_interval", "information_bits_parameter_interval"),
+        *("proportion_correct_interval_new_laboratory", "information_bits_interval_new_laboratory"),
     ]
 
 
 def test_intervals_are_those_of_the_chosen() -> None:
     six, rig = read_cue("six-icons"), Rig.load("thenar")
     found = rank(six, rig, people=8, parameters=8, choosing=Selection(3))
-    assert found.parameter_intervals is None and found.chosen is not None
+    assert found.new_laboratory is None and found.chosen is not None
     own = found.chosen.to_dict()["at_own_range"]
-    low, high = own["proportion_correct_parameter_interval"]
+    low, high = own["proportion_correct_interval_new_laboratory"]
     assert low < own["proportion_correct"] < high
     alone = rank(replace(six, entries=tuple(six[name] for name in found.chosen.icons)), rig, people=8, parameters=8)
-    assert alone.parameter_intervals is not None
-    assert (low, high) == pytest.approx(alone.parameter_intervals.proportion_correct, abs=0.02)
+    assert alone.new_laboratory is not None
+    assert (low, high) == pytest.approx(alone.new_laboratory.proportion_correct, abs=0.02)
 
 
 def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:

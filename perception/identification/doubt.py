@@ -1,0 +1,71 @@
+"""Which constant carries the doubt about a prediction, read from the draws that its intervals are made of.
+
+For each constant, the share of the variance between draws that would go if it were measured: the variance explained by
+a parabola in its normal scores, without what chance alone explains. Constants of one draw belong together, so that the
+shares of constants that trade off overlap and need not add up to 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+
+from ..arrays import Array
+from .laboratory import LaboratoryDraws
+
+TERMS = 2
+LEAST_SHARE = 0.02
+"""Smaller shares are within what chance makes of 128 draws."""
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """One constant, and the share (0–1) of the variance of the proportion correct that a measurement would remove."""
+
+    name: str
+    share: float
+
+    def to_dict(self) -> dict[str, str | float]:
+        """The keys of the ranking file."""
+        return {"constant": self.name, "share_of_variance": self.share}
+
+    def __repr__(self) -> str:
+        return f"Doubt({self.name}: {100 * self.share:.0f} % of the variance)"
+
+
+def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
+    """Constants that carry at least 2 % of the variance of the proportion correct, the largest share first.
+
+    >>> import numpy as np
+    >>> x = np.random.default_rng(0).standard_normal((200, 2))
+    >>> none = np.zeros((200, 1))
+    >>> drawn = LaboratoryDraws(("a", "b"), x, 0.8 + 0.05 * x[:, 0], none[:, 0], none, none[:, :, None])
+    >>> [(doubt.name, round(doubt.share, 2)) for doubt in doubts(drawn)]
+    [('a', 1.0)]
+    """
+    shares = explained(each.values, each.proportion_correct)
+    found = [Doubt(name, float(share)) for name, share in zip(each.names, shares, strict=True) if share >= LEAST_SHARE]
+    return tuple(sorted(found, key=lambda doubt: (-doubt.share, doubt.name)))
+
+
+def explained(values: Array, predicted: Array) -> Array:
+    """Adjusted shares (constants,) of the variance of `predicted` (draws,) that each column of `values` explains."""
+    draws, constants = values.shape
+    off = predicted - predicted.mean()
+    total = float(off @ off)
+    shares = np.zeros(constants)
+    if total <= 0.0 or draws <= TERMS + 2:
+        return shares
+    normal = np.array([NormalDist().inv_cdf((k + 0.5) / draws) for k in range(draws)])
+    for place in range(constants):
+        if np.ptp(values[:, place]) == 0.0:
+            continue
+        scores = np.empty(draws)
+        scores[np.argsort(values[:, place], kind="stable")] = normal
+        design = np.stack([scores, scores**2 - (scores**2).mean()], axis=1)
+        fitted = design @ np.linalg.lstsq(design, off, rcond=None)[0]
+        missed = float((off - fitted) @ (off - fitted)) / total
+        shares[place] = max(1.0 - missed * (draws - 1) / (draws - TERMS - 1), 0.0)
+    return shares

@@ -1,0 +1,107 @@
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import Ranking, draw_people, rank
+from thermicon.perception.identification.doubt import doubts, explained
+from thermicon.perception.observer.people import people_records
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def ranking(rig: Rig) -> Ranking:
+    return rank(load_library("six-icons"), rig, people=8, seed=2, parameters=16)
+
+
+def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
+    found = ranking.new_laboratory
+    assert found is not None
+    assert found.draws == 16
+    assert found.people == 8
+    assert found.each.values.shape == (16, len(found.each.names))
+    assert {"slope of sensation", "share of the scatter of ratings", "laboratory, cold"} <= set(found.each.names)
+    for (low, high), value, most in (
+        (found.proportion_correct, ranking.proportion_correct, 1.0),
+        (found.information_bits, ranking.information_bits, math.log2(6)),
+    ):
+        assert 0.0 <= low < value < high <= most
+        assert high - low > 0.02
+    assert len(found.detected) == 6
+    for icon, (low, high) in zip(ranking.icons, found.detected, strict=True):
+        assert low <= icon.detected_probability <= high
+    assert repr(found).startswith("NewLaboratory(16 draws, 8 people each: ")
+    assert repr(found).endswith(" bits)")
+
+
+def test_they_are_in_the_file(ranking: Ranking) -> None:
+    held = json.loads(ranking.to_json())
+    found = ranking.new_laboratory
+    assert found is not None
+    assert held["set"]["proportion_correct_interval_new_laboratory"] == list(found.proportion_correct)
+    assert held["set"]["information_bits_interval_new_laboratory"] == list(found.information_bits)
+    assert held["set"]["posterior_draws"] == 16
+    assert held["icons"][0]["detected_interval_new_laboratory"] == list(found.detected[0])
+    pair = next(p for p in held["pairs"] if {p["a"], p["b"]} == {"warming-step", "linear-warming"})
+    low, high = pair["d_prime_interval_new_laboratory"]
+    assert low < pair["d_prime"] < high
+    assert [one["constant"] for one in held["set"]["doubt"]] == [one.name for one in doubts(found.each)]
+
+
+def test_doubt_is_what_explains_the_draws() -> None:
+    rng = np.random.default_rng(1)
+    values = rng.standard_normal((400, 4))
+    values[:, 3] = values[:, 0]  # one that trades off with the first
+    predicted = 0.8 + 0.04 * values[:, 0] + 0.02 * values[:, 1] ** 2 + 0.02 * rng.standard_normal(400)
+    variance = np.array([0.04**2, 2 * 0.02**2, 0.0, 0.04**2])
+    assert explained(values, predicted) == pytest.approx(variance / predicted.var(), abs=0.06)
+    assert explained(values, np.full(400, 0.8)) == pytest.approx(0.0)
+
+
+def test_a_new_laboratory_differs_more_with_more_people_unknown(rig: Rig) -> None:
+    """The offset of a laboratory, and who is invited, are part of the interval."""
+    crowd = draw_people(30, seed=1)
+    raised = crowd.less_sensitive(math.log(2.0), 0.0)
+    assert raised.threshold_cold == pytest.approx(2.0 * crowd.threshold_cold)
+    assert raised.threshold_warm == pytest.approx(crowd.threshold_warm)
+    wide = draw_people(30, seed=1, spreads={"cold sensitivity between people": 1.0, "criterion between people": 1e-9})
+    own = people_records()["threshold_cold"].central
+    assert np.log(wide.threshold_cold) == pytest.approx(np.log(crowd.threshold_cold) / own)
+    assert wide.criterion_warm == pytest.approx(1.0, abs=1e-6)
+
+
+def test_same_arguments_same_intervals(ranking: Ranking, rig: Rig) -> None:
+    again = rank(load_library("six-icons"), rig, people=8, seed=2, parameters=16)
+    assert again.to_json() == ranking.to_json()
+    other = rank(load_library("six-icons"), rig, people=8, seed=2, parameters=0)
+    assert other.new_laboratory is None
+    assert np.array_equal(other.confusion, ranking.confusion)  # the draws leave the prediction alone
+    held: Any = json.loads(other.to_json())
+    assert held["set"]["proportion_correct_interval_new_laboratory"] is None
+    assert held["set"]["posterior_draws"] is None
+    assert held["icons"][0]["detected_interval_new_laboratory"] is None
+
+
+def test_faint_icons_have_wide_intervals_of_detection(rig: Rig) -> None:
+    from thermicon.icons import parse
+
+    text = "cue 1\nset s { control skin; baseline 32 °C }\nicon faint { cool by 0.3 °C at 0.3 °C/s; hold for 1 s }"
+    found = rank(parse(text), rig, people=8, parameters=16).new_laboratory
+    assert found is not None
+    ((low, high),) = found.detected
+    assert 0.0 <= low < high <= 1.0
+    assert high - low > 0.1
+    assert found.information_bits == (0.0, 0.0)
+
+
+def test_one_draw_is_refused(rig: Rig) -> None:
+    with pytest.raises(ValueError, match=r"needs at least two draws of the parameters, or 0 for none, not 1"):
+        rank(load_library("six-icons"), rig, people=1, parameters=1)
