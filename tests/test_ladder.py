@@ -17,7 +17,7 @@ LADDER = {
     "icons": ("pictures", "model", "language", "files", "recordings", "papers"),
     "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "studies"),
     "perception": (
-        *("kernels", "observer", "plots", "sensation", "inference", "identification", "comparison"),
+        *("kernels", "observer", "plots", "sensation", "inference", "posterior", "identification", "comparison"),
         *("selection", "ranking", "sensitivity", "validation"),
     ),
     "notebooks": ("text", "files", "figures", "pages", "cli", "workbench"),

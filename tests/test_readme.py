@@ -20,7 +20,7 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.perception.inference.tables import TABLES
+from thermicon.perception.posterior.posterior_tables import TABLES
 
 ROOT = Path(__file__).resolve().parents[1]
 README = ROOT / "README.md"
