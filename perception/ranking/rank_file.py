@@ -120,9 +120,7 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
         "posterior_draws": asked.draws if asked else None,
         "posterior": asked.posterior if asked else None,
         "new_laboratory_people": asked.people if asked else None,
-        "doubt": [{"constant": one.name, "share_of_variance": one.share} for one in doubts(asked.each)]
-        if asked
-        else [],
+        "doubt": [doubt.to_dict() for doubt in doubts(asked.each)] if asked else [],
         "rules_score": ranking.rules_score,
         "rules": [r.to_dict() for r in ranking.rules],
     }
