@@ -33,6 +33,8 @@ INFERRED = "inferred from published evidence"
 class PosteriorDraws:
     """Equally weighted draws: `draws` (n, constants) read-only, in each constant's own unit, columns as in `names`.
 
+    The first is the nominal one: what it predicts of the evidence is nearest to the medians of what all predict.
+
     >>> posterior = PosteriorDraws.load()
     >>> posterior.values("cold limit").shape == (len(posterior),)
     True
@@ -126,19 +128,9 @@ class PosteriorDraws:
         variable, model = self.variant
         return observer_with(Observer.load(variable=variable, model=model), self.draw(k))
 
-    @property
-    def nearest_median(self) -> int:
-        """Number of the draw nearest to the median of all constants, in SDs of the draws; laboratories do not count."""
-        columns = [k for k, name in enumerate(self.names) if not self.header.is_offset(name)]
-        kept = self.draws[:, columns]
-        positive = (kept > 0.0).all(axis=0)
-        places = np.where(positive, np.log(np.where(positive, kept, 1.0)), kept)
-        spread = np.where(places.std(axis=0) > 0.0, places.std(axis=0), 1.0)
-        return int(np.square((places - np.median(places, axis=0)) / spread).sum(axis=1).argmin())
-
-    def observer_nearest_median(self) -> Observer:
-        """The observer of the draw nearest to the median: single numbers that are consistent with each other."""
-        return self.observer(self.nearest_median)
+    def nominal(self) -> Observer:
+        """The observer of the first draw, whose predictions of the evidence are nearest to their medians."""
+        return self.observer(0)
 
     def new_laboratory(self, seed: int = 0) -> Array:
         """How much more sensitive (ln) the people of a new laboratory are, (n, 2) for cold and warm in every draw.

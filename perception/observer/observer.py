@@ -185,7 +185,7 @@ class Observer:
         if path is not None and Path(path).suffix.lower() == ".csv":
             from .draws import PosteriorDraws
 
-            drawn = PosteriorDraws.load(path).observer_nearest_median()
+            drawn = PosteriorDraws.load(path).nominal()
             off = check_without(without, "observer")
             return drawn.with_mechanisms_off(off) if off else drawn
         table = None if path is None else read_observer_file(Path(path))

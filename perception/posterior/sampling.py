@@ -200,10 +200,22 @@ def header_of(posterior: Posterior, sampler: str, seed: int, likelihoods: int, r
 
 
 def draws_of(posterior: Posterior, vectors: Array, header: DrawsHeader) -> PosteriorDraws:
-    """Draws in the constants' own units from vectors (draws, n) in SDs of the prior."""
+    """Draws in the constants' own units from vectors (draws, n) in SDs of the prior; the nominal one comes first."""
     priors = posterior.priors
     rows = [list(priors.values(priors.middle + priors.sd * vector).values()) for vector in vectors]
-    return PosteriorDraws(header, priors.names, np.array(rows))
+    nominal = in_the_middle(posterior, vectors)
+    order = [nominal, *(k for k in range(len(rows)) if k != nominal)]
+    return PosteriorDraws(header, priors.names, np.array([rows[k] for k in order]))
+
+
+def in_the_middle(posterior: Posterior, vectors: Array) -> int:
+    """Number of the vector whose predictions of all rows are nearest to their medians, in SDs of the draws.
+
+    In as many dimensions as there are constants no draw is near the median of each; what they predict has a middle.
+    """
+    each = np.array([[found[row.key] for row in posterior.rows] for found in map(posterior.predictions, vectors)])
+    spread = np.where(each.std(axis=0) > 0.0, each.std(axis=0), 1.0)
+    return int(np.square((each - np.median(each, axis=0)) / spread).sum(axis=1).argmin())
 
 
 def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain:

@@ -1,7 +1,7 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
-Constants come from the maximum of the posterior (`inference`), each with its 95 % interval. Records marked `predict`
-are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
+Constants are those of the posterior's nominal draw, so that they belong together, each with the interval of 95 % of the draws; for a variant without draws, those of the maximum of its posterior (`inference`). Records
+marked `predict` are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
 """
 
 from __future__ import annotations
@@ -15,6 +15,8 @@ from ..identification.rate_task import memory_noise, memory_record
 from ..inference.evidence import load_evidence
 from ..inference.results import Constant, load_constants
 from ..observer.channels import CHANNELS, MEMORY_NORMS, Channel
+from ..observer.draws import PosteriorDraws
+from ..observer.draws_file import shipped_file
 from ..observer.observer import DATA, Observer, load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import neutral_flux
@@ -50,15 +52,29 @@ def to_toml(observer: Table) -> str:
 
 
 def _inferred(variable: Variable, model: Model) -> list[Record]:
-    """Constants of one variant at the maximum of its posterior, but for offsets of single laboratories."""
+    """Constants of one variant, but for offsets of single laboratories."""
     variant = source_of(variable, model)
-    return [_record(each, variant) for each in load_constants(variable, model) if each.mechanism not in LEFT]
+    constants = [each for each in load_constants(variable, model) if each.mechanism not in LEFT]
+    if not shipped_file(variable, model).exists():
+        return [_record(each, variant, AT_MAXIMUM) for each in constants]
+    draws = PosteriorDraws.load(variable=variable, model=model)
+    nominal = draws.draw(0)
+    return [_record(_drawn(each, nominal[each.name], draws), variant, NEAREST) for each in constants]
+
+
+AT_MAXIMUM = "maximum a posteriori, 95 % interval"
+NEAREST = "nominal draw of the posterior, 95 % of the draws"
+
+
+def _drawn(each: Constant, value: float, draws: PosteriorDraws) -> Constant:
+    low, _, high = draws.interval(each.name)
+    return replace(each, value=value, low=low, high=high)
 
 
 LEFT = ("laboratories",)
 
 
-def _record(each: Constant, variant: str) -> Record:
+def _record(each: Constant, variant: str, method: str) -> Record:
     channel, _, rest = each.name.partition(" ")
     named = channel in CHANNELS
     return Record(
@@ -69,7 +85,7 @@ def _record(each: Constant, variant: str) -> Record:
         low=min(each.low, each.value),
         high=max(each.high, each.value),
         channel=channel if named else "both",
-        method="maximum a posteriori, 95 % interval",
+        method=method,
         conditions=f"SD {each.narrowed:.2f} times the prior's, {each.prior_low:.3g} to {each.prior_high:.3g}",
         confidence="low" if each.narrowed > NARROWED else "medium",
         use="assumed" if each.narrowed > NARROWED else "calibrate",
