@@ -5,14 +5,22 @@ from __future__ import annotations
 import os
 import pickle
 import shutil
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import hypothesis
 import pytest
 
+from tests.remembered import remember_verdicts
+
 if TYPE_CHECKING:
     from thermicon.perception.validation.validate import ValidationReport
+
+# Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # The same examples on every run: a red suite means a changed program. Slow tests may ask for more.
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
@@ -38,6 +46,20 @@ def tool() -> Callable[[str], str]:
     return find_tool
 
 
+def shared_folder(factory: pytest.TempPathFactory) -> Path:
+    """A folder of this run, the same for all processes that run its tests."""
+    base = factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session", autouse=True)
+def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
+    with pytest.MonkeyPatch.context() as patch:
+        remember_verdicts(patch, shared_folder(tmp_path_factory) / "verdicts")
+        yield
+
+
 @pytest.fixture(scope="session")
 def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationReport:
     """One small validation report for all tests and for all processes that run them: it takes long to compute."""
@@ -45,11 +67,9 @@ def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationRep
 
     from thermicon.perception.validation.validate import validate
 
-    if "PYTEST_XDIST_WORKER" not in os.environ:
-        return validate(people=12, draws=8)
-    kept = tmp_path_factory.getbasetemp().parent / "validation_report.pickle"
+    kept = shared_folder(tmp_path_factory) / "validation_report.pickle"
     with FileLock(f"{kept}.lock"):
         if not kept.exists():
-            kept.write_bytes(pickle.dumps(validate(people=12, draws=8)))
+            kept.write_bytes(pickle.dumps(validate(people=6, draws=4)))
         report: ValidationReport = pickle.loads(kept.read_bytes())
         return report
