@@ -70,6 +70,6 @@ def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationRep
     kept = shared_folder(tmp_path_factory) / "validation_report.pickle"
     with FileLock(f"{kept}.lock"):
         if not kept.exists():
-            kept.write_bytes(pickle.dumps(validate(people=6, draws=4)))
+            kept.write_bytes(pickle.dumps(validate(people=12, draws=8)))
         report: ValidationReport = pickle.loads(kept.read_bytes())
         return report

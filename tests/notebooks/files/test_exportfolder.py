@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.notebooks.surerig import SURE
+from tests.circuit.surerig import SURE
 from thermicon.notebooks.files import export_folder as exportfolder
 from thermicon.notebooks.files import swapping
 from thermicon.notebooks.files.export_folder import check_export_folder, publish

@@ -16,7 +16,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from tests.notebooks.surerig import SURE
+from tests.circuit.surerig import SURE
 from thermicon.notebooks.files.outputs import OutputError, stopped_cleanly, write_together
 
 FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
