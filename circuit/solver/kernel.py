@@ -82,9 +82,7 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
     """
     middle = n // 2
     share = 0.0
-    for i in range(
-        n - 1, -1, -1
-    ):  # T_i = y_i + share·T_{i−1}, where y_i = keep·x_i + link·y_{i+1}: from the deep end up
+    for i in range(n - 1, -1, -1):  # from the deep end up: T_i = y_i + share·T_{i−1}, y_i = keep·x_i + link·y_{i+1}
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i + 1] * share)
         share = g[i] * inverse
         row, j = (upper, i) if i < middle else (lower, n - 1 - i)

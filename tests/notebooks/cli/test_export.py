@@ -91,7 +91,7 @@ class TestRefused:
     """Exit code 3, and nothing written."""
 
     @pytest.mark.parametrize(
-        ("more", "scenarios"), [(("--force", *SURE[2:]), 21), pytest.param((), 483, marks=pytest.mark.slow)]
+        ("more", "scenarios"), [(("--force", *SURE[2:]), 9), pytest.param((), 483, marks=pytest.mark.slow)]
     )
     def test_unsafe_even_when_forced(self, cli: Cli, tmp_path: Path, more: tuple[str, ...], scenarios: int) -> None:
         path = tmp_path / "deep.cue"
