@@ -38,10 +38,7 @@ QUICK: dict[str, tuple[str, str]] = {
     "repeats of a family 12 deep": (nested(12, f"({PAIR}, n in [1, 2, 3])", "hold for a; hold for b"), "E231"),
     "a wave of 1 µs for an hour": ("cue 1\nicon x { sine by 1 K every 0.001 ms for 60 min }", "E220"),
     "the largest sine": ("cue 1\nicon x { sine by 28 K every 1 min for 60 min }", ""),
-    "100,000 members": (
-        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
-        "",
-    ),
+    "10,000 members": (f"cue 1\nicon f({PAIR}) {{ warm by 1 K over a; hold for b }}", ""),
     "a hundred statements of a hundred thousand": (
         f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; " + "hold for b; " * 100 + "}",
         "E231",
@@ -58,6 +55,10 @@ QUICK: dict[str, tuple[str, str]] = {
     "a list without commas": (full("cue 1\nicon f(a in [1", " 1", "] ms) { hold for a }"), "E118"),
 }
 FULL: dict[str, tuple[str, str]] = {
+    "100,000 members": (
+        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
+        "",
+    ),
     "families of ten thousand": (
         full("cue 1\n", lambda n: f"icon f{n}({PAIR}) {{ warm by 1 K over a; hold for b }}\n"),
         "E231",

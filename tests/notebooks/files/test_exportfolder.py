@@ -369,6 +369,7 @@ class TestTwoAtOnce:
         assert names(tmp_path) == ["out"]
 
     @posix
+    @pytest.mark.slow
     def test_two_commands(self, tmp_path: Path) -> None:
         command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-icons", "-o", "out"]
         command += ["--icon", "warming-step", *SURE]
