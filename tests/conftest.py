@@ -8,7 +8,8 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import ModuleType
+from typing import TYPE_CHECKING, cast
 
 import hypothesis
 import pytest
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 # Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
+sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 
 # The same examples on every run: a red suite means a changed program. Slow tests may ask for more.
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
