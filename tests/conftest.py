@@ -33,6 +33,14 @@ hypothesis.settings.load_profile("steady")
 DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}
 
 
+@pytest.hookimpl(tryfirst=True)  # before pytest deselects what is slow
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What reads the validation report is slow: the report alone computes for twenty seconds."""
+    for item in items:
+        if "validation_report" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
+
+
 def find_tool(name: str) -> str:
     """Path of an outside program; without it the test fails where tools are required and is skipped elsewhere."""
     path = shutil.which(name)

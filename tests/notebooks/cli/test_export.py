@@ -282,6 +282,7 @@ def test_a_thermode_says_how_long_its_commands_last(cli: Cli, two: Path, tmp_pat
     assert told["played"]["duration_s"] == told["predicted"]["duration_s"] == 8.0
 
 
+@pytest.mark.slow
 def test_a_slow_device_gets_a_sound_file_that_plays(cli: Cli, two: Path, tmp_path: Path) -> None:
     text = (Path(__file__).parents[3] / "circuit/devices/dc-coupled-audio.toml").read_text(encoding="utf-8")
     (tmp_path / "slow.toml").write_text(text.replace("value = 48000", "value = 100"), encoding="utf-8")

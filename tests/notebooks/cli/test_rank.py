@@ -79,8 +79,8 @@ def test_json_on_stdout_is_nothing_but_json(cli: Cli, two: Path) -> None:
     assert json.loads(said.stdout)["people"] == 5
 
 
-def test_the_table_reads_well_in_a_pipe(process: Cli) -> None:
-    said = process("rank", "six-icons", "--people", 20)
+def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
+    said = process("rank", two, "--people", 20)
     assert said.exit_code == 0, said.stderr
     assert "\x1b" not in said.stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80

@@ -117,7 +117,6 @@ def test_the_waves_of_a_group_differ_in_shape_alone() -> None:
         assert len({(c.duration_s, c.lowest, c.highest) for c in lowered}) == 1
 
 
-@pytest.mark.slow
 def test_every_figure_is_drawn(report: ValidationReport) -> None:
     for name, caption, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
         figure = draw(report)
@@ -130,7 +129,6 @@ def test_every_figure_is_drawn(report: ValidationReport) -> None:
     assert _codes(["1 a", "2 b"]) == ["1a", "2a"]
 
 
-@pytest.mark.slow
 def test_figures_without_draws() -> None:
     bare = validate(people=2, draws=0)
     assert bare.trade_offs == ((), (), ())
