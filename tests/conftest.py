@@ -5,20 +5,40 @@ from __future__ import annotations
 import os
 import pickle
 import shutil
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, cast
 
 import hypothesis
 import pytest
 
+from tests.remembered import remember_verdicts
+
 if TYPE_CHECKING:
     from thermicon.perception.validation.validate import ValidationReport
+
+# Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+# The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
+sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 
 # The same examples on every run: a red suite means a changed program. Slow tests may ask for more.
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("steady")
 
 DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest deselects what is slow
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What reads the validation report is slow: the report alone computes for twenty seconds."""
+    for item in items:
+        if "validation_report" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.slow)
 
 
 def find_tool(name: str) -> str:
@@ -38,6 +58,20 @@ def tool() -> Callable[[str], str]:
     return find_tool
 
 
+def shared_folder(factory: pytest.TempPathFactory) -> Path:
+    """A folder of this run, the same for all processes that run its tests."""
+    base = factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@pytest.fixture(scope="session", autouse=True)
+def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
+    with pytest.MonkeyPatch.context() as patch:
+        remember_verdicts(patch, shared_folder(tmp_path_factory) / "verdicts")
+        yield
+
+
 @pytest.fixture(scope="session")
 def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationReport:
     """One small validation report for all tests and for all processes that run them: it takes long to compute."""
@@ -45,9 +79,7 @@ def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationRep
 
     from thermicon.perception.validation.validate import validate
 
-    if "PYTEST_XDIST_WORKER" not in os.environ:
-        return validate(people=12, draws=8)
-    kept = tmp_path_factory.getbasetemp().parent / "validation_report.pickle"
+    kept = shared_folder(tmp_path_factory) / "validation_report.pickle"
     with FileLock(f"{kept}.lock"):
         if not kept.exists():
             kept.write_bytes(pickle.dumps(validate(people=12, draws=8)))

@@ -80,37 +80,3 @@ class Peltier:
     def greatest_difference_current_A(self, hot_C: float) -> float:
         """Current in A of the greatest difference, Imax = α·Tc,min/R."""
         return self.greatest_heat_current_A(self.coldest_C(hot_C))
-
-    def performance(self, current_A: float, cold_C: float, hot_C: float) -> float:
-        """Heat absorbed for each watt of electrical power (COP); negative where the module does not cool."""
-        power = self.voltage_V(current_A, cold_C, hot_C) * current_A
-        if power == 0:
-            raise ValueError(f"no electrical power at {current_A:g} A, so no coefficient of performance; change it")
-        return self.heat_absorbed_W(current_A, cold_C, hot_C) / power
-
-    def best_performance(self, cold_C: float, hot_C: float) -> float:
-        """Greatest COP at fixed plates: (Tc/ΔT)(√(1 + ZTm) − Th/Tc)/(√(1 + ZTm) + 1), Tm the mean in kelvin.
-
-        >>> module = Peltier(0.0521, 6.35, 1 / 0.1524, 2.6, 2.6)
-        >>> cold, hot = 300 - ZERO_C_IN_K, 313.15 - ZERO_C_IN_K
-        >>> round(module.best_performance(cold, hot), 4), round(module.best_performance_current_A(cold, hot), 4)
-        (3.088, 0.2966)
-        """
-        root = self._root(cold_C, hot_C)
-        cold_K, hot_K = cold_C + ZERO_C_IN_K, hot_C + ZERO_C_IN_K
-        return cold_K / (hot_K - cold_K) * (root - hot_K / cold_K) / (root + 1)
-
-    def best_performance_current_A(self, cold_C: float, hot_C: float) -> float:
-        """Current in A of the greatest COP: αΔT/(R(√(1 + ZTm) − 1))."""
-        return self.seebeck_V_per_K * (hot_C - cold_C) / (self.resistance_ohm * (self._root(cold_C, hot_C) - 1))
-
-    def _root(self, cold_C: float, hot_C: float) -> float:
-        """√(1 + ZTm), for plates between which a greatest COP exists."""
-        greatest = self.greatest_difference_K(hot_C)
-        if not 0 < hot_C - cold_C < greatest:
-            raise ValueError(
-                f"a greatest coefficient of performance needs a hot plate 0 to {greatest:.1f} K warmer than the cold "
-                f"one, not {hot_C - cold_C:.1f} K ({cold_C:g} and {hot_C:g} °C); change a temperature"
-            )
-        mean_K = (cold_C + hot_C) / 2 + ZERO_C_IN_K
-        return math.sqrt(1 + self.figure_of_merit_per_K() * mean_K)

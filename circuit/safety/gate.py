@@ -7,13 +7,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from thermicon.icons.number_text import signed
 
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import stated, tightened
-from ..solver.drive import Drive
+from ..solver.drive import Drive, DriveError
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
 from .demands import Demands
 from .endings import ENDING_S, ENDINGS
@@ -27,7 +29,6 @@ from .repeated import (
     shortest_pause_s,
 )
 from .repetition import Cycle, mapped
-from .scenarios import rest_of
 from .single import Single
 
 WHAT_IT_IS_NOT = (
@@ -199,7 +200,7 @@ def gate(
     True
     """
     return gate_set(
-        [(drive, rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s
+        [(drive, _rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s
     )[0]
 
 
@@ -224,6 +225,18 @@ def gate_set(
     with threadpool_limits(limits=1, user_api="blas"):  # matrices of 50 rows: threads would only wait for each other
         ensemble = Ensemble.of(rig, bridge_A, averaged)
         return _gated(drives, ensemble, rig.limits if limits is None else limits, pause_s)
+
+
+def _rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
+    """The resting current of a drive, by default its first; raises DriveError for an impossible one."""
+    if rest_A is None:
+        if bridge_A is not None:
+            raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")
+        return float(drive.current_A[0])
+    if not np.isfinite(rest_A) or (bridge_A is not None and abs(rest_A) > bridge_A):
+        most = "" if bridge_A is None else f" of at most {bridge_A:g} A"
+        raise DriveError(f"a rest of {rest_A:g} A is not possible; it must be a finite current{most}")
+    return rest_A
 
 
 def _gated(

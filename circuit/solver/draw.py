@@ -42,17 +42,6 @@ def plot_temperatures(trace: Trace, ax: Axes | None = None, probes: bool = False
     return tidy(ax, trace.time_s, "temperature (°C)")
 
 
-def plot_heat_flow(trace: Trace, ax: Axes | None = None) -> Axes:
-    """Draw heat flow into the skin in W/m² at the surface and both receptor depths; returns the Axes."""
-    ax = new_axes(ax)
-    ax.axhline(0, color="#cccccc", lw=0.8)
-    ax.plot(trace.time_s, trace.heat_flow_skin_W_per_m2, color=SKIN, lw=1.4, label="skin surface")
-    ax.plot(trace.time_s, trace.heat_flow_cold_receptor_W_per_m2, color=COOL, lw=1.8, label="cold receptors")
-    warm = trace.heat_flow_warm_receptor_W_per_m2
-    ax.plot(trace.time_s, warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm receptors")
-    return tidy(ax, trace.time_s, "heat flow into\nthe skin (W/m²)")
-
-
 def plot_current(trace: Trace, ax: Axes | None = None) -> Axes:
     """Draw the drive current in A with the driver's limits; positive cools; a thermode has none; returns the Axes."""
     ax = new_axes(ax)

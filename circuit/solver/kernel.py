@@ -61,6 +61,8 @@ meet, C/(δ/2) of both plates in W/K, and weight of the hot plate in the heat si
 TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
 """State of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
 
+SINK_NUMBERS = 4
+
 FREE, MOST_CURRENT, LEAST_CURRENT, VOLTAGE, MODULE = range(5)
 """What limits a current: nothing, the driver's highest or lowest current, its voltage, the module's best cooling."""
 
@@ -70,14 +72,17 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
     """Factor the skin for implicit steps of length `half`; temperatures are above the deep node's.
 
     The upper half (n // 2 lumps) is eliminated downwards and the lower half upwards: two short chains instead of a
-    long one. The lower half is stored in reverse, so that one index runs through both. After the implicit step a lump
-    is KEEP · its old value + LINK · the lump before it in its chain + BACK · the lump after it and, in the upper half,
-    + SLOPE · the cold plate; the sum of WEIGHT · old value gives the first lump without the cold plate's part. `whole`
-    gets the factors from COLD_SHARE to SINK_SHARE.
+    long one. The lower half is stored in reverse, so that one index j runs through both. From old values x the
+    implicit step gives new ones T by elimination and back substitution (`advance`),
+
+        y_j = KEEP_j·x_j + LINK_j·y_{j−1},    T_j = y_j + BACK_j·T_{j+1}  (+ SLOPE_j·T_c in the upper half),
+
+    where a chain continues beyond its last lump with that of the other half. The first lump is COLD_SHARE·T_c plus the
+    sum of WEIGHT · x over all lumps. `whole` gets the factors from COLD_SHARE to SINK_SHARE.
     """
     middle = n // 2
     share = 0.0
-    for i in range(n - 1, -1, -1):  # T_i = keep·T_i,old + link·T_{i+1} + share·T_{i−1}, from the deep end up
+    for i in range(n - 1, -1, -1):  # from the deep end up: T_i = y_i + share·T_{i−1}, y_i = keep·x_i + link·y_{i+1}
         inverse = 1.0 / (cap[i] / half + g[i] + g[i + 1] + perf[i] - g[i + 1] * share)
         share = g[i] * inverse
         row, j = (upper, i) if i < middle else (lower, n - 1 - i)
@@ -122,6 +127,7 @@ def settle(hot, p, sink):
 def regulate_sink(step, p, sink):
     """Power of the heat sink's own controller for the next step: P = P_rest + kp·e + ki·∫e dt within its limits.
 
+    The sink then obeys C_s·dT_s/dt = P + (T_h − T_s)/R_s, which `advance` steps together with the plates.
     The integral is not advanced while the power is at a limit and the error would push it further (anti-windup).
     """
     error = p[SINK_C] - sink[TEMPERATURE]
@@ -211,7 +217,7 @@ def forward(
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
-    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
     probes = places.shape[1]
     at, offset = np.empty((probes, 3), dtype=np.int64), np.empty(probes)
     for lane in lanes:
@@ -267,7 +273,10 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, 
     """Current for the next period and the code of what limits it, from one implicit step over the period.
 
     After that step the first lump is z0 + elim0 · (cold plate), so that a target of the skin becomes one of the cold
-    plate, and the cold plate's balance an equation for the current alone (`plate.current_for_heat_A`).
+    plate, T_aim. Its balance is then an equation for the current alone (`plate.current_for_heat_A`):
+
+        αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
+
     """
     alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
     hot_store, cold_store, out = p[HOT_J_PER_K] / period, p[COLD_J_PER_K] / period, p[SINK_W_PER_K]
@@ -327,7 +336,7 @@ def follow(
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
     upper_p, lower_p, whole_p = np.empty((5, most)), np.empty((5, most)), np.empty(5)
-    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:

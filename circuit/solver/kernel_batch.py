@@ -19,6 +19,7 @@ from .kernel import (
     LONGEST_STEP_S,
     POWER,
     SHORTEST_STEP_S,
+    SINK_NUMBERS,
     TEMPERATURE,
     compiled,
     regulate_sink,
@@ -43,8 +44,8 @@ LANES = 32
 KEEP, GAIN, LINK, ELIM = range(4)
 """Rows of the factored skin, see `factor`."""
 
-SHARE = 4
-"""Weight of the hot plate in its heat sink's implicit step, behind the four numbers of `kernel.settle`."""
+SHARE = SINK_NUMBERS
+"""Place of the hot plate's weight in its heat sink's implicit step, behind the numbers that `kernel.settle` fills."""
 
 THIRD = 1.0 / 3.0
 
@@ -105,7 +106,7 @@ def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
     """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state in °C, hot plate to deep node.
 
     `p` (parameter, lane) and `rig` (lane, parameter) both hold `Network.plates`; `sink` (lane, 5) is each lane's heat
-    sink as in `kernel.settle`, then SHARE. The equations of the plates are those of `kernel.advance`.
+    sink as in `kernel.settle`, then SHARE. Plates and heat sinks obey the equations of `kernel.advance`.
     """
     half = 0.5 * step
     sweep(n, m[KEEP], m[GAIN], m[LINK], x, z)
@@ -176,7 +177,7 @@ def forward(
     cap, g, perf = np.empty((most, LANES)), np.empty((most, LANES)), np.empty((most, LANES))
     x, z, m = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.zeros((4, most, LANES))
     p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
-    sink = np.zeros((LANES, 5))
+    sink = np.zeros((LANES, SINK_NUMBERS + 1))
     probes = places.shape[1]
     at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
     same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
@@ -186,7 +187,7 @@ def forward(
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         for lane in range(LANES):
             if not math.isnan(sinks[block[lane], TEMPERATURE]):
-                for j in range(4):
+                for j in range(SINK_NUMBERS):
                     sink[lane, j] = sinks[block[lane], j]
         for q in range(probes):
             same[q] = True
@@ -242,7 +243,7 @@ def forward(
                 done += step
                 since += step
         for lane in range(LANES):
-            for j in range(4):
+            for j in range(SINK_NUMBERS):
                 sinks[block[lane], j] = sink[lane, j]
             for i in range(count[rig_of[block[lane]]] + 2):
                 final[block[lane], i] = x[i, lane]
@@ -260,7 +261,7 @@ def follow(
     x, z, weight = np.empty((most + 2, LANES)), np.zeros((most, LANES)), np.empty((most, LANES))
     m, mp = np.zeros((4, most, LANES)), np.zeros((4, most, LANES))
     p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
-    sink, constant, z0 = np.zeros((LANES, 5)), np.empty(LANES), np.empty(LANES)
+    sink, constant, z0 = np.zeros((LANES, SINK_NUMBERS + 1)), np.empty(LANES), np.empty(LANES)
     current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces

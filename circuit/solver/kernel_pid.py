@@ -8,9 +8,24 @@ import math
 
 import numpy as np
 
-from .kernel import FREE, LONGEST_STEP_S, TEMPERATURE, advance, compiled, factor, limited, load, settle, weighed
+from .kernel import (
+    FREE,
+    LONGEST_STEP_S,
+    SINK_NUMBERS,
+    TEMPERATURE,
+    advance,
+    compiled,
+    factor,
+    limited,
+    load,
+    settle,
+    weighed,
+)
 from .network import COLD, HOT, SKIN
 from .plate import DEEP_C
+
+LAG_S, KP, KI, KD = range(4)
+"""Places in a rig's gains: lag of the thermistor s, kp A/K, ki A/(K·s), kd A·s/K."""
 
 
 @compiled
@@ -21,13 +36,13 @@ def regulate(
 
     At the start of a period I = I_bias + kp·e + ki·∫e dt + kd·dT_felt/dt, with e = T_felt − set-point and T_felt the
     display as the thermistor feels it: dT_felt/dt = (T_display − T_felt)/lag. `setpoint` (cue, period) is in °C,
-    `gains` (rig, 4) are lag s, kp A/K, ki A/(K·s), kd A·s/K, `bias` (lane,) is the current A that holds the start.
+    `gains` (rig, 4) have the places LAG_S to KD, `bias` (lane,) is the current A that holds the start.
     `state`, `current`, `reached` and `why` are those of `kernel.follow`. The integral is not advanced while the current
     is at a limit and the error would push it further (anti-windup).
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
-    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(4)
+    y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:
@@ -35,7 +50,7 @@ def regulate(
         n, p = count[r], plates[r]
         load(n, state[lane], p, x)
         top, low = x[SKIN : SKIN + n // 2], x[SKIN + n // 2 : SKIN + n]
-        lag, kp, ki, kd = gains[r, 0], gains[r, 1], gains[r, 2], gains[r, 3]
+        lag, kp, ki, kd = gains[r, LAG_S], gains[r, KP], gains[r, KI], gains[r, KD]
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
         settle(state[lane, 0], p, sink)
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0

@@ -15,7 +15,24 @@ import numpy.typing as npt
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.skin import Column
-from .plate import DEEP_C, PLATE_NUMBERS, SINK_C, SINK_POWER_W
+from .plate import (
+    ALPHA,
+    COLD_J_PER_K,
+    COMPLIANCE_V,
+    CONDUCTANCE,
+    DEEP_C,
+    HIGHEST_A,
+    HOT_J_PER_K,
+    LOWEST_A,
+    PLATE_NUMBERS,
+    RESISTANCE,
+    SINK_C,
+    SINK_J_PER_K,
+    SINK_KI,
+    SINK_KP,
+    SINK_POWER_W,
+    SINK_W_PER_K,
+)
 
 RECORDED = (
     "hot_plate_C",
@@ -93,31 +110,15 @@ def skin_network_of(rig: Rig) -> Network:
 def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
     """Return the lumps of a rig on another column of its skin, over a deep (and blood) temperature in °C."""
     module, driver, controller = rig.module, rig.driver, rig.heat_sink.controller
-    plates = np.array(
-        [
-            module.seebeck_V_per_K,
-            module.resistance_ohm,
-            1 / module.thermal_resistance_K_per_W,
-            module.hot_plate_J_per_K,
-            module.cold_plate_J_per_K,
-            rig.heat_sink.temperature_C,
-            1 / rig.heat_sink.resistance_K_per_W,
-            deep_C,
-            driver.current_min_A,
-            driver.current_max_A,
-            driver.voltage_limit_V,
-            *(
-                (0.0, 0.0, 0.0, 0.0)
-                if controller is None
-                else (
-                    controller.capacity_J_per_K,
-                    controller.kp_W_per_K,
-                    controller.ki_W_per_Ks,
-                    controller.power_limit_W,
-                )
-            ),
-        ]
-    )
+    plates = np.zeros(PLATE_NUMBERS)
+    plates[[ALPHA, RESISTANCE]] = module.seebeck_V_per_K, module.resistance_ohm
+    plates[[CONDUCTANCE, SINK_W_PER_K]] = 1 / module.thermal_resistance_K_per_W, 1 / rig.heat_sink.resistance_K_per_W
+    plates[[HOT_J_PER_K, COLD_J_PER_K]] = module.hot_plate_J_per_K, module.cold_plate_J_per_K
+    plates[[SINK_C, DEEP_C]] = rig.heat_sink.temperature_C, deep_C
+    plates[[LOWEST_A, HIGHEST_A, COMPLIANCE_V]] = driver.current_min_A, driver.current_max_A, driver.voltage_limit_V
+    if controller is not None:
+        plates[[SINK_J_PER_K, SINK_POWER_W]] = controller.capacity_J_per_K, controller.power_limit_W
+        plates[[SINK_KP, SINK_KI]] = controller.kp_W_per_K, controller.ki_W_per_Ks
     return _network(rig, column, plates)
 
 

@@ -1,10 +1,25 @@
 """Arguments of the statement builders, checked as the language checks its numbers; messages name call and argument."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from inspect import cleandoc
 from numbers import Real
+from typing import TypeVar
 
 from .units import UNITS, Kind
 from .value_limits import fault
+
+Builder = TypeVar("Builder", bound=Callable[..., object])
+
+
+def documented(sections: str) -> Callable[[Builder], Builder]:
+    """Return a decorator that puts sections before the examples of a docstring, for builders of one signature."""
+
+    def add(builder: Builder) -> Builder:
+        summary, _, examples = cleandoc(builder.__doc__ or "").partition("Examples\n")
+        builder.__doc__ = f"{summary}{sections}\nExamples\n{examples}"
+        return builder
+
+    return add
 
 
 def one_of(call: str, given: Mapping[str, object]) -> None:

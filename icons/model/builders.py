@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .builder_arguments import given, number, one_of
+from .builder_arguments import documented, given, number, one_of
 from .statements import (
     Bound,
     Current,
@@ -22,31 +22,35 @@ if TYPE_CHECKING:
     from .icon import Icon
 
 
+CHANGE = """Parameters
+----------
+by
+    Difference in K, positive for `cool` and `warm`, signed for `ramp`; give `by` or `to`.
+to
+    Temperature in °C.
+at
+    Positive rate in K/s; give `at` or `over`.
+over
+    Time in s.
+
+Returns
+-------
+Ramp
+    The statement ``cool``, ``warm`` or ``change``.
+
+Raises
+------
+ValueError
+    Unless one of each pair is given, within the limits of the language.
+"""
+"""What the docstrings of `cool`, `warm` and `ramp` share."""
+
+
+@documented(CHANGE)
 def cool(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
     """Cool by a difference or to a temperature, at a rate or over a time.
-
-    Parameters
-    ----------
-    by
-        Positive difference in K; give `by` or `to`.
-    to
-        Temperature in °C.
-    at
-        Positive rate in K/s; give `at` or `over`.
-    over
-        Time in s.
-
-    Returns
-    -------
-    Ramp
-        The statement ``cool``.
-
-    Raises
-    ------
-    ValueError
-        Unless one of each pair is given, within the limits of the language.
 
     Examples
     --------
@@ -56,31 +60,11 @@ def cool(
     return _change("cool", "cool", by, to, at, over)
 
 
+@documented(CHANGE)
 def warm(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
     """Warm by a difference or to a temperature, at a rate or over a time.
-
-    Parameters
-    ----------
-    by
-        Positive difference in K; give `by` or `to`.
-    to
-        Temperature in °C.
-    at
-        Positive rate in K/s; give `at` or `over`.
-    over
-        Time in s.
-
-    Returns
-    -------
-    Ramp
-        The statement ``warm``.
-
-    Raises
-    ------
-    ValueError
-        Unless one of each pair is given, within the limits of the language.
 
     Examples
     --------
@@ -90,31 +74,11 @@ def warm(
     return _change("warm", "warm", by, to, at, over)
 
 
+@documented(CHANGE)
 def ramp(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
     """Change by a signed difference or to a temperature, at a rate or over a time.
-
-    Parameters
-    ----------
-    by
-        Difference in K, negative for cooling; give `by` or `to`.
-    to
-        Temperature in °C.
-    at
-        Positive rate in K/s; give `at` or `over`.
-    over
-        Time in s.
-
-    Returns
-    -------
-    Ramp
-        The statement ``change``.
-
-    Raises
-    ------
-    ValueError
-        Unless one of each pair is given, within the limits of the language.
 
     Examples
     --------

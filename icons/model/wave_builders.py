@@ -1,6 +1,6 @@
 """Steps, pulses and waves written in Python as they are in a cue text: ``pulse(by=-3, duration=0.5)``."""
 
-from .builder_arguments import amperes, given, number, one_of
+from .builder_arguments import amperes, documented, given, number, one_of
 from .shapes import Pulse, Shape, Start, Step, Wave
 
 
@@ -73,6 +73,35 @@ def pulse(*, by: float | None = None, by_A: float | None = None, duration: float
     return Pulse("change", by, amount, given("pulse", "duration", duration, "time"))
 
 
+WAVE = """Parameters
+----------
+by
+    Amplitude in K; give `by` or `by_A`.
+every
+    Period in s.
+duration
+    Duration in s: a whole number of periods, unless `cut` is true.
+starting
+    Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
+cut
+    Whether the last period may be incomplete.
+by_A
+    Amplitude in A, under current control.
+
+Returns
+-------
+Wave
+    The statement of that name.
+
+Raises
+------
+ValueError
+    For another direction, and for numbers outside the limits of the language.
+"""
+"""What the docstrings of all waves share."""
+
+
+@documented(WAVE)
 def sine(
     *,
     by: float | None = None,
@@ -84,31 +113,6 @@ def sine(
 ) -> Wave:
     """Play a sine about the present level.
 
-    Parameters
-    ----------
-    by
-        Amplitude in K; give `by` or `by_A`.
-    every
-        Period in s.
-    duration
-        Duration in s: a whole number of periods, unless `cut` is true.
-    starting
-        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
-    cut
-        Whether the last period may be incomplete.
-    by_A
-        Amplitude in A, under current control.
-
-    Returns
-    -------
-    Wave
-        The statement ``sine``.
-
-    Raises
-    ------
-    ValueError
-        For another direction, and for numbers outside the limits of the language.
-
     Examples
     --------
     >>> sine(by=3, every=4, duration=12, starting="cool")
@@ -117,6 +121,7 @@ def sine(
     return _wave("sine", by, every, duration, starting, cut, by_A)
 
 
+@documented(WAVE)
 def square(
     *,
     by: float | None = None,
@@ -128,31 +133,6 @@ def square(
 ) -> Wave:
     """Play a square wave about the present level.
 
-    Parameters
-    ----------
-    by
-        Amplitude in K; give `by` or `by_A`.
-    every
-        Period in s.
-    duration
-        Duration in s: a whole number of periods, unless `cut` is true.
-    starting
-        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
-    cut
-        Whether the last period may be incomplete.
-    by_A
-        Amplitude in A, under current control.
-
-    Returns
-    -------
-    Wave
-        The statement ``square``.
-
-    Raises
-    ------
-    ValueError
-        For another direction, and for numbers outside the limits of the language.
-
     Examples
     --------
     >>> square(by=3, every=4, duration=10, cut=True) == Wave("square", by_K=3, period_s=4, duration_s=10, cut=True)
@@ -161,6 +141,7 @@ def square(
     return _wave("square", by, every, duration, starting, cut, by_A)
 
 
+@documented(WAVE)
 def triangle(
     *,
     by: float | None = None,
@@ -172,31 +153,6 @@ def triangle(
 ) -> Wave:
     """Play a triangle wave about the present level.
 
-    Parameters
-    ----------
-    by
-        Amplitude in K; give `by` or `by_A`.
-    every
-        Period in s.
-    duration
-        Duration in s: a whole number of periods, unless `cut` is true.
-    starting
-        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
-    cut
-        Whether the last period may be incomplete.
-    by_A
-        Amplitude in A, under current control.
-
-    Returns
-    -------
-    Wave
-        The statement ``triangle``.
-
-    Raises
-    ------
-    ValueError
-        For another direction, and for numbers outside the limits of the language.
-
     Examples
     --------
     >>> triangle(by=3, every=4, duration=8) == Wave("triangle", by_K=3, period_s=4, duration_s=8)
@@ -205,6 +161,7 @@ def triangle(
     return _wave("triangle", by, every, duration, starting, cut, by_A)
 
 
+@documented(WAVE)
 def sawtooth(
     *,
     by: float | None = None,
@@ -215,31 +172,6 @@ def sawtooth(
     by_A: float | None = None,
 ) -> Wave:
     """Play a wave that rises slowly and falls in a step, or the reverse.
-
-    Parameters
-    ----------
-    by
-        Amplitude in K; give `by` or `by_A`.
-    every
-        Period in s.
-    duration
-        Duration in s: a whole number of periods, unless `cut` is true.
-    starting
-        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
-    cut
-        Whether the last period may be incomplete.
-    by_A
-        Amplitude in A, under current control.
-
-    Returns
-    -------
-    Wave
-        The statement ``sawtooth``.
-
-    Raises
-    ------
-    ValueError
-        For another direction, and for numbers outside the limits of the language.
 
     Examples
     --------

@@ -1,28 +1,20 @@
-"""Few corner points for a recording: straight pieces that stay within a tolerance of every reading."""
+"""Few corner points for a recording: straight pieces that stay within a tolerance of every reading.
+
+Ramer, Douglas and Peucker's cuts come first, at twice the tolerance, since noise may reach the tolerance on both sides.
+Then the pieces become lines of least squares, what leaves the tolerance is cut again, and what is not needed goes.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
-from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .fewest import fewest_links
-from .rounding import rounded
-from .settle import Path, settle
-from .tube import SPARE, Tube, tube_about
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
+from .course import SPARE, Array, Course, Path, course_of
 
 MOST_CORNERS = 500
-_SHARES, _MORE = (0.8, 0.9), 1.15
-_MOST_TRIES = 20
+_MOST_DECIMALS = 12
 
 
 def fit_corners(
@@ -43,15 +35,15 @@ def fit_corners(
     >>> fit_corners([0, 1, 2, 3, 4, 5], [32.01, 31.99, 29, 26, 26.01, 25.99], tolerance=0.05)
     ((0.0, 1.0, 3.0, 5.0), (32.0, 32.0, 26.0, 26.0))
     """
-    time, reading = _proved(time_s, value, tolerance, start)
-    tube = tube_about(time, reading, tolerance, start)
-    path = _first_path(tube, start)
-    if path is None:
+    time, reading = _checked(time_s, value, tolerance, start)
+    course = course_of(time, reading, tolerance, start)
+    path = _sparse(course, _inside(course))
+    if len(path[0]) > MOST_CORNERS:
         raise ValueError(_too_many(reading, tolerance))
-    path = _settled_inside(path, tube)
-    path = _joined(path, tube, _holds(path, tube.tolerance))
-    path = _joined(path, tube, _recurring(path, tube.tolerance))
-    return rounded(path, tube, start is not None)
+    times, values = _rounded(course, _shared(course, path, tolerance), tolerance)
+    flat = np.diff(values) == 0
+    corner = np.concatenate(([True], ~(flat[1:] & flat[:-1]), [True]))
+    return tuple(times[corner].tolist()), tuple((values[corner] + 0.0).tolist())
 
 
 def noise(value: Array) -> float:
@@ -64,7 +56,7 @@ def noise(value: Array) -> float:
     return float(np.median(bends)) / (0.6745 * math.sqrt(6)) if bends.size else 0.0
 
 
-def _proved(
+def _checked(
     time_s: Sequence[float] | Array, value: Sequence[float] | Array, tolerance: float, start: float | None
 ) -> tuple[Array, Array]:
     time, reading = np.array(time_s, dtype=np.float64), np.array(value, dtype=np.float64)
@@ -87,113 +79,94 @@ def _proved(
     return time, reading
 
 
-def _first_path(tube: Tube, start: float | None) -> Path | None:
-    """Return a path of few corners, or None; at a step of the recording it has a corner on each side."""
-    found = _fewest(tube, 1 - SPARE, start, MOST_CORNERS)
-    if found is None:
-        return None
-    for share in _SHARES:
-        if (roomy := _fewest(tube, share, start, len(found.time))) is not None:
-            return roomy
-    if tube.holds(settle(found, tube)):
-        return found
-    # A path that hugs the tube leaves no room for holds and short decimals: a few corners more are well spent.
-    tried = (_fewest(tube, share, start, int(_MORE * len(found.time))) for share in _SHARES)
-    return next((roomy for roomy in tried if roomy is not None), found)
-
-
-def _fewest(tube: Tube, share: float, start: float | None, most: int) -> Path | None:
-    room = tube.room * share
-    low, high = tube.reading - room, tube.reading + room
-    if start is not None:
-        low[0] = high[0] = start
-    times, values = list[float](), list[float]()
-    pinned = list[bool]()
-    for first, end in pairwise([*tube.begins.tolist(), len(tube.time)]):
-        time, bottom, top = (array[first:end].tolist() for array in (tube.time, low, high))
-        if (found := fewest_links(time, bottom, top, most - len(times) - 1)) is None:
-            return None
-        alone = end - first == 1
-        times += found[0][alone:]
-        values += found[1][alone:]
-        pinned += [True, *[False] * (len(found[0]) - 2), True][alone:]
-    held = np.zeros(len(times), dtype=bool)
-    if start is not None:
-        held[0], values[0] = True, start
-    path = Path(np.array(times), np.array(values), np.arange(len(times)), np.array(pinned), held)
-    return path.without(np.flatnonzero(np.diff(times) <= 0) + 1)
-
-
-def _settled_inside(path: Path, tube: Tube) -> Path:
-    """Return the path that fits best, where that keeps to the tube; elsewhere the path stays as it is, and is kept."""
-    best, stay = settle(path, tube), np.zeros(len(path.time), dtype=bool)
-    while True:
-        level, time = np.where(stay, path.level, best.level), np.where(stay, path.time, best.time)
-        mixed = replace(path, time=time, level=level, pinned=path.pinned | stay, held=path.held | stay)
-        fault = tube.at_fault(mixed)
-        if stay[fault].all():
-            return mixed
-        stay[fault] = True
-
-
-def _joined(path: Path, tube: Tube, pairs: list[tuple[int, int]]) -> Path:
-    """Return the path with as many pairs of corners on one level as the tube allows; earlier pairs are preferred."""
-    wanted, left_over = pairs, list[tuple[int, int]]()
-    while wanted:
-        made, fault = _on_one_level(path, tube, wanted)
-        if made is not None:
-            path = made
+def _inside(course: Course) -> Path:
+    """Return a path that keeps to the course, or one of more corners than are allowed."""
+    cuts = course.cuts(2.0)
+    while len(cuts) <= MOST_CORNERS:
+        path = course.fit(course.time[cuts])
+        if course.holds(path):
+            return path
+        more = np.union1d(cuts, course.worst(path))
+        if len(more) == len(cuts):
             break
-        kept = [pair for pair in wanted if not fault.intersection(pair)]
-        kept = kept if len(kept) < len(wanted) else wanted[: len(wanted) // 2]
-        left_over += [pair for pair in wanted if pair not in kept]
-        wanted = kept
-    for pair in sorted(left_over, key=pairs.index)[:_MOST_TRIES]:
-        path = _on_one_level(path, tube, [pair])[0] or path
-    same = np.diff(path.which) == 0
-    return path.without(np.flatnonzero(same[1:] & same[:-1]) + 1)
+        cuts = more
+    cuts = course.cuts(1.0)
+    return course.time[cuts], course.value[cuts]
 
 
-def _on_one_level(path: Path, tube: Tube, pairs: list[tuple[int, int]]) -> tuple[Path | None, set[int]]:
-    """Return the path with pairs of corners on one level, or None and the corners that leave the tube then."""
-    joined = path.joined(pairs)
-    settled = settle(joined, tube)
-    if tube.holds(settled):
-        return settled, set()
-    # What fits best on the whole leaves the tube somewhere: move nothing but the levels that became one.
-    members = np.bincount(path.which, minlength=len(path.level))[path.which]
-    changed = np.bincount(joined.which)[joined.which] != members
-    held = joined.held.copy()
-    held[joined.which[~changed]] = True
-    settled = settle(replace(joined, pinned=np.ones_like(joined.pinned), held=held), tube)
-    settled = replace(settled, pinned=joined.pinned, held=joined.held)
-    return (settled, set()) if tube.holds(settled) else (None, set(tube.at_fault(settled).tolist()))
+def _sparse(course: Course, path: Path) -> Path:
+    """Return the path without the corners that it can do without."""
+    fixed, k = set(course.time[course.fixed].tolist()), 1
+    while k < len(path[0]) - 1 <= 4 * MOST_CORNERS:
+        shorter = course.fit(np.delete(path[0], k)) if path[0][k] not in fixed else path
+        if shorter is not path and course.holds(shorter):
+            path, k = shorter, max(k - 1, 1)
+        else:
+            k += 1
+    return path
 
 
-def _holds(path: Path, tolerance: float) -> list[tuple[int, int]]:
-    """Return the ends of pieces that rise or fall by so little that they may be holds, the flattest first."""
-    change = np.abs(np.diff(path.value))
-    pieces = [j for j in np.argsort(change, kind="stable").tolist() if change[j] <= 2 * tolerance]
-    return [(j, j + 1) for j in pieces if not (path.pinned[j] and path.pinned[j + 1])]
+def _shared(course: Course, path: Path, tolerance: float) -> Path:
+    """Return the path with corners on one level that are within the tolerance of one another, as far as it holds."""
+    times, values = path
+    level = np.arange(len(values))
+    order = np.argsort(values, kind="stable").tolist()
+    lowest = order[0]
+    for corner in order:
+        lowest = lowest if values[corner] - values[lowest] <= tolerance * (1 + SPARE) else corner
+        level[corner] = lowest
+    while True:
+        joined = course.levelled(times, level)
+        at_fault = course.at_fault(joined)
+        shared = at_fault[np.bincount(level)[level[at_fault]] > 1]
+        if not shared.size:
+            return path if at_fault.size else joined
+        level[shared] = len(values) + shared
 
 
-def _recurring(path: Path, tolerance: float) -> list[tuple[int, int]]:
-    """Return pairs of corners that may share a level: the two ends, any corner and the first, holds close together."""
-    value, last = path.value, len(path.time) - 1
-    pairs = [(0, last)] if abs(value[last] - value[0]) <= tolerance else []
-    pairs += [(0, j) for j in range(1, last) if abs(value[j] - value[0]) <= tolerance / 2]
-    flat = [j for j in range(last) if path.which[j] == path.which[j + 1]]
-    flat.sort(key=lambda j: value[j])
-    for one, other in pairwise(flat):
-        if value[other] - value[one] <= tolerance / 2:
-            pairs.append((one, other))
-    return [pair for pair in pairs if path.which[pair[0]] != path.which[pair[1]]]
+def _rounded(course: Course, path: Path, tolerance: float) -> Path:
+    """Return recorded times and values of corners, in as few decimals as their noise makes sensible."""
+    late = np.interp(path[0], course.time, course.late)
+    times, values = path[0] - late, path[1]
+    cost = min(max(tolerance * (1 + float(course.excess(path).max())) / 2, tolerance / 100), tolerance / 5)
+    slope = np.abs(np.diff(values) / np.diff(path[0]))
+    steepest = np.maximum(np.append(slope, 0.0), np.append(0.0, slope))
+    coarse = max(0, -math.floor(math.log10(tolerance / 2)))
+    read, level = np.isin(path[0], course.time), np.unique(values, return_inverse=True)[1]
+    finer = np.zeros(len(times), dtype=np.int64)
+    while finer.max() < _MOST_DECIMALS:
+        short_times = np.array(
+            [
+                t if at else _short(t, 1, cost / s if s else 1.0, n)
+                for t, at, s, n in zip(times.tolist(), read, steepest, finer.tolist(), strict=True)
+            ]
+        )
+        short_values = np.array(
+            [_short(v, coarse, cost, n) for v, n in zip(values.tolist(), finer.tolist(), strict=True)]
+        )
+        if course.prescribed:
+            short_values[level == level[0]] = course.value[0]
+        at_fault = course.at_fault((short_times + late, short_values))
+        if not at_fault.size:
+            return short_times, short_values
+        finer[np.isin(level, level[at_fault])] += 1
+    return times, values
+
+
+def _short(number: float, coarse: int, cost: float, finer: int) -> float:
+    """Return a number in the fewest decimals, `coarse` or more, that change it by at most `cost`, and `finer` more."""
+    decimals = next(
+        (n for n in range(coarse, _MOST_DECIMALS) if abs(round(number, n) - number) <= cost), _MOST_DECIMALS
+    )
+    return round(number, decimals + finer)
 
 
 def _too_many(reading: Array, tolerance: float) -> str:
     scatter = noise(reading)
-    said = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
+    message = f"{MOST_CORNERS} corners are not enough to stay within {tolerance:g} of every reading"
     if 3 * scatter > tolerance:
         better = float(f"{6 * scatter:.1g}")
-        said += f"; the readings scatter by about {scatter:.2g} (standard deviation), so try a tolerance of {better:g}"
-    return said
+        message += (
+            f"; the readings scatter by about {scatter:.2g} (standard deviation), so try a tolerance of {better:g}"
+        )
+    return message

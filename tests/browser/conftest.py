@@ -28,7 +28,7 @@ LAB = (
 
 SMOKE = {
     "test_text_and_curve_stay_in_step",  # JupyterLab
-    "test_the_page_designs_compares_and_exports",  # the page under Voila
+    "test_the_page_starts_and_shows_the_curve_of_what_is_typed",  # the page under Voila
     "test_a_view_greets_and_draws_the_first_frame",  # the canvas alone
 }
 """The tests of this folder that belong to the ordinary suite; all others are slow."""

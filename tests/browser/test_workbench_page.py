@@ -20,15 +20,26 @@ from tests.browser.onbench import (
 )
 
 
-def test_the_page_designs_compares_and_exports(
-    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
-) -> None:
+def open_page(page: Page, serve_page: Callable[[Path], Server], tmp_path: Path) -> None:
     notebook = tmp_path / "workbench.ipynb"
     with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
         shutil.copy(shipped, notebook)
     page.goto(serve_page(tmp_path).url)
     wait_until_drawn(page)
     expect(root(page)).to_have_attribute("data-icon", "cooling-step")
+
+
+def test_the_page_starts_and_shows_the_curve_of_what_is_typed(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path
+) -> None:
+    open_page(page, serve_page, tmp_path)
+    type_drag_and_err(page)
+
+
+def test_the_page_designs_compares_and_exports(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
+) -> None:
+    open_page(page, serve_page, tmp_path)
     shot("page-design")
     type_below_the_first_screen(page)
     type_drag_and_err(page)

@@ -8,7 +8,10 @@ import pickle
 import shutil
 import subprocess
 import sys
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -19,8 +22,56 @@ from thermicon.circuit.userfolder import NotPrivate, private_folder, read_privat
 POSIX = sys.platform != "win32"
 
 
+STARTER = """
+import os, signal, sys
+import thermicon.circuit.compiled
+from numba import njit
+signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+njit(lambda x: x + 1.0)(1.0)  # what numba sets up at its first compilation
+for line in sys.stdin:
+    sources, cache, result = line.rstrip("\\n").split("\\t")
+    if os.fork():
+        continue
+    os.environ["THERMICON_CACHE"] = cache
+    sys.path.insert(0, sources)
+    sys.stderr = open(result + ".stderr", "w")
+    import outer
+    with open(result + ".draft", "w") as file:
+        print(outer.total(3.0), sum(outer.total.stats.cache_hits.values()), file=file)
+    sys.stderr.close()
+    os.rename(result + ".draft", result)
+    os._exit(0)
+"""
+"""A program that has imported numba, which takes seconds, and forks a process of its own for each run."""
+
+Run = Callable[[Path, Path], tuple[float, int, str]]
+
+
 @pytest.fixture(scope="module")
-def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    """``run(sources, cache)``: result in a new process, how often code was read, what stderr said."""
+    results, number = tmp_path_factory.mktemp("results"), count()
+    with subprocess.Popen([sys.executable, "-B", "-c", STARTER], stdin=subprocess.PIPE, text=True) as starter:
+        assert starter.stdin is not None
+
+        def start(sources: Path, cache: Path) -> tuple[float, int, str]:
+            assert starter.stdin is not None
+            result = results / str(next(number))
+            starter.stdin.write(f"{sources}\t{cache}\t{result}\n")
+            starter.stdin.flush()
+            for _ in range(1200):
+                if result.exists():
+                    break
+                time.sleep(0.05)
+            value, hits = result.read_text().split()
+            return float(value), int(hits), Path(f"{result}.stderr").read_text()
+
+        yield start
+        starter.stdin.close()
+
+
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory, run: Run) -> Path:
     """Two modules, a compiled function that calls one of another file, which reads a constant of a third; and a run."""
     whole = tmp_path_factory.mktemp("compiled")
     folder = whole / "sources"
@@ -45,25 +96,7 @@ def sources(first: Path, tmp_path: Path) -> Path:
     return tmp_path / "sources"
 
 
-def run(sources: Path, cache: Path) -> tuple[float, int, str]:
-    """Result of the function in a process of its own, how often its machine code was read, and what stderr said."""
-    program = (
-        "import sys\nsys.path.insert(0, sys.argv[1])\nimport outer\n"
-        "print(outer.total(3.0), sum(outer.total.stats.cache_hits.values()))\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-B", "-c", program, str(sources)],
-        env={**os.environ, "THERMICON_CACHE": str(cache)},
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=True,
-    )
-    value, hits = done.stdout.split()
-    return float(value), int(hits), done.stderr
-
-
-def test_processes_that_compile_the_same_at_once_share_a_folder(sources: Path, tmp_path: Path) -> None:
+def test_processes_that_compile_the_same_at_once_share_a_folder(run: Run, sources: Path, tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "cache")
     with ThreadPoolExecutor() as pool:
         assert {result[0] for result in pool.map(run, [sources] * 3, [tmp_path / "cache"] * 3)} == {7.0}
@@ -72,7 +105,7 @@ def test_processes_that_compile_the_same_at_once_share_a_folder(sources: Path, t
     assert sorted(path.name.partition("-")[0] for path in kept.iterdir()) == ["part", "total"]
 
 
-def test_machine_code_is_kept_and_read_again(sources: Path, tmp_path: Path) -> None:
+def test_machine_code_is_kept_and_read_again(run: Run, sources: Path, tmp_path: Path) -> None:
     assert run(sources, tmp_path / "cache") == (7.0, 1, "")
     (kept,) = (tmp_path / "cache" / "compiled").iterdir()
     assert kept.stat().st_mode & 0o777 == 0o700
@@ -90,14 +123,14 @@ def test_machine_code_is_kept_and_read_again(sources: Path, tmp_path: Path) -> N
     ],
 )
 def test_a_change_in_another_file_is_seen(
-    sources: Path, tmp_path: Path, file: str, old: str, new: str, expected: float
+    run: Run, sources: Path, tmp_path: Path, file: str, old: str, new: str, expected: float
 ) -> None:
     (sources / file).write_text((sources / file).read_text().replace(old, new))
     assert run(sources, tmp_path / "cache") == (expected, 0, "")
 
 
 @pytest.mark.parametrize("damage", [b"", None], ids=["empty", "a bit"])
-def test_damaged_machine_code_is_compiled_anew(sources: Path, tmp_path: Path, damage: bytes | None) -> None:
+def test_damaged_machine_code_is_compiled_anew(run: Run, sources: Path, tmp_path: Path, damage: bytes | None) -> None:
     for path in (tmp_path / "cache" / "compiled").glob("*/*"):
         data = bytearray(path.read_bytes())
         data[len(data) // 2] ^= 0xFF
@@ -118,7 +151,7 @@ class Evil:
 
 @pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")
 @pytest.mark.parametrize("how", ["folder", "file", "link"])
-def test_what_others_can_write_is_never_read(sources: Path, tmp_path: Path, how: str) -> None:
+def test_what_others_can_write_is_never_read(run: Run, sources: Path, tmp_path: Path, how: str) -> None:
     cache, mark = tmp_path / "cache", tmp_path / "mark"
     content = pickle.dumps(Evil(mark))
     forged = hashlib.sha256(content).digest() + content
@@ -138,7 +171,7 @@ def test_what_others_can_write_is_never_read(sources: Path, tmp_path: Path, how:
     assert len(said.splitlines()) == (how == "folder")
 
 
-def test_without_a_place_it_is_compiled_in_memory_and_said_once(sources: Path, tmp_path: Path) -> None:
+def test_without_a_place_it_is_compiled_in_memory_and_said_once(run: Run, sources: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     value, hits, said = run(sources, tmp_path / "file" / "cache")
     assert (value, hits) == (7.0, 0)

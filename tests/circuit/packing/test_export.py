@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import DeliveredDrive, Device, Prepared, Rig, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
@@ -36,6 +37,12 @@ COLD = parse(
 @cache
 def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
     return prepare(SIX[name], rig, Device.load(device), load_format(form))
+
+
+@cache
+def passed(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
+    """The same, with a made-up verdict where what is refused or written does not depend on it."""
+    return prepare(SIX[name], rig, Device.load(device), load_format(form), gate=GreenVerdict)
 
 
 def coarse_bridge() -> Device:
@@ -71,20 +78,17 @@ def test_what_is_unsafe_is_refused_and_cannot_be_packed() -> None:
 
 def test_what_is_not_reached_is_refused_with_the_reason_and_what_it_takes() -> None:
     rig = RIG.with_(**{"driver.current_limit_A": 0.5})
-    (refusal,) = ready(rig=rig).refusals
+    (refusal,) = passed(rig=rig).refusals
     assert str(refusal).startswith("NOT reached: misses its target by ")
     assert refusal.forcible
     taken = float(re.search(r"it takes ±([\d.]+) A, and driver.current_limit_A is 0.5 A: use ", str(refusal))[1])  # type: ignore[index]
-    enough, less = (
-        prepare(SIX["cooling-step"], RIG.with_(**{"driver.current_limit_A": a}), Device.load("dac-16"), CSV).refusals
-        for a in (taken, taken - 0.05)
-    )
+    enough, less = (passed(rig=RIG.with_(**{"driver.current_limit_A": a})).refusals for a in (taken, taken - 0.05))
     assert (enough, [each.kind for each in less]) == ((), ["unreachable"])
 
 
 def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_other() -> None:
     weak = RIG.with_(**{"driver.transconductance_A_per_V": 0.05})
-    one = ready(rig=weak)
+    one = passed(rig=weak)
     (refusal,) = one.refusals
     assert re.match(
         r"NOT reached: dac-16 plays −0.5 … 0.5 A \(−10 … 10 V through driver.transconductance_A_per_V = 0.05\), the "
@@ -99,7 +103,7 @@ def test_a_range_too_small_is_the_one_cause_and_what_it_misses_or_loses_is_no_ot
 
 def test_where_rig_and_device_are_too_weak_one_sentence_names_both() -> None:
     rig = RIG.with_(**{"driver.current_limit_A": 0.5, "driver.transconductance_A_per_V": 0.02})
-    one = ready(rig=rig)
+    one = passed(rig=rig)
     (refusal,) = one.refusals
     assert "driver.current_limit_A is 0.5 A and dac-16 plays at most 0.2 A: use " in str(refusal)
     assert not any("dac-16" in text for text in one.warnings)
@@ -107,7 +111,7 @@ def test_where_rig_and_device_are_too_weak_one_sentence_names_both() -> None:
 
 def test_what_the_papers_own_cue_takes_on_the_papers_own_rig_is_in_its_refusal() -> None:
     cue = load_library("cooling-step-skin")["cooling-step"]
-    (refusal,) = prepare(cue, Rig.load("shani2021"), Device.load("dac-16"), CSV).refusals
+    (refusal,) = prepare(cue, Rig.load("shani2021"), Device.load("dac-16"), CSV, gate=GreenVerdict).refusals
     assert str(refusal).startswith("NOT reached: misses its target by 2.12 K at 2.00 s")
     assert "it takes ±1.9 A, and driver.current_limit_A is 1 A" in str(refusal)
 
@@ -120,7 +124,7 @@ def test_no_current_is_named_where_none_helps() -> None:
 
 
 def test_what_loses_too_much_is_refused_once_with_limit_cause_and_cure() -> None:
-    (refusal,) = prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV).refusals
+    (refusal,) = prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV, gate=GreenVerdict).refusals
     assert re.match(
         r"loses too much: the \w+ receptor differs by 0.\d+ K \(rms\) from the design \(the \w+ receptor by 0.\d+ K\), "
         r"over the stated 0.05 K; pwm-h-bridge-10: its steps are 0.00781 of full duty; use a device that is finer",
@@ -183,21 +187,21 @@ def test_two_files_of_one_name_are_told(form_name: str, names: tuple[str, str], 
 
 
 def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() -> None:
-    delivery = ready("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).delivery
+    delivery = passed("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).delivery
     assert delivery.trace.beyond
     assert delivery.warnings == delivery.device_warnings == ()
 
 
 def test_a_format_that_cannot_hold_an_icon_names_it() -> None:
     with pytest.raises(FormatError, match=r"^double-dip: tcs2-protocol-ini holds one ramp"):
-        pack([ready("double-dip", "qst-tcs2", "tcs2-protocol-ini")], load_format("tcs2-protocol-ini"))
+        pack([passed("double-dip", "qst-tcs2", "tcs2-protocol-ini")], load_format("tcs2-protocol-ini"))
 
 
 class TestSidecar:
     """What stands beside every drive."""
 
     def test_it_names_everything_that_made_the_drive(self) -> None:
-        one = ready(rig=RIG.with_set(["contact.area_cm2=8"]))
+        one = passed(rig=RIG.with_set(["contact.area_cm2=8"]))
         told = sidecar_of(one)
         assert told["thermicon"] == version("thermicon")
         assert told["icon"]["content_hash"] == SIX["cooling-step"].content_hash
@@ -215,7 +219,7 @@ class TestSidecar:
         assert told["what_it_is_not"] == NO_CLEARANCE
 
     def test_it_is_bound_to_its_drive_rig_device_and_program(self) -> None:
-        one = ready(device="ni-analogue-output", form="psychopy")
+        one = ready(device="ni-analogue-output", form="psychopy", rig=sure_rig())
         files = pack([one], load_format("psychopy"))
         told = json.loads(files["cooling-step.json"])
         sha256 = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
@@ -267,8 +271,8 @@ class TestSidecar:
         assert volts["duration_s"] == 8.01
 
     def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
-        told = sidecar_of(ready("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
-        one = ready("warming-step", "rigol-dg1000z", "rigol-raf").delivery
+        told = sidecar_of(passed("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
+        one = passed("warming-step", "rigol-dg1000z", "rigol-raf").delivery
         assert told["played"]["high_level_V"] == pytest.approx(-told["played"]["low_level_V"])
         assert told["played"]["samples"] == len(one.trace.time_s)
         assert told["played"]["icon_begins_at_s"] == 0.01
@@ -288,7 +292,8 @@ class TestSidecar:
 
     def test_what_was_forced_says_so_and_why(self) -> None:
         told = sidecar_of(
-            prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV), losses={"cooling-step": ["d′ to x falls"]}
+            prepare(SIX["cooling-step"], RIG, coarse_bridge(), CSV, gate=GreenVerdict),
+            losses={"cooling-step": ["d′ to x falls"]},
         )
         assert told["forced"] is True
         assert told["forced_over"][-1] == "loses too much: d′ to x falls"
@@ -297,8 +302,8 @@ class TestSidecar:
     def test_the_whole_gate_is_in_it_with_the_reason_for_looser_limits(self) -> None:
         why = "approved by our own board for this one study"
         rig = RIG.with_(**{"safety.skin_highest_C": 42.5, "safety.reason": why})
-        one = ready("warming-step", rig=rig)
-        told = sidecar_of(one)["safety"]
+        one = ready("warming-step", "qst-tcs2", "tcs2-serial", rig)
+        told = sidecar_of(one, "tcs2-serial")["safety"]
         assert told == json.loads(json.dumps(one.verdict.to_dict()))
         assert told["limits"]["reason"] == why
         assert told["limits"]["loosened"] == ["skin_highest_C 42.5 °C instead of 42 °C"]
@@ -311,7 +316,7 @@ class TestSidecar:
         assert told["safety"]["uncertainty"]["smaller_than_shipped"] == ["gain ±2 % instead of ±10 %"]
         assert told["safety"]["uncertainty"]["reason"] == why
         assert any(text.endswith(f"instead of ±10 %. Reason given: {why}") for text in told["warnings"])
-        plain = sidecar_of(ready("warming-step"))["safety"]["uncertainty"]
+        plain = sidecar_of(ready("warming-step", "qst-tcs2", "tcs2-serial"), "tcs2-serial")["safety"]["uncertainty"]
         assert (plain["smaller_than_shipped"], plain["reason"]) == ([], "")
         thermode = sidecar_of(ready("warming-step", "qst-tcs2", "tcs2-serial", rig), "tcs2-serial")
         assert thermode["safety"]["uncertainty"]["smaller_than_shipped"] == ["gain ±2 % instead of ±10 %"]

@@ -76,19 +76,6 @@ def test_greatest_difference_is_where_no_heat_is_absorbed_any_more() -> None:
     assert MODULE.heat_absorbed_W(current, coldest, TH) == pytest.approx(0.0, abs=1e-9)
 
 
-def test_currents_and_performance_of_the_published_check() -> None:
+def test_current_and_figure_of_merit_of_the_published_check() -> None:
     assert MODULE.greatest_heat_current_A(TC) == pytest.approx(2.4614, abs=1e-4)
-    assert MODULE.best_performance(TC, TH) == pytest.approx(3.08797, abs=1e-5)
-    assert MODULE.best_performance_current_A(TC, TH) == pytest.approx(0.29658, abs=1e-5)
-    assert MODULE.performance(0.29658, TC, TH) == pytest.approx(3.08797, abs=1e-5)
     assert MODULE.figure_of_merit_per_K() == pytest.approx(0.0521**2 / (6.35 * 0.1524))
-
-
-def test_a_performance_that_does_not_exist_is_refused_in_words() -> None:
-    with pytest.raises(ValueError, match="no electrical power at 0 A, so no coefficient of performance; change it"):
-        MODULE.performance(0.0, TC, TH)
-    for cold in (TH, TH + 5, TH - 90):
-        with pytest.raises(ValueError, match=r"needs a hot plate 0 to 77\.7 K warmer than the cold one, not .* K"):
-            MODULE.best_performance(cold, TH)
-        with pytest.raises(ValueError, match=r"needs a hot plate 0 to 77\.7 K warmer than the cold one, not .* K"):
-            MODULE.best_performance_current_A(cold, TH)

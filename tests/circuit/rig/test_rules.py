@@ -158,6 +158,7 @@ def test_who_claims_to_be_surer_gives_a_reason(tmp_path: Path, reason: str) -> N
     assert "uncertainty.gain_relative = 0: is smaller than the shipped 0.1, " in second
 
 
+@pytest.mark.slow
 def test_a_smaller_uncertainty_carries_its_reason_everywhere() -> None:
     with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 0: is smaller than the shipped 0\.1"):
         THENAR.with_set(["uncertainty.gain_relative=0"])

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from thermicon.circuit import Drive, DriveError, Rig, RigError, design, simulate_current
+from tests.circuit.safety.futures import play_out
+from thermicon.circuit import Drive, DriveError, Rig, RigError, design, gate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.endings import ENDINGS
-from thermicon.circuit.safety.scenarios import play_out
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.pwm import steady_of, switched
@@ -171,12 +171,12 @@ def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) 
 
 def test_a_rest_that_cannot_be_is_refused() -> None:
     with pytest.raises(DriveError, match="a rest of nan A is not possible; it must be a finite current"):
-        play_out(CUE, THENAR, rest_A=float("nan"))
+        gate(CUE, THENAR, rest_A=float("nan"))
     with pytest.raises(DriveError, match=r"a rest of 2 A is not possible; .* of at most 1\.5 A"):
-        play_out(CUE, THENAR, rest_A=2.0, bridge_A=1.5)
+        gate(CUE, THENAR, rest_A=2.0, bridge_A=1.5)
     with pytest.raises(DriveError, match="the mean current of rest is needed where a bridge switches; give rest_A"):
-        play_out(CUE, THENAR, bridge_A=1.5)
+        gate(CUE, THENAR, bridge_A=1.5)
     with pytest.raises(DriveError, match=r"a bridge of 0 A is not possible"):
-        play_out(CUE, THENAR, rest_A=0.0, bridge_A=0.0)
+        gate(CUE, THENAR, rest_A=0.0, bridge_A=0.0)
     with pytest.raises(RigError, match=r"rig thenar: -9 A has no steady state on this rig"):
-        play_out(CUE, THENAR, rest_A=-9.0)
+        gate(CUE, THENAR, rest_A=-9.0)

@@ -89,8 +89,15 @@ def test_a_20_s_drive_agrees(name: str, drive: Drive, tool: Tool, tmp_path: Path
     assert found.small(), found
 
 
-@pytest.mark.parametrize("name", ["thenar", "shani2021"])
-@pytest.mark.parametrize("cue", ["cooling-step-skin", "six-icons"])
+@pytest.mark.parametrize(
+    ("cue", "name"),
+    [
+        ("cooling-step-skin", "shani2021"),
+        ("six-icons", "thenar"),
+        pytest.param("cooling-step-skin", "thenar", marks=pytest.mark.slow),
+        pytest.param("six-icons", "shani2021", marks=pytest.mark.slow),
+    ],
+)
 def test_an_icon_agrees_from_its_rest(name: str, cue: str, tool: Tool, tmp_path: Path) -> None:
     rig, icon = Rig.load(name), load_library(cue).icons[0]
     plan = design(icon, rig, 12.0)

@@ -10,7 +10,7 @@ import pytest
 from thermicon.circuit import Drive, Rig, RigError, Trace, judge_safety, simulate, simulate_current, write_trace
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rules import limit_table
-from thermicon.circuit.solver.draw import plot_current, plot_heat_flow
+from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.trace import judge
 from thermicon.icons import load_library, parse
 
@@ -94,7 +94,6 @@ def test_plots_return_axes_with_units(trace: Trace) -> None:
         "target (display)", "display", "skin surface", "cold receptors", "warm receptors",
     ]  # fmt: skip
     assert trace.plot(axes) is axes
-    assert "W/m²" in plot_heat_flow(trace).get_ylabel()
     assert "(A)" in plot_current(trace).get_ylabel()
 
 

@@ -11,14 +11,18 @@ from thermicon.icons.language.source import MOST_BYTES
 PAIR = "a in 1..1000 step 1 ms, b in 1..10 step 1 ms"
 
 
-def full(head: str, unit: str | Callable[[int], str], tail: str = "") -> str:
-    """A text of nearly the largest size: units between head and tail."""
-    make = unit if callable(unit) else lambda _: unit
-    parts = [head]
-    left = MOST_BYTES - len((head + tail).encode())
-    while (left := left - len((part := make(len(parts) - 1)).encode())) >= 0:
-        parts.append(part)
-    return "".join(parts) + tail
+def full(head: str, unit: str | Callable[[int], str], tail: str = "") -> Callable[[], str]:
+    """What makes a text of nearly the largest size: units between head and tail."""
+
+    def text() -> str:
+        make = unit if callable(unit) else lambda _: unit
+        parts = [head]
+        left = MOST_BYTES - len((head + tail).encode())
+        while (left := left - len((part := make(len(parts) - 1)).encode())) >= 0:
+            parts.append(part)
+        return "".join(parts) + tail
+
+    return text
 
 
 def doubling(depth: int) -> str:
@@ -31,17 +35,14 @@ def nested(depth: int, parameters: str, inside: str) -> str:
     return f"cue 1\nicon x{parameters} {{ {opening * depth}{inside}{' }' * (depth + 1)}"
 
 
-QUICK: dict[str, tuple[str, str]] = {
+QUICK: dict[str, tuple[str | Callable[[], str], str]] = {
     "plays doubling 16 deep": (doubling(16), ""),
     "plays doubling 20 deep": (doubling(20), "E220"),
     "repeats tripling 19 deep": (nested(19, "", "warm by 1e-6 K at 1 K/s"), "E220"),
     "repeats of a family 12 deep": (nested(12, f"({PAIR}, n in [1, 2, 3])", "hold for a; hold for b"), "E231"),
     "a wave of 1 µs for an hour": ("cue 1\nicon x { sine by 1 K every 0.001 ms for 60 min }", "E220"),
     "the largest sine": ("cue 1\nicon x { sine by 28 K every 1 min for 60 min }", ""),
-    "100,000 members": (
-        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
-        "",
-    ),
+    "10,000 members": (f"cue 1\nicon f({PAIR}) {{ warm by 1 K over a; hold for b }}", ""),
     "a hundred statements of a hundred thousand": (
         f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; " + "hold for b; " * 100 + "}",
         "E231",
@@ -57,7 +58,11 @@ QUICK: dict[str, tuple[str, str]] = {
     "headers that break": (full("cue 1\n", "icon f(a in [\n"), "E118"),
     "a list without commas": (full("cue 1\nicon f(a in [1", " 1", "] ms) { hold for a }"), "E118"),
 }
-FULL: dict[str, tuple[str, str]] = {
+FULL: dict[str, tuple[str | Callable[[], str], str]] = {
+    "100,000 members": (
+        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
+        "",
+    ),
     "families of ten thousand": (
         full("cue 1\n", lambda n: f"icon f{n}({PAIR}) {{ warm by 1 K over a; hold for b }}\n"),
         "E231",
@@ -89,7 +94,8 @@ FULL: dict[str, tuple[str, str]] = {
 }
 
 
-def soon(text: str, code: str) -> None:
+def soon(given: str | Callable[[], str], code: str) -> None:
+    text = given() if callable(given) else given
     begin = time.process_time()
     try:
         assert parse(text).entries

@@ -63,14 +63,15 @@ def test_what_cannot_be(
 
 
 def test_ngspice_plays_what_simulate_writes(
-    process: Cli, two: Path, tmp_path: Path, tool: Callable[[str], str]
+    cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]
 ) -> None:
     ngspice = tool("ngspice")
     options = ("--icon", "cool-step", "--tail", "2", "--set", "contact.area_cm2=4")
-    said = process("netlist", two, *options, "-o", "Cool.cir", "--ngspice", "Probes.txt", cwd=tmp_path)
+    monkeypatch.chdir(tmp_path)
+    said = cli("netlist", two, *options, "-o", "Cool.cir", "--ngspice", "Probes.txt")
     assert said.exit_code == 0, said.stderr
     assert said.stderr.endswith("wrote Cool.cir; ngspice -b Cool.cir writes the probes into Probes.txt\n")
-    assert process("simulate", two, *options, "-o", "trace.csv", cwd=tmp_path).exit_code == 0
+    assert cli("simulate", two, *options, "-o", "trace.csv").exit_code == 0
     run = subprocess.run([ngspice, "-b", "Cool.cir"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
     theirs = pd.read_csv(tmp_path / "Probes.txt", sep=r"\s+").add_prefix("/")

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.notebooks.surerig import sure_rig
+from tests.circuit.surerig import SURE, sure_rig
 from thermicon.circuit import Gate, Rig, pack
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
@@ -43,7 +43,17 @@ class TestCommand:
 
     def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(self, cli: Cli, tmp_path: Path) -> None:
         (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
-        arguments = ("export", tmp_path / "glow.cue", "--icon", "glow", "--to", "csv", "-o", tmp_path / "out")
+        arguments = (
+            "export",
+            tmp_path / "glow.cue",
+            "--icon",
+            "glow",
+            "--to",
+            "csv",
+            "-o",
+            tmp_path / "out",
+            *SURE[2:],
+        )
         said = cli(*arguments, "--pause", "5", "--force")
         assert said.exit_code == 3
         (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]

@@ -79,8 +79,8 @@ def test_json_on_stdout_is_nothing_but_json(cli: Cli, two: Path) -> None:
     assert json.loads(said.stdout)["people"] == 5
 
 
-def test_the_table_reads_well_in_a_pipe(process: Cli) -> None:
-    said = process("rank", "six-icons", "--people", 20)
+def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
+    said = process("rank", two, "--people", 20)
     assert said.exit_code == 0, said.stderr
     assert "\x1b" not in said.stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
@@ -95,14 +95,14 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
         "cue 1\nset more { control skin; baseline 33 °C }\nicon slow { warm by 2 °C at 0.5 °C/s; return at 1 °C/s }\n",
         encoding="utf-8",
     )
-    said = cli("rank", two, more, "--people", 5, "--json", "-")
+    said = cli("rank", two, more, "--people", 5, "--parameters", 0, "--json", "-")
     assert said.exit_code == 0, said.stderr
     assert json.loads(said.stdout)["confusion"]["labels"] == ["cool-step", "warm-step", "slow"]
     assert said.stderr == (
         "warning: baselines differ: 32 °C in two.cue, 33 °C in more.cue; between them the skin must adapt again, "
         "which the model leaves out\n"
     )
-    table = cli("rank", two, more, "--people", 5).stdout
+    table = cli("rank", two, more, "--people", 5, "--parameters", 0).stdout
     assert table.startswith("Two for a test; more.cue\n")
 
 
@@ -112,7 +112,7 @@ def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None
         path = tmp_path / f"{name}.cue"
         path.write_text(f"cue 1\nicon {name} {{ {verb} by 2 °C at 1 °C/s; return at 1 °C/s }}\n", encoding="utf-8")
         files.append(path)
-    said = cli("rank", *files, "--people", 2)
+    said = cli("rank", *files, "--people", 2, "--parameters", 0)
     assert said.stdout.startswith("icon ")
     assert said.stderr == ""
 
@@ -165,7 +165,7 @@ def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Pat
         "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n",
         encoding="utf-8",
     )
-    words = " ".join(cli("rank", path, "--people", 1).stdout.split())
+    words = " ".join(cli("rank", path, "--people", 1, "--parameters", 0).stdout.split())
     assert "burn is NOT SAFE and not reached: " in words
     assert "jolt is not reached: the drive needs 1.6 A" in words
 
@@ -174,7 +174,7 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "cold.cue"
     cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
     path.write_text(f"cue 1\nset s {{ control display }}\nicon a {cue}\nicon b {cue}\n", encoding="utf-8")
-    words = " ".join(cli("rank", path, "--people", 1).stdout.split())
+    words = " ".join(cli("rank", path, "--people", 1, "--parameters", 0).stdout.split())
     assert "Caution: a, b exceed a soft safety limit: of a, skin surface reaches " in words
     assert words.count("skin surface") == 1
     assert "NOT SAFE" not in words
@@ -187,7 +187,7 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     ]
     path.write_text("cue 1\nset s { control display }\n" + "".join(cues), encoding="utf-8")
     out = tmp_path / "rank.json"
-    words = " ".join(cli("rank", path, "--people", 2, "--json", out).stdout.split())
+    words = " ".join(cli("rank", path, "--people", 2, "--parameters", 0, "--json", out).stdout.split())
     found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
     assert len(found) > 5
     assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons ")
@@ -210,18 +210,18 @@ def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
 def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "one.cue"
     path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
-    said = cli("rank", path, "--people", 5)
+    said = cli("rank", path, "--people", 5, "--parameters", 0)
     assert said.exit_code == 0, said.stderr
     assert "Worst pair" not in said.stdout
     assert " bits" not in said.stdout
     folder = tmp_path / "figures"
-    said = cli("rank", path, "--people", 5, "--figure", folder)
+    said = cli("rank", path, "--people", 5, "--parameters", 0, "--figure", folder)
     assert said.stderr == f"wrote ranking.png, distance.png, confusion.png and 1 overview into {folder}\n"
 
 
 def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Path) -> None:
     folder = tmp_path / "figures"
-    said = cli("rank", two, "--people", 5, "--figure", folder)
+    said = cli("rank", two, "--people", 5, "--parameters", 0, "--figure", folder)
     assert said.exit_code == 0, said.stderr
     assert sorted(path.name for path in folder.iterdir()) == [
         "confusion.png",

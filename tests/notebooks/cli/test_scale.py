@@ -70,6 +70,7 @@ def test_long_work_is_kept_until_it_is_done(
         assert none is None
 
 
+@pytest.mark.slow
 def test_the_error_of_sampling_is_in_the_json(cli: Cli, tmp_path: Path) -> None:
     out = tmp_path / "six.json"
     said = cli("rank", "six-icons", "--people", 20, "--parameters", 0, "--json", out)

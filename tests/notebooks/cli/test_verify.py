@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from tests.notebooks.surerig import SURE, sure_rig
+from tests.circuit.surerig import SURE, sure_rig
 from thermicon.circuit import Device, pack, prepare
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.packing import verify as verifying

@@ -65,6 +65,7 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
 
 
+@pytest.mark.slow
 def test_overviews_of_names_that_differ_in_capitals_do_not_overwrite_each_other(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.notebooks.surerig import SURE
+from tests.circuit.surerig import SURE
 from thermicon.notebooks.files import export_folder as exportfolder
 from thermicon.notebooks.files import swapping
 from thermicon.notebooks.files.export_folder import check_export_folder, publish
@@ -369,6 +369,7 @@ class TestTwoAtOnce:
         assert names(tmp_path) == ["out"]
 
     @posix
+    @pytest.mark.slow
     def test_two_commands(self, tmp_path: Path) -> None:
         command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-icons", "-o", "out"]
         command += ["--icon", "warming-step", *SURE]

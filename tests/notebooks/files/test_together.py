@@ -9,14 +9,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import pytest
 
-from tests.notebooks.surerig import SURE
+from tests.circuit.surerig import SURE
 from thermicon.notebooks.files.outputs import OutputError, stopped_cleanly, write_together
 
 FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
@@ -158,37 +158,46 @@ def check_no_partial_file(folder: Path) -> int:
     return len(found)
 
 
-def kill_many(folder: Path, times: int, number: int, seed: int) -> list[int]:
-    """Send a signal to real exports at random moments of their writing; how many files were found after each."""
-    chance, found = random.Random(seed), []
-    command = [sys.executable, "-c", SERVER, folder / "out", *SURE]
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[subprocess.Popen[str]]:
+    """An export of six icons that waits for folders to write into."""
+    command = [sys.executable, "-c", SERVER, tmp_path_factory.mktemp("first") / "out", *SURE]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
     ) as run:
+        yield run
         assert run.stdin is not None
-        assert run.stdout is not None
-        for turn in range(times):
-            run.stdin.write(f"{folder / f'out{turn}'}\n")
-            run.stdin.flush()
-            child = int(run.stdout.readline())
-            time.sleep(chance.uniform(0.0, 0.06))
-            os.kill(child, number)
-            while (line := run.stdout.readline()) != "ended\n":
-                assert line, "the export ended with the child that it started"
-            found.append(check_no_partial_file(folder / f"out{turn}"))
         run.stdin.close()
+
+
+def kill_many(run: subprocess.Popen[str], folder: Path, times: int, number: int, seed: int) -> list[int]:
+    """Send a signal to real exports at random moments of their writing; how many files were found after each."""
+    chance, found = random.Random(seed), []
+    assert run.stdin is not None
+    assert run.stdout is not None
+    for turn in range(times):
+        run.stdin.write(f"{folder / f'out{turn}'}\n")
+        run.stdin.flush()
+        child = int(run.stdout.readline())
+        time.sleep(chance.uniform(0.0, 0.06))
+        os.kill(child, number)
+        while (line := run.stdout.readline()) != "ended\n":
+            assert line, "the export ended with the child that it started"
+        found.append(check_no_partial_file(folder / f"out{turn}"))
     return found
 
 
 @posix
-def test_exports_killed_while_writing_leave_no_partial_file(tmp_path: Path) -> None:
-    assert len(kill_many(tmp_path, KILLS, signal.SIGKILL, seed=1)) == KILLS
+def test_exports_killed_while_writing_leave_no_partial_file(server: subprocess.Popen[str], tmp_path: Path) -> None:
+    assert len(kill_many(server, tmp_path, KILLS, signal.SIGKILL, seed=1)) == KILLS
 
 
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_exports_that_are_asked_to_end_leave_no_draft(tmp_path: Path, number: int) -> None:
-    kill_many(tmp_path, KILLS // 4, number, seed=2)
+def test_exports_that_are_asked_to_end_leave_no_draft(
+    server: subprocess.Popen[str], tmp_path: Path, number: int
+) -> None:
+    kill_many(server, tmp_path, KILLS // 4, number, seed=2)
     assert [path for path in tmp_path.rglob("*") if path.name.startswith(".")] == []
 
 
@@ -206,6 +215,8 @@ def test_exports_killed_at_any_moment_leave_no_partial_file(tmp_path: Path) -> N
 
 @posix
 @pytest.mark.slow
-def test_two_hundred_exports_killed_while_writing_leave_no_partial_file(tmp_path: Path) -> None:
-    found = kill_many(tmp_path, MANY_KILLS, signal.SIGKILL, seed=4)
+def test_two_hundred_exports_killed_while_writing_leave_no_partial_file(
+    server: subprocess.Popen[str], tmp_path: Path
+) -> None:
+    found = kill_many(server, tmp_path, MANY_KILLS, signal.SIGKILL, seed=4)
     assert set(found) == {0, 12}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.notebooks.surerig import sure_rig
+from tests.circuit.surerig import sure_rig
 from thermicon.icons import parse
 from thermicon.notebooks.files.exporting import prepare_icons, write
 from thermicon.notebooks.files.outputs import OutputError

@@ -184,6 +184,7 @@ def test_what_cannot_be_ranked_is_said(text: str, said: str) -> None:
     assert said in Bench(text).said("status")
 
 
+@pytest.mark.slow
 def test_the_best_few_are_chosen_and_marked() -> None:
     bench = Bench(THREE)
     bench.view.count.value = 2

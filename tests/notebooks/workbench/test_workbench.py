@@ -252,6 +252,7 @@ def test_the_package_is_imported_without_widgets() -> None:
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.slow
 def test_a_notebook_with_it_is_saved_small(tmp_path: Path) -> None:
     path = tmp_path / "bench.ipynb"
     cells = [nbformat.v4.new_code_cell("from thermicon.notebooks import Workbench\nbench = Workbench()\nbench")]

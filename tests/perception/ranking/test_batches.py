@@ -153,6 +153,7 @@ Path(sys.argv[2]).write_text(made.to_json())
 """
 
 
+@pytest.mark.slow
 def test_a_killed_run_goes_on_and_ends_with_the_same_bytes(few: None, tmp_path: Path) -> None:
     kept, out = tmp_path / "kept", tmp_path / "out.json"
     command = [sys.executable, "-c", KILLED, str(kept), str(out)]

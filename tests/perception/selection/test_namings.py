@@ -75,7 +75,9 @@ def test_two_alike_lose_a_bit_and_two_far_apart_none() -> None:
     assert lost[0, 2] < 1e-4
 
 
-@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize(
+    "objective", [pytest.param(each, marks=[pytest.mark.slow] * (each != "bits")) for each in OBJECTIVES]
+)
 def test_many_icons_are_climbed_to_under_a_bound(objective: Objective) -> None:
     held = pool(1, 40)
     middle = np.sqrt(2.0 * np.maximum(held.half, 0.0)).mean(axis=0)

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import DeliveredDrive, Device, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
@@ -137,7 +138,7 @@ class TestPsychopy:
     def packed(device: str) -> dict[str, bytes]:
         form = load_format("psychopy")
         icons = [load_library("six-icons")[name] for name in ("warming-step", "double-dip")]
-        return pack([prepare(icon, RIG, Device.load(device), form) for icon in icons], form)
+        return pack([prepare(icon, sure_rig(), Device.load(device), form) for icon in icons], form)
 
     @pytest.mark.parametrize(
         ("device", "suffix", "lead"), [("ni-analogue-output", ".csv", 0.01), ("qst-tcs2", ".tcs2.txt", 0.0)]

@@ -1,7 +1,4 @@
-"""Every scenario of a drive row by row: its corners and endings, for inspection.
-
-The gate itself checks the same runs in stretches, and also repetition and the steady state after the drive.
-"""
+"""Every scenario of a drive row by row: its corners and endings, as the gate checks them in stretches."""
 
 from __future__ import annotations
 
@@ -9,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
-from ..rig.rig import Rig
-from ..solver.drive import Drive, DriveError
-from .corners import Corner
-from .endings import ENDING_S, ENDINGS, ROWS_S, without_power
-from .ensemble import Ensemble
-from .tally import WATCHED
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.safety.corners import Corner
+from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, ROWS_S, without_power
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.solver.drive import Drive
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +51,8 @@ def play_out(
 
     `rest_A` holds the steady state before; None: the drive's first current. `bridge_A` says that the current comes from
     a bridge that switches between this current and none: `rest_A` and the drive's last current are then means.
-    Raises RigError where the rig as given has no steady state to start from, DriveError for an impossible resting
-    current.
     """
-    rest = rest_of(drive, rest_A, bridge_A)
+    rest = float(drive.current_A[0]) if rest_A is None else rest_A
     ensemble = Ensemble.of(rig, bridge_A)
     times: list[Array] = []
     parts: list[Array] = []
@@ -74,15 +69,3 @@ def play_out(
     values = np.stack([np.concatenate([cue, ending[:, :, 1:]], axis=2) for ending in endings], axis=1)
     values.setflags(write=False)
     return Futures(end, ensemble.corners, np.concatenate([*times, end + after[1:]]), values)
-
-
-def rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
-    """The resting current of a drive, by default its first; raises DriveError for an impossible one."""
-    if rest_A is None:
-        if bridge_A is not None:
-            raise DriveError("the mean current of rest is needed where a bridge switches; give rest_A")
-        return float(drive.current_A[0])
-    if not np.isfinite(rest_A) or (bridge_A is not None and abs(rest_A) > bridge_A):
-        most = "" if bridge_A is None else f" of at most {bridge_A:g} A"
-        raise DriveError(f"a rest of {rest_A:g} A is not possible; it must be a finite current{most}")
-    return rest_A
