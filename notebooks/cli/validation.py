@@ -84,9 +84,9 @@ def show_report(report: ValidationReport) -> None:
     """Print every number, published and predicted, and how many agree."""
     from thermicon.perception.observer.variants import VARIANTS
 
+    from ..pages.conditioning_tables import show_conditioning
     from ..pages.validation_page import NAMES, number_text, unit_text
     from ..text.tables import show, table
-    from .conditioning_tables import show_conditioning
 
     show_conditioning(report.conditioning)
     mark = {"holds": "✓", "misses": "✗", "shown": " "}

@@ -1,7 +1,8 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
-Constants are those of the posterior's nominal draw, so that they belong together, each with the interval of 95 % of the draws; for a variant without draws, those of the maximum of its posterior (`inference`). Records
-marked `predict` are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
+Constants are those of the posterior's nominal draw, so that they belong together, each with the interval of 95 % of
+the draws; for a variant without draws, those of the maximum of its posterior (`inference`). Records marked `predict`
+are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
 """
 
 from __future__ import annotations

@@ -81,10 +81,10 @@ class ValidationReport:
         Targets with their verdicts.
     trade_offs
         Pairs of targets of every variant, in the order of VARIANTS.
-    conditioning
-        What the constants were inferred from, with left-out predictions.
     evidence
         Curves and answers behind the figures.
+    conditioning
+        What the constants were inferred from, with left-out predictions.
 
     See Also
     --------

@@ -62,7 +62,7 @@ def test_doubt_is_what_explains_the_draws() -> None:
     values[:, 3] = values[:, 0]  # one that trades off with the first
     predicted = 0.8 + 0.04 * values[:, 0] + 0.02 * values[:, 1] ** 2 + 0.02 * rng.standard_normal(400)
     variance = np.array([0.04**2, 2 * 0.02**2, 0.0, 0.04**2])
-    assert explained(values, predicted) == pytest.approx(variance / predicted.var(), abs=0.06)
+    assert explained(values, predicted) == pytest.approx(variance / predicted.var(), abs=0.08)
     assert explained(values, np.full(400, 0.8)) == pytest.approx(0.0)
 
 

@@ -54,11 +54,11 @@ def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
 
 
 def test_the_nominal_draw_lies_in_the_middle(posterior: PosteriorDraws) -> None:
-    nominal = posterior.draw(posterior.nearest_median)
+    nominal = posterior.draw(0)
     for name in ("cold threshold drive", "criterion between people", "cold rating exponent"):
         low, _, high = posterior.interval(name, 0.98)
         assert low < nominal[name] < high
-    assert posterior.observer_nearest_median() == posterior.observer(posterior.nearest_median)
+    assert posterior.nominal() == posterior.observer(0)
 
 
 def test_a_new_laboratory_differs_by_the_inferred_spread(posterior: PosteriorDraws) -> None:
@@ -75,7 +75,7 @@ def test_a_file_comes_back_as_it_was_written(posterior: PosteriorDraws, tmp_path
     header, names, draws = read_draws(path)
     assert (header, names) == (posterior.header, posterior.names)
     np.testing.assert_allclose(draws, posterior.draws[:5], rtol=1e-5)
-    assert Observer.load(path) == PosteriorDraws.load(path).observer_nearest_median()
+    assert Observer.load(path) == PosteriorDraws.load(path).nominal()
     assert Observer.load(path, without=["cold limit"]).cold.limit_C is None
 
 

@@ -9,7 +9,8 @@ from thermicon.perception.inference.table_text import UNITS, number, signed
 from thermicon.perception.validation.conditioning import ConditionedRow, Conditioning
 from thermicon.perception.validation.magnitudes import CHANGES_K
 
-from ..pages.conditioning_page import (
+from ..text.tables import show, table
+from .conditioning_page import (
     NAMES,
     TITLE,
     ablated_name,
@@ -22,7 +23,6 @@ from ..pages.conditioning_page import (
     summary_text,
     unmoved_text,
 )
-from ..text.tables import show, table
 
 if TYPE_CHECKING:
     from rich.table import Table
