@@ -43,7 +43,7 @@ def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
     >>> none = np.zeros((200, 1))
     >>> drawn = LaboratoryDraws(("a", "b"), x, 0.8 + 0.05 * x[:, 0], none[:, 0], none, none[:, :, None])
     >>> [(doubt.name, round(doubt.share, 2)) for doubt in doubts(drawn)]
-    [('a', 1.0)]
+    [('a', 0.99)]
     """
     shares = explained(each.values, each.proportion_correct)
     found = [Doubt(name, float(share)) for name, share in zip(each.names, shares, strict=True) if share >= LEAST_SHARE]
