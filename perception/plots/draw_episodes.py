@@ -39,6 +39,7 @@ def plot_episodes(percept: Percept, episodes: Sequence[Episode], criterion: floa
         axes.axvspan(episode.start_s, end_s, color=colour, alpha=0.12, lw=0)
         length = "" if episode.cut else f"\nlasts {episode.length_s:.1f} s"
         words = f"{episode.peak:.0f} × threshold\nrises {episode.rate_per_s:.1f}/s{length}"
+        axes.axvline(episode.start_s, color=colour, lw=0.8)
         axes.text(episode.start_s + 0.1, HEADROOM * highest * 0.98, words, va="top", fontsize="small")
     axes.set(xlim=(0.0, float(percept.time_s[-1])), ylim=(0.0, HEADROOM * highest))
     axes.set_xlabel("time (s), receptor clock")

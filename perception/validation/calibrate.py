@@ -1,8 +1,9 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
-Constants are those of the posterior's nominal draw, so that they belong together, each with the interval of 95 % of
-the draws; for a variant without draws, those of the maximum of its posterior (`inference`). Records marked `predict`
-are never read. `python -m thermicon.perception.validation.calibrate` writes the shipped file again.
+Constants are those of the maximum of the posterior (`inference`), so that they belong together: with so many constants
+no draw is near the middle of them all. Intervals cover 95 % of the draws; for a variant without draws, of the normal
+approximation. Records marked `predict` are never read.
+`python -m thermicon.perception.validation.calibrate` writes the shipped file again.
 """
 
 from __future__ import annotations
@@ -59,17 +60,16 @@ def _inferred(variable: Variable, model: Model) -> list[Record]:
     if not shipped_file(variable, model).exists():
         return [_record(each, variant, AT_MAXIMUM) for each in constants]
     draws = PosteriorDraws.load(variable=variable, model=model)
-    nominal = draws.draw(0)
-    return [_record(_drawn(each, nominal[each.name], draws), variant, NEAREST) for each in constants]
+    return [_record(_drawn(each, draws), variant, FROM_DRAWS) for each in constants]
 
 
 AT_MAXIMUM = "maximum a posteriori, 95 % interval"
-NEAREST = "nominal draw of the posterior, 95 % of the draws"
+FROM_DRAWS = "maximum a posteriori, 95 % of the draws of the posterior"
 
 
-def _drawn(each: Constant, value: float, draws: PosteriorDraws) -> Constant:
+def _drawn(each: Constant, draws: PosteriorDraws) -> Constant:
     low, _, high = draws.interval(each.name)
-    return replace(each, value=value, low=low, high=high)
+    return replace(each, low=low, high=high)
 
 
 LEFT = ("laboratories",)
