@@ -12,8 +12,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..arrays import Array
+from ..kernels.psychometric import psychometric
 from ..observer.channels import CHANNELS, Channel, sign_of
-from .laboratory import DT_S, Laboratory
+from .laboratory import DT_S, Laboratory, samples_of
 
 Key = tuple[str, str, str]
 """Experiment, statistic, channel."""
@@ -43,10 +44,11 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E1: warm or cold, as fast as possible, by area."""
     log_medians: dict[tuple[Channel, int], Array] = {}
     for channel, (rate, size) in RAMPS.items():
-        drive = laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], 6.0)
+        corners = ((size / rate, size),)
+        drive, samples = laboratory.drive("forearm", channel, 31.0, corners, 6.0), samples_of(corners, 6.0)
         for strips in (1, 5):
             gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"])
-            times = laboratory.answers_s(drive, channel, gain, site="forearm", choice=True)
+            times = laboratory.answers_s(drive, samples, channel, gain, site="forearm", choice=True)
             times = np.minimum(times, 7.0)
             log_medians[channel, strips] = np.log(np.median(times, axis=1))
         five = log_medians[channel, 5]
@@ -70,9 +72,10 @@ def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E3: limits at 1 K/s on the forearm, repeated."""
     means = []
     for channel in CHANNELS:
-        drive = laboratory.drive("forearm", channel, 32.0, [(LIMIT_K, sign_of(channel) * LIMIT_K)], LIMIT_K)
+        corners = ((LIMIT_K, sign_of(channel) * LIMIT_K),)
+        drive, samples = laboratory.drive("forearm", channel, 32.0, corners, LIMIT_K), samples_of(corners, LIMIT_K)
         gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", YOUNG_YEARS["E3"])
-        pressed_K = np.minimum(laboratory.answers_s(drive, channel, gain, site="forearm"), LIMIT_K + 1.0)
+        pressed_K = np.minimum(laboratory.answers_s(drive, samples, channel, gain, site="forearm"), LIMIT_K + 1.0)
         logs = np.log(np.where(pressed_K > ANTICIPATION_K, pressed_K, np.nan))
         person = np.nanmean(logs, axis=1)
         means.append(person)
@@ -94,10 +97,11 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         reported = []
         for size in SIZES_K[channel].tolist():
             top_s = size / DETECTION_K_PER_S
-            corners = [(top_s, sign_of(channel) * size)]
-            drive = laboratory.drive("forearm", channel, 30.0, corners, top_s + PLATEAU_S)
+            corners, end_s = ((top_s, sign_of(channel) * size),), top_s + PLATEAU_S
+            drive = laboratory.drive("forearm", channel, 30.0, corners, end_s)
             criterion = laboratory.values["criterion of yes and no"]
-            reported.append(laboratory.passages(drive, channel, gain, criterion)[1].mean(axis=1))
+            passed = laboratory.passages(drive, samples_of(corners, end_s), channel, gain, criterion)[1]
+            reported.append(passed.mean(axis=1))
         log_half, log_width = _psychometric(np.stack(reported, axis=1), np.log(SIZES_K[channel]))
         thresholds.append(log_half)
         yield ("E4", "threshold50_gm_age30", channel), float(log_half.mean())
@@ -118,15 +122,8 @@ HALVES = (0.16, 0.5, 0.84)
 
 def _psychometric(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
     """Logs (people,) of the size at one half and of the SD, guesses taken out; reports are (people, sizes)."""
-    guesses = 0.999 * reported[:, :1]
-    corrected = np.maximum.accumulate((reported - guesses) / (1.0 - guesses), axis=1)
-    corrected += 1e-9 * np.arange(log_sizes.size)
-    logs = np.empty((reported.shape[0], 3))
-    for person, shares in enumerate(corrected):
-        logs[person] = np.interp(HALVES, shares, log_sizes)
-        # A person who does not reach a share by the largest size has it beyond that, as far as the rest is missing.
-        missing = np.maximum(np.array(HALVES) - shares[-1], 0.0)
-        logs[person] += missing
+    logs = np.empty((reported.shape[0], len(HALVES)))
+    psychometric(reported, log_sizes, np.array(HALVES), logs)
     sizes = np.exp(logs)
     return logs[:, 1], np.log(np.maximum(0.5 * (sizes[:, 2] - sizes[:, 0]), 1e-3))
 
@@ -150,7 +147,8 @@ def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         drive = laboratory.drive("forearm", "cold", 32.0, corners, start_s + COOLED_K)
         cooled = np.ascontiguousarray(drive[round(start_s / DT_S) :])
         caution = values["caution after a pre-pulse"]
-        answers = laboratory.answers_s(cooled, "cold", gain, site="forearm", caution=caution)
+        samples = samples_of(((COOLED_K, -COOLED_K),), COOLED_K)
+        answers = laboratory.answers_s(cooled, samples, "cold", gain, site="forearm", caution=caution)
         logs = np.log(np.minimum(answers, COOLED_K + 1.0))
         mean = float(logs.mean())
         if level == 1:

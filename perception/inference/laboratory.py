@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..kernels import passage as first_passage
@@ -25,12 +26,41 @@ from ..observer.transducer import Transducer
 from ..observer.variants import Model, Variable
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
 from .crowd import SHARES, TRIALS, Crowd, draw_crowd
-from .skin_modes import Corner, SkinModes, skin_modes
+from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
+RAMP_GROWTH, HOLD_GROWTH = 0.03, 0.1
+"""Steps in which passages are counted, as shares of the time since the last corner, where that is more than DT_S."""
+LEAST_ROWS = 600
+"""Samples of a response to a ramp that are computed at once: most stimuli take no more."""
 FEEBLE = 1e-9
 SURFACE_DEPTH_M: dict[Channel, float] = {"cold": 0.15e-3, "warm": 0.30e-3}
+
+
+Samples = NDArray[np.int64]
+"""Numbers of the samples of a drive that are enough to count passages."""
+
+
+@lru_cache(maxsize=64)
+def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
+    """Samples between which the drive of a course from corner to corner, then held until `end_s`, changes little.
+
+    >>> samples_of(((0.1, 1.0),), 1.6).size
+    33
+    """
+    rows = round(end_s / DT_S)
+    chosen, level = [0], 0.0
+    for time_s, size in (*corners, (end_s, None)):
+        first, last = chosen[-1], min(round(time_s / DT_S), rows)
+        growth = HOLD_GROWTH if size is None or size == level else RAMP_GROWTH
+        while chosen[-1] < last:
+            step = max(1, int(growth * (chosen[-1] - first)))
+            chosen.append(min(chosen[-1] + step, last))
+        level = level if size is None else size
+    samples = np.array(chosen, dtype=np.int64)
+    samples.setflags(write=False)
+    return samples
 
 
 @dataclass(frozen=True)
@@ -74,6 +104,35 @@ class Laboratory:
         return Transducer(self.values["slope of sensation"], self.values["transducer exponent"])
 
     @cached_property
+    def _lanes(self) -> dict[Channel, tuple[Array, Array, Samples]]:
+        """Gains (ln) and criteria (people x gains) over the median person's, and which row is each person's.
+
+        People stand in the order of their criteria, since the kernel is fastest where neighbours are alike.
+        """
+        lanes = {}
+        for channel in CHANNELS:
+            order = np.argsort(self.caution[channel])
+            gains = np.log(self.sensitivity[channel][order])[:, None] + self.values["gain noise"] * self.crowd.gains
+            cautions = np.repeat(self.caution[channel][order], self.crowd.gains.size)
+            lanes[channel] = gains.ravel(), cautions, np.argsort(order)
+        return lanes
+
+    @cached_property
+    def _responses(self) -> dict[tuple[str, Channel], tuple[Array, float]]:
+        """What each site's receptors respond to a unit ramp, as long as was needed, and to a unit step in the end."""
+        return {}
+
+    def _response(
+        self, site_rig: str, channel: Channel, skin: SkinModes, depth_m: float, rows: int
+    ) -> tuple[Array, float]:
+        known = self._responses.get((site_rig, channel))
+        if known is None or known[0].size < rows:
+            ramp = skin.ramp_response(depth_m, DT_S, max(rows, LEAST_ROWS), self.variable)
+            known = ramp, skin.at(depth_m, self.variable)[0]
+            self._responses[site_rig, channel] = known
+        return known
+
+    @cached_property
     def _psi_table(self) -> Array:
         logs = first_passage.LOG_U_FROM + first_passage.LOG_U_STEP * np.arange(first_passage.LOG_U_POINTS)
         return self.transducer.psi(np.exp(logs))
@@ -88,7 +147,9 @@ class Laboratory:
         if "depth" in self.without:
             depth = SURFACE_DEPTH_M[channel]
         rows = round(end_s / DT_S) + 1
-        received = skin.course(depth, baseline_C, corners, DT_S, rows, self.variable)
+        ramp, steady = self._response(site_rig, channel, skin, depth, rows)
+        baseline = skin.resting(baseline_C, steady, self.variable)
+        received = course_of(ramp, baseline, corners, DT_S, rows)
         if self.model == "ring-de-dear":
             return _impulses(received, channel)
         neutral = _published().neutral_C
@@ -135,23 +196,23 @@ class Laboratory:
             return _published().path_m[site] / LEG_M_PER_S[channel]
         return Conduction(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]).delay_s
 
-    def passages(self, drive: Array, channel: Channel, gain: float, criterion: float) -> tuple[Array, Array]:
+    def passages(
+        self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float
+    ) -> tuple[Array, Array]:
         """Times (people, TRIALS) at which sensation passes the criterion; probabilities (people, 4) that it does."""
-        noise = self.values["gain noise"]
-        logs = np.log(gain * self.sensitivity[channel])[:, None] + noise * self.crowd.gains
-        criteria = np.repeat(criterion * self.caution[channel], self.crowd.gains.size)
-        times = np.empty((logs.size, SHARES.size))
+        log_gains, cautions, back = self._lanes[channel]
+        times = np.empty((log_gains.size, SHARES.size))
         passed = first_passage.passage(
-            np.log(np.maximum(drive, FEEBLE)),
-            DT_S,
-            logs.ravel(),
-            criteria,
+            np.log(np.maximum(drive[samples], FEEBLE)),
+            DT_S * samples,
+            log_gains + math.log(gain),
+            criterion * cautions,
             self.values["noise correlation time"],
             self._psi_table,
             SHARES,
             times,
         )
-        return times.reshape(-1, TRIALS), passed.reshape(logs.shape)
+        return times.reshape(-1, TRIALS)[back], passed.reshape(back.size, -1)[back]
 
     def decision_s(self, *, choice: bool) -> Array:
         """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""
@@ -162,11 +223,19 @@ class Laboratory:
         return times
 
     def answers_s(
-        self, drive: Array, channel: Channel, gain: float, *, site: str, choice: bool = False, caution: float = 1.0
+        self,
+        drive: Array,
+        samples: Samples,
+        channel: Channel,
+        gain: float,
+        *,
+        site: str,
+        choice: bool = False,
+        caution: float = 1.0,
     ) -> Array:
         """Times (people, TRIALS) in s from the first sample of a drive to the answer; inf where there is none."""
         criterion = caution * self.values["criterion of speeded answers"]
-        crossed, _ = self.passages(drive, channel, gain, criterion)
+        crossed, _ = self.passages(drive, samples, channel, gain, criterion)
         return crossed + self.delay_s(channel, site) + self.decision_s(choice=choice)
 
 

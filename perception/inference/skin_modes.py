@@ -18,6 +18,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.skin import STRATUM_CORNEUM, Skin, column_of
 
 from ..arrays import Array
+from ..kernels import superposed
 from ..observer.variants import Variable
 
 Corner = tuple[float, float]
@@ -59,15 +60,22 @@ class SkinModes:
 
     def baseline(self, display_C: float, depth_m: float, variable: Variable = "temperature") -> float:
         """Steady temperature in °C, or heat flow in W/m², at a depth while the display rests at `display_C`."""
-        change = self.at(depth_m, variable)[0] * (display_C - self.deep_C)
+        return self.resting(display_C, self.at(depth_m, variable)[0], variable)
+
+    def resting(self, display_C: float, steady: float, variable: Variable = "temperature") -> float:
+        """The same where the steady response at the depth is known."""
+        change = steady * (display_C - self.deep_C)
         return self.deep_C + change if variable == "temperature" else change
 
-    def ramp_response(self, depth_m: float, time_s: Array, variable: Variable = "temperature") -> Array:
-        """Change in K or W/m² at a depth, shape of `time_s`, for a display that rises by 1 K/s from time 0 on."""
+    def ramp_response(self, depth_m: float, dt_s: float, rows: int, variable: Variable = "temperature") -> Array:
+        """Change (rows,) in K or W/m² at a depth every `dt_s` s, for a display that rises by 1 K/s from time 0 on.
+
+        >>> skin_modes("forearm", 2.5e-4).ramp_response(0.15e-3, 0.5, 3).round(2)
+        array([0.  , 0.1 , 0.33])
+        """
         steady, weight = self.at(depth_m, variable)
-        after = np.maximum(time_s, 0.0)
-        decayed = -np.expm1(-self.rate_per_s[:, None] * after[None, :]) / self.rate_per_s[:, None]
-        response: Array = steady * after - weight @ decayed
+        response = np.empty(rows)
+        superposed.ramp_response(steady, weight, self.rate_per_s, dt_s, response)
         return response
 
     def course(
@@ -84,17 +92,23 @@ class SkinModes:
         >>> skin_modes("forearm", 2.5e-4).course(0.15e-3, 32.0, [(1.0, -5.0)], 1.0, 3).round(2)
         array([32.06, 30.4 , 29.18])
         """
-        time: Array = dt_s * np.arange(rows, dtype=np.float64)
-        unit = self.ramp_response(depth_m, time, variable)
-        course = np.full(rows, self.baseline(baseline_C, depth_m, variable))
-        slope, start = 0.0, (0.0, 0.0)
-        for corner in (*corners, None):
-            rate = 0.0 if corner is None else (corner[1] - start[1]) / (corner[0] - start[0])
-            if rate != slope:
-                course += (rate - slope) * np.interp(time - start[0], time, unit, left=0.0)
-            if corner is not None:
-                slope, start = rate, corner
-        return course
+        unit = self.ramp_response(depth_m, dt_s, rows, variable)
+        return course_of(unit, self.baseline(baseline_C, depth_m, variable), corners, dt_s, rows)
+
+
+def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
+    """A course (rows,) from a baseline by corners of the display, for skin with a `ramp_response` of `rows` or more."""
+    starts, slopes, slope, start = [], [], 0.0, (0.0, 0.0)
+    for corner in (*corners, None):
+        rate = 0.0 if corner is None else (corner[1] - start[1]) / (corner[0] - start[0])
+        if rate != slope:
+            starts.append(start[0])
+            slopes.append(rate - slope)
+        if corner is not None:
+            slope, start = rate, corner
+    course = np.full(rows, baseline)
+    superposed.superpose(ramp_response, dt_s, np.array(starts), np.array(slopes), course)
+    return course
 
 
 def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0, corneum: float = 1.0) -> SkinModes:
@@ -102,33 +116,71 @@ def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0,
 
     Effusivity √(k·ρ·c) is raised with conductivity and heat capacity alike, so that diffusivity stays.
 
-    >>> modes = skin_modes("forearm", 2.5e-4)
-    >>> round(float(modes.ramp_response(0.15e-3, np.array([0.0, 1.0]))[1]), 2)
-    0.33
+    >>> round(skin_modes("forearm", 2.5e-4).at(0.15e-3)[0], 3)
+    0.991
     """
-    rig = _rig(site_rig)
-    skin = _scaled(rig.skin, effusivity, corneum)
-    column = column_of(skin, rig.column.blood_capacity_J_per_m3K)
-    between = column.resistance_m2K_per_W.copy()
+    from scipy.linalg import eigh_tridiagonal
+
+    lumps = _lumps(site_rig, corneum)
+    between = lumps.resistance + lumps.resistance_of_living / effusivity
     between[0] += contact_m2K_per_W
     conductance = 1.0 / between
+    root = np.sqrt(lumps.capacity + lumps.capacity_of_living * effusivity)
     # Perfusion and the deep node pull every lump towards the same temperature, so that they enter as one.
-    matrix = np.diag(conductance[:-1] + conductance[1:] + column.perfusion_W_per_m2K)
-    matrix -= np.diag(conductance[1:-1], 1) + np.diag(conductance[1:-1], -1)
-    root = np.sqrt(column.capacity_J_per_m2K)
-    rate, mode = np.linalg.eigh(matrix / np.outer(root, root))
+    diagonal = (conductance[:-1] + conductance[1:] + lumps.perfusion) / root**2
+    rate, mode = eigh_tridiagonal(diagonal, -conductance[1:-1] / (root[1:] * root[:-1]), check_finite=False)
     drive = mode[0] * conductance[0] / root[0] / rate
     weight = mode * drive[None, :] / root[:, None]
     return SkinModes(
-        rig.site,
+        lumps.site,
         contact_m2K_per_W,
-        skin.layers[0].thickness_m if skin.layers[0].name == STRATUM_CORNEUM else 0.0,
-        rig.deep_C,
-        column.depth_m,
+        lumps.corneum_m,
+        lumps.deep_C,
+        lumps.depth_m,
         between[1:-1],
         weight.sum(axis=1),
-        rate,
+        np.asarray(rate, dtype=np.float64),
         weight,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Lumps:
+    """Lumps of a site's skin, with what scales with the effusivity of living tissue apart from what does not.
+
+    Resistance is `resistance` + `resistance_of_living`/e and capacity `capacity` + e·`capacity_of_living` for an
+    effusivity that is e times the tabulated one.
+    """
+
+    site: str
+    corneum_m: float
+    deep_C: float
+    depth_m: Array
+    perfusion: Array
+    resistance: Array
+    resistance_of_living: Array
+    capacity: Array
+    capacity_of_living: Array
+
+
+@lru_cache(maxsize=16)
+def _lumps(site_rig: str, corneum: float) -> _Lumps:
+    rig = Rig.load(site_rig)
+    blood = rig.column.blood_capacity_J_per_m3K
+    skin = _scaled(rig.skin, 1.0, corneum)
+    tissue, twice = column_of(skin, blood), column_of(_scaled(rig.skin, 2.0, corneum), blood)
+    living_resistance = 2.0 * (tissue.resistance_m2K_per_W - twice.resistance_m2K_per_W)
+    living_capacity = twice.capacity_J_per_m2K - tissue.capacity_J_per_m2K
+    return _Lumps(
+        rig.site,
+        skin.layers[0].thickness_m if skin.layers[0].name == STRATUM_CORNEUM else 0.0,
+        rig.deep_C,
+        tissue.depth_m,
+        tissue.perfusion_W_per_m2K,
+        tissue.resistance_m2K_per_W - living_resistance,
+        living_resistance,
+        tissue.capacity_J_per_m2K - living_capacity,
+        living_capacity,
     )
 
 
@@ -144,8 +196,3 @@ def _scaled(skin: Skin, effusivity: float, corneum: float) -> Skin:
         for layer in skin.layers
     ]
     return replace(skin, layers=tuple(layers))
-
-
-@lru_cache(maxsize=16)
-def _rig(name: str) -> Rig:
-    return Rig.load(name)

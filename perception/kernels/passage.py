@@ -24,37 +24,77 @@ def _cumulative(x: float) -> float:
 
 
 def _passage(
-    log_drive: Any, dt: float, log_gain: Any, criterion: Any, tau: float, psi_table: Any, shares: Any, times: Any
+    log_drive: Any, time: Any, log_gain: Any, criterion: Any, tau: float, psi_table: Any, shares: Any, times: Any
 ) -> Any:
     """Times (lanes, shares) in s at which these shares of trials have passed the criterion; inf where they never do.
 
     A lane is a person and a size of gain: `log_gain` (lanes,) of 1/K, `criterion` (lanes,) in d′; `log_drive` (n_time,)
-    of K; `psi_table` holds ψ over ln u. Returns the probability (lanes,) of having passed by the end.
+    of K at `time` (n_time,) in s, in steps of any size; `psi_table` holds ψ over ln u. Returns the probability (lanes,)
+    of having passed by the end. Lanes go through time in blocks, so that the look-ups run in the processor's vectors.
     """
-    passed = np.empty(log_gain.size)
-    targets = np.log(1.0 - shares)
-    for lane in range(log_gain.size):
-        c = criterion[lane]
-        log_left = math.log(cumulative(c))
-        k = 0
-        while k < shares.size and log_left <= targets[k]:
-            times[lane, k] = 0.0
-            k += 1
-        last = looked_up(psi_table, log_gain[lane] + log_drive[0], LOG_U_FROM, LOG_U_STEP)
-        for t in range(1, log_drive.size):
-            psi = looked_up(psi_table, log_gain[lane] + log_drive[t], LOG_U_FROM, LOG_U_STEP)
-            before = log_left
-            log_left -= dt * crossing_rate(last, psi, dt, c, tau)
-            while k < shares.size and log_left <= targets[k]:
-                times[lane, k] = dt * (t - 1 + (before - targets[k]) / (before - log_left))
-                k += 1
-            last = psi
-            if log_left < SURE:
+    lanes, samples = log_gain.size, log_drive.size
+    passed, targets = np.empty(lanes), np.log(1.0 - shares)
+    left, now, rise = np.empty((samples, BLOCK)), np.empty(BLOCK), np.empty(BLOCK)
+    last, c, gain = np.empty(BLOCK), np.empty(BLOCK), np.empty(BLOCK)
+    for first in range(0, lanes, BLOCK):
+        count = min(BLOCK, lanes - first)
+        for i in range(BLOCK):
+            lane = first + min(i, count - 1)
+            c[i], gain[i] = criterion[lane], log_gain[lane]
+            left[0, i] = math.log(cumulative(c[i]))
+        # As long as every criterion of the block is out of reach, nothing happens.
+        within_reach = LOG_U_FROM + LOG_U_STEP * first_below(-psi_table, OUT_OF_REACH - c.min(), psi_table.size - 1)
+        start = 1
+        while (
+            c.min() > OUT_OF_REACH and start < samples - 1 and log_drive[start] + gain.max() < within_reach - LOG_U_STEP
+        ):
+            left[start] = left[0]
+            start += 1
+        for i in range(BLOCK):
+            last[i] = looked_up(psi_table, gain[i] + log_drive[start - 1], LOG_U_FROM, LOG_U_STEP)
+        end = samples - 1
+        for t in range(start, samples):
+            dt = time[t] - time[t - 1]
+            for i in range(BLOCK):
+                now[i] = between(psi_table, (gain[i] + log_drive[t] - LOG_U_FROM) / LOG_U_STEP)
+            for i in range(BLOCK):
+                z = (now[i] - last[i]) * (tau / dt)
+                rise[i] = max(between(RISE, (z - Z_FROM) / Z_STEP), z)
+            for i in range(BLOCK):
+                gap = c[i] - 0.5 * (now[i] + last[i])
+                rise[i] *= (dt / tau) * between(MILLS, (gap - GAP_FROM) / GAP_STEP)
+            least = -np.inf
+            for i in range(BLOCK):
+                left[t, i] = left[t - 1, i] - rise[i]
+                last[i] = now[i]
+                least = max(least, left[t, i])
+            if least < SURE:
+                end = t
                 break
-        for rest in range(k, shares.size):
-            times[lane, rest] = np.inf
-        passed[lane] = 1.0 - math.exp(log_left)
+        for i in range(count):
+            passed[first + i] = 1.0 - math.exp(left[first_below(left[:, i], SURE, end), i])
+            for k in range(shares.size):
+                t = first_below(left[:, i], targets[k], end)
+                if left[t, i] > targets[k]:
+                    times[first + i, k] = np.inf
+                elif t == 0:
+                    times[first + i, k] = 0.0
+                else:
+                    share = (left[t - 1, i] - targets[k]) / (left[t - 1, i] - left[t, i])
+                    times[first + i, k] = time[t - 1] + share * (time[t] - time[t - 1])
     return passed
+
+
+def _first_below_index(falling: Any, level: float, end: int) -> int:
+    """Index of the first number of a falling column that is at or below a level; `end` where none is."""
+    low, high = 0, end
+    while low < high:
+        middle = (low + high) // 2
+        if falling[middle] <= level:
+            high = middle
+        else:
+            low = middle + 1
+    return low
 
 
 def _survive(psi: Any, dt: float, criterion: float, tau: float, corrected: bool, log_left: Any) -> None:
@@ -94,11 +134,22 @@ def _looked_up(table: Any, x: float, start: float, step: float) -> float:
     return float(table[k] + (place - k) * (table[k + 1] - table[k]))
 
 
+def _between(table: Any, place: float) -> float:
+    """`looked_up` without branches: what lies outside counts as the end of the table."""
+    within = min(max(place, 0.0), table.size - 1.000001)
+    k = np.uint32(np.int32(within))
+    return float(table[k] + (within - k) * (table[k + np.uint32(1)] - table[k]))
+
+
+BLOCK = 16
+"""Lanes that go through time together."""
 LOG_U_FROM, LOG_U_STEP, LOG_U_POINTS = -8.0, 0.04, 401
 GAP_FROM, GAP_STEP, GAP_POINTS = -6.0, 0.01, 1401
 Z_FROM, Z_STEP, Z_TO = -4.0, 0.01, 4.0
 Z_MIDDLE = 400
 CERTAIN = -16.0
+OUT_OF_REACH = 5.0
+"""Gap in d′ above which a criterion is passed less than once in a day."""
 SURE = -5.0
 """Log probabilities of not having answered below which an answer is certain: of one course, and of one lane."""
 
@@ -121,8 +172,11 @@ MILLS, RISE = _mills_table(), _rise_table()
 
 
 _compile: Any = kernel(nogil=True)
+_vector: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
 cumulative: Any = _compile(_cumulative)
 looked_up: Any = _compile(_looked_up)
 crossing_rate: Any = _compile(_crossing_rate)
 survive: Any = _compile(_survive)
-passage: Any = _compile(_passage)
+between: Any = _vector(_between)
+first_below: Any = _compile(_first_below_index)
+passage: Any = _vector(_passage)

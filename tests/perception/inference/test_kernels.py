@@ -10,8 +10,10 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.inference.crowd import SHARES
+from thermicon.perception.inference.laboratory import samples_of
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.adapted_drive import adapted_drive
+from thermicon.perception.kernels.psychometric import psychometric
 from thermicon.perception.observer.transducer import Transducer
 from thermicon.perception.sensation.first_passage import log_survival
 
@@ -30,7 +32,7 @@ def drive(temperature, sign, limit=None, integration_s=0.05):
 
 def passage(log_drive, log_gain, criterion, tau=0.3):
     times = np.empty((log_gain.size, SHARES.size))
-    passed = kernels.passage(log_drive, DT, log_gain, criterion, tau, TABLE, SHARES, times)
+    passed = kernels.passage(log_drive, DT * np.arange(log_drive.size), log_gain, criterion, tau, TABLE, SHARES, times)
     return times, passed
 
 
@@ -91,3 +93,27 @@ def test_no_drive_gives_false_alarms_alone() -> None:
     rate = math.exp(-4.5) / (2.0 * math.pi * 0.3)
     below = 0.5 * math.erfc(-3.0 / math.sqrt(2.0))
     assert passed[0] == pytest.approx(1.0 - below * math.exp(-rate / below * 199 * DT), rel=0.01)
+
+
+def test_lanes_and_steps_can_be_chosen_freely() -> None:
+    time = DT * np.arange(400)
+    log_drive = np.log(np.maximum(0.8 * time, 1e-9))
+    rng = np.random.default_rng(5)
+    gains, criteria = rng.normal(0.0, 0.5, 37), np.exp(rng.normal(1.3, 0.7, 37))
+    times, passed = passage(log_drive, gains, criteria)
+    order = rng.permutation(37)
+    shuffled, passed_too = passage(log_drive, gains[order], criteria[order])
+    np.testing.assert_allclose(shuffled, times[order], rtol=1e-6)
+    np.testing.assert_allclose(passed_too, passed[order], atol=1e-6)
+    few = samples_of(((10.0, 8.0),), 9.975)
+    assert few.size < 0.4 * time.size
+    sparse = np.empty_like(times)
+    kernels.passage(log_drive[few], time[few], gains, criteria, 0.3, TABLE, SHARES, sparse)
+    np.testing.assert_allclose(sparse, times, rtol=1e-3)
+
+
+def test_sizes_at_shares_are_read_between_and_beyond() -> None:
+    reported, logs = np.array([[0.0, 0.25, 0.75, 0.8], [0.5, 0.5, 0.75, 1.0]]), np.empty((2, 2))
+    psychometric(reported, np.arange(4.0), np.array([0.5, 0.9]), logs)
+    np.testing.assert_allclose(logs[0], [1.5, 3.1], atol=1e-6)
+    assert logs[1, 0] == pytest.approx(2.0, abs=0.01)

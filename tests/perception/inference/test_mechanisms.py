@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception.inference.experiments import predict
-from thermicon.perception.inference.laboratory import Laboratory
+from thermicon.perception.inference.laboratory import Laboratory, samples_of
 from thermicon.perception.inference.posterior import Posterior
 from thermicon.perception.observer.delays import Conduction
 from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
@@ -88,11 +88,12 @@ def test_a_later_decade_raises_thresholds(laboratory: Laboratory) -> None:
 
 
 def test_answers_come_later_by_conduction_and_decision(laboratory: Laboratory) -> None:
-    drive = laboratory.drive("forearm", "warm", 31.0, [(14 / 4.81, 14.0)], 6.0)
+    corners = ((14 / 4.81, 14.0),)
+    drive, samples = laboratory.drive("forearm", "warm", 31.0, corners, 6.0), samples_of(corners, 6.0)
     gain = laboratory.gain("warm", 9.8, "E1", "forearm", 28.0)
-    crossed, _ = laboratory.passages(drive, "warm", gain, laboratory.values["criterion of speeded answers"])
-    simple = laboratory.answers_s(drive, "warm", gain, site="forearm")
-    choice = laboratory.answers_s(drive, "warm", gain, site="forearm", choice=True)
+    crossed, _ = laboratory.passages(drive, samples, "warm", gain, laboratory.values["criterion of speeded answers"])
+    simple = laboratory.answers_s(drive, samples, "warm", gain, site="forearm")
+    choice = laboratory.answers_s(drive, samples, "warm", gain, site="forearm", choice=True)
     felt = np.isfinite(crossed)
     assert (simple[felt] > crossed[felt] + laboratory.delay_s("warm", "forearm")).all()
     assert (choice[felt] > simple[felt]).all()

@@ -44,10 +44,9 @@ def test_steady_state_is_reached() -> None:
 
 
 def test_contact_and_effusivity_blunt_a_ramp() -> None:
-    time = np.array([1.0])
-    reference = float(skin_modes("forearm", 1e-4).ramp_response(0.15e-3, time)[0])
-    lighter = float(skin_modes("forearm", 6e-4).ramp_response(0.15e-3, time)[0])
-    heavier = float(skin_modes("forearm", 1e-4, effusivity=1.4).ramp_response(0.15e-3, time)[0])
+    reference = float(skin_modes("forearm", 1e-4).ramp_response(0.15e-3, 1.0, 2)[1])
+    lighter = float(skin_modes("forearm", 6e-4).ramp_response(0.15e-3, 1.0, 2)[1])
+    heavier = float(skin_modes("forearm", 1e-4, effusivity=1.4).ramp_response(0.15e-3, 1.0, 2)[1])
     assert lighter < 0.8 * reference
     assert heavier < 0.98 * reference
 
@@ -55,5 +54,5 @@ def test_contact_and_effusivity_blunt_a_ramp() -> None:
 def test_thicker_corneum_delays_what_lies_at_the_same_depth_below_it() -> None:
     thin, thick = skin_modes("forearm", 2e-4), skin_modes("forearm", 2e-4, corneum=4.0)
     assert thick.corneum_m == pytest.approx(4.0 * thin.corneum_m)
-    at = [float(each.ramp_response(each.corneum_m + 0.1e-3, np.array([1.0]))[0]) for each in (thin, thick)]
+    at = [float(each.ramp_response(each.corneum_m + 0.1e-3, 1.0, 2)[1]) for each in (thin, thick)]
     assert at[1] < at[0]
