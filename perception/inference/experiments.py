@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..kernels.psychometric import psychometric
 from ..observer.channels import CHANNELS, Channel, sign_of
-from .laboratory import DT_S, Laboratory, samples_of
+from .laboratory import DT_S, FEEBLE, Laboratory, samples_of
 
 Key = tuple[str, str, str]
 """Experiment, statistic, channel."""
@@ -213,7 +213,7 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     values = laboratory.values
     for channel, (rate, size) in RATED.items():
         end_s = size / rate + 0.7
-        peak = float(laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], end_s).max())
+        peak = max(float(laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], end_s).max()), FEEBLE)
         one, five = (peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"]) for n in (1, 5))
         exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
         yield ("E2", "rating_mean_5strip", channel), math.log(unit) + exponent * math.log(max(five, 1e-6))

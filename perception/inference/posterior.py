@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS
@@ -28,6 +29,7 @@ DRIVE_SCALE: dict[tuple[Variable, Model], float] = {
     ("temperature", "ring-de-dear"): 60.0,
 }
 """What the prior of a threshold drive is multiplied by: W/m² or impulses for each K, roughly; the prior is wide."""
+BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
 """A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
 
@@ -96,10 +98,19 @@ class Posterior:
 
     def residuals(self, vector: Array) -> Array:
         """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""
+        return np.concatenate([self.misses(vector)[self.counted], vector])
+
+    def misses(self, vector: Array) -> Array:
+        """Misses of all rows, left out or not, in their SDs."""
         predictions = self.predictions(vector)
-        missed = np.array([(predictions[row.key] - row.value) / row.sd for row in self.rows])
-        missed = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
-        return np.concatenate([missed, vector])
+        missed = np.array([(predictions[row.key] - row.value) / row.sd for row in load_rows()])
+        clipped: Array = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
+        return clipped
+
+    @cached_property
+    def counted(self) -> BoolArray:
+        """Which of all rows count."""
+        return np.array([row.experiment not in self.left_out for row in load_rows()])
 
 
 def _moved(prior: Prior, log_scale: float) -> Prior:

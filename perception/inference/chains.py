@@ -1,0 +1,127 @@
+"""Markov chains of a posterior: long moves along a surrogate, short ones around the normal approximation.
+
+In coordinates w where the normal approximation at the maximum is standard normal, a step is one of three, drawn anew:
+
+- where trajectories along the surrogate end, accepted by the ratio of posterior to surrogate (`surrogate`);
+- √(1 − β²)·w + β·ξ with ξ standard normal, accepted by the ratio of posterior to approximation (preconditioned
+  Crank–Nicolson; Cotter, Roberts, Stuart & White 2013);
+- w + ξ of a length for many dimensions, accepted by the posterior: a random walk, for the tails.
+
+emcee runs the chains.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from .posterior import Posterior
+from .surrogate import Surrogate
+
+LONG, MIDDLE = 0.7, 0.85
+"""Shares of the steps: along the surrogate up to the first, Crank–Nicolson up to the second, then random walk."""
+TRAJECTORIES = 3
+BETA, WALK = 0.3, 1.7
+"""β of Crank–Nicolson; length of a random walk in SDs over the root of the number of constants."""
+IMPOSSIBLE = -1e300
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """The normal approximation: `middle` (n,) and lower triangular `factor` (n, n), in SDs of the prior."""
+
+    middle: Array
+    factor: Array
+
+    def vector(self, white: Array) -> Array:
+        """Vectors (..., n) of the posterior from coordinates in which the approximation is standard normal."""
+        vectors: Array = self.middle + white @ self.factor.T
+        return vectors
+
+    def white(self, vectors: Array) -> Array:
+        """The other way round."""
+        return np.linalg.solve(self.factor, (vectors - self.middle).T).T
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """One chain so far: `white` (steps, n) coordinates, their log posterior, and the generator's state behind them."""
+
+    white: Array
+    log_posterior: Array
+    accepted: int
+    random: tuple[Any, ...]
+
+    def __len__(self) -> int:
+        return int(self.white.shape[0])
+
+    def save(self, path: Path) -> None:
+        """Write the chain completely or not at all."""
+        draft = path.with_suffix(".part")
+        kind, keys, place, has_gauss, gauss = self.random
+        with draft.open("wb") as file:
+            np.savez(
+                file,
+                white=self.white,
+                log_posterior=self.log_posterior,
+                accepted=self.accepted,
+                keys=keys,
+                place=np.array([place, has_gauss]),
+                gauss=gauss,
+                kind=kind,
+            )
+        draft.replace(path)
+
+    @classmethod
+    def load(cls, path: Path) -> Chain:
+        """A chain from its file."""
+        with np.load(path, allow_pickle=False) as held:
+            place, has_gauss = held["place"].tolist()
+            random = (str(held["kind"]), held["keys"], place, has_gauss, float(held["gauss"]))
+            return cls(held["white"], held["log_posterior"], int(held["accepted"]), random)
+
+
+def begin(size: int, seed: int, number: int) -> Chain:
+    """A chain of no steps that starts at a draw from the normal approximation."""
+    start = np.random.default_rng([seed, number]).standard_normal(size)
+    random = np.random.RandomState(np.random.MT19937(np.random.SeedSequence([seed, number, 1])))
+    return Chain(start[None], np.full(1, np.nan), 0, tuple(random.get_state(legacy=True)))
+
+
+def extend(chain: Chain, posterior: Posterior, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
+    """The chain with more steps; the same steps whether they are taken at once or in parts."""
+    import emcee
+
+    size = reference.middle.size
+
+    def log_posterior(white: Array) -> float:
+        residuals = posterior.residuals(reference.vector(white))
+        density = -0.5 * float(residuals @ residuals)
+        return density if np.isfinite(density) else IMPOSSIBLE
+
+    def propose(white: Array, random: np.random.RandomState) -> tuple[Array, Array]:
+        kind = random.random_sample()
+        if kind < LONG:
+            proposed = surrogate.walk(white[0], random, TRAJECTORIES)[None]
+            ratio = surrogate.log_density(white[0])[0] - surrogate.log_density(proposed[0])[0]
+            return proposed, np.array([ratio])
+        noise = random.standard_normal(white.shape)
+        if kind < MIDDLE:
+            proposed = np.sqrt(1.0 - BETA**2) * white + BETA * noise
+            return proposed, 0.5 * (np.square(proposed).sum(axis=1) - np.square(white).sum(axis=1))
+        return white + WALK / np.sqrt(size) * noise, np.zeros(1)
+
+    sampler = emcee.EnsembleSampler(1, size, log_posterior, moves=emcee.moves.MHMove(propose))
+    known = chain.log_posterior[-1:]
+    start = emcee.State(chain.white[-1:], log_prob=None if np.isnan(known).any() else known, random_state=chain.random)
+    end = sampler.run_mcmc(start, steps, skip_initial_state_check=True)
+    return Chain(
+        np.concatenate([chain.white, sampler.get_chain()[:, 0]]),
+        np.concatenate([chain.log_posterior, sampler.get_log_prob()[:, 0]]),
+        chain.accepted + int(sampler.acceptance_fraction[0] * steps + 0.5),
+        tuple(end.random_state),
+    )

@@ -1,0 +1,89 @@
+"""A quadratic model of every residual, which moves along the posterior a hundred times faster than the laboratory does.
+
+Near the maximum each row's miss r is nearly quadratic in the constants: r ≈ a + b·w + wᵀ·Q·w in the coordinates w of
+the normal approximation, fitted to residuals that were computed at some thousand points. Its posterior is not normal, since
+squares of quadratics are quartic, and it has a gradient, so that Hamiltonian trajectories run along it (Neal 2011).
+What it gets wrong is put right afterwards: proposals that come from it are accepted by the ratio of the true posterior
+to the surrogate's, which leaves the true posterior unchanged (Liu 2001, surrogate transition).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+
+RIDGE = 0.01
+"""Weight of keeping coefficients small, as a share of the number of points."""
+FADING = 15.0
+"""Points count e times less for so much less log posterior than the median point: the fit is for where chains go."""
+WALL = 2.0
+"""Squared distances from the maximum, over the number of constants, beyond which a wall keeps trajectories from where
+the quadratics were not fitted; the other steps of a chain go there."""
+LEAPS, LEAP = 10, 0.16
+"""Steps of a trajectory and their length, in SDs of the normal approximation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surrogate:
+    """Rows' residuals as quadratics: `offset` (rows,), `slope` (rows, n) and `curvature` (rows, n, n), symmetric.
+
+    Distances from the priors' middles, the other residuals, are linear: `middle` (n,) and `factor` (n, n).
+    """
+
+    offset: Array
+    slope: Array
+    curvature: Array
+    middle: Array
+    factor: Array
+
+    def log_density(self, white: Array) -> tuple[float, Array]:
+        """Log density of the surrogate's posterior, up to a constant, and its gradient (n,)."""
+        bent = self.curvature @ white
+        residuals = self.offset + (self.slope + bent) @ white
+        vector = self.middle + self.factor @ white
+        beyond = max(0.0, float(white @ white) - WALL * white.size)
+        gradient: Array = -(self.slope + 2.0 * bent).T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
+        return -0.5 * float(residuals @ residuals + vector @ vector) - 0.1 * beyond**2, gradient
+
+    def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
+        """Where some Hamiltonian trajectories end, each accepted or not by the surrogate."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._walk(white, random, trajectories)
+
+    def _walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
+        density, gradient = self.log_density(white)
+        for _ in range(trajectories):
+            momentum = random.standard_normal(white.size)
+            # Lengths differ, so that no direction comes round to where it started.
+            leap = LEAP * (0.7 + 0.6 * random.random_sample())
+            moved, slope = white, gradient
+            energy = density - 0.5 * float(momentum @ momentum)
+            for _ in range(LEAPS):
+                momentum = momentum + 0.5 * leap * slope
+                moved = moved + leap * momentum
+                ends, slope = self.log_density(moved)
+                momentum = momentum + 0.5 * leap * slope
+            gained = ends - 0.5 * float(momentum @ momentum) - energy
+            # A trajectory that leaves for infinity is refused.
+            if np.isfinite(gained) and np.log(random.random_sample()) < gained:
+                white, density, gradient = moved, ends, slope
+        return white
+
+
+def fit_surrogate(white: Array, residuals: Array, middle: Array, factor: Array) -> Surrogate:
+    """Weighted least squares from residuals (points, rows) at points (points, n), coefficients kept small."""
+    points, size = white.shape
+    first, second = np.triu_indices(size)
+    features = np.concatenate([np.ones((points, 1)), white, white[:, first] * white[:, second]], axis=1)
+    density = -0.5 * (np.square(residuals).sum(axis=1) + np.square(middle + white @ factor.T).sum(axis=1))
+    weight = np.exp(0.5 * np.minimum(0.0, (density - np.median(density)) / FADING))[:, None]
+    features *= weight
+    small = np.diag(RIDGE * points * np.concatenate([[0.0], np.full(size, 0.01), np.ones(first.size)]))
+    fitted = np.linalg.solve(features.T @ features + small, features.T @ (residuals * weight)).T
+    curvature = np.zeros((residuals.shape[1], size, size))
+    curvature[:, first, second] = 0.5 * fitted[:, 1 + size :]
+    curvature += curvature.transpose(0, 2, 1)
+    return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor)

@@ -1,0 +1,159 @@
+"""Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
+
+The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
+where two of them cannot be told apart by the evidence, they trade off from draw to draw. Noise of memory is no part of
+the inference and stays that of the shipped observer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from thermicon.circuit.records import Table
+from thermicon.icons.near_words import did_you_mean
+
+from ..arrays import Array
+from .channels import CHANNELS
+from .draws_file import DrawsHeader, read_draws, shipped_file
+from .observer import Observer, variant_records
+from .variants import Model, Variable, check_variant, source_of
+
+LABORATORIES = "sensitivity between laboratories"
+INFERRED = "inferred from published evidence"
+"""How the source of a record begins whose value a draw replaces."""
+
+
+@dataclass(frozen=True, slots=True)
+class PosteriorDraws:
+    """Equally weighted draws: `draws` (n, constants) read-only, in each constant's own unit, columns as in `names`.
+
+    >>> posterior = PosteriorDraws.load()
+    >>> posterior.values("cold limit").shape == (len(posterior),)
+    True
+    >>> observer = posterior.observer(0)
+    >>> observer.cold.limit_C == posterior.values("cold limit")[0]
+    True
+    """
+
+    header: DrawsHeader
+    names: tuple[str, ...]
+    draws: Array
+
+    def __post_init__(self) -> None:
+        own = np.array(self.draws, dtype=np.float64)
+        if own.ndim != 2 or own.shape[1] != len(self.names) or not own.shape[0]:
+            raise ValueError(f"draws of {len(self.names)} constants need as many columns, not {own.shape}")
+        if not np.isfinite(own).all():
+            raise ValueError("every constant of every draw must be a finite number")
+        own.setflags(write=False)
+        object.__setattr__(self, "draws", own)
+
+    @classmethod
+    def load(
+        cls, path: Path | str | None = None, *, variable: Variable = "temperature", model: Model = "adapting"
+    ) -> PosteriorDraws:
+        """The shipped draws of a variant, or those of another file.
+
+        Parameters
+        ----------
+        path
+            A table written by ``thermicon calibrate``; None for the shipped one.
+        variable, model
+            The variant of the shipped table; a file has its own.
+
+        Raises
+        ------
+        RecordError
+            For a file that is no such table, was made from other evidence or priors, or lacks a constant.
+
+        """
+        variant = check_variant(variable, model)
+        file = shipped_file(*variant) if path is None else Path(path)
+        return _read(file, file.stat().st_mtime_ns if file.exists() else 0)
+
+    def __len__(self) -> int:
+        return int(self.draws.shape[0])
+
+    @property
+    def variant(self) -> tuple[Variable, Model]:
+        """Sensory variable and receptor model."""
+        return self.header.variable, self.header.model
+
+    def values(self, name: str) -> Array:
+        """One constant in every draw (n,), in its own unit; a ValueError names the nearest."""
+        if name not in self.names:
+            raise ValueError(f"the posterior has no constant {name!r}: {did_you_mean(name, set(self.names))}")
+        column: Array = self.draws[:, self.names.index(name)]
+        return column
+
+    def draw(self, k: int) -> Mapping[str, float]:
+        """All constants of one draw by name, offsets of the laboratories of the evidence included."""
+        return dict(zip(self.names, self.draws[k].tolist(), strict=True))
+
+    def interval(self, name: str, share: float = 0.95) -> tuple[float, float, float]:
+        """Lower end, median and upper end of the central interval of a constant."""
+        low, middle, high = np.quantile(self.values(name), [0.5 - 0.5 * share, 0.5, 0.5 + 0.5 * share]).tolist()
+        return low, middle, high
+
+    def table(self, k: int) -> Table:
+        """The observer's records with the constants of one draw: for `Observer.from_table`, and how people differ."""
+        values, variant = self.draw(k), source_of(*self.variant)
+        records = []
+        for record in variant_records(*self.variant):
+            if not record.source.startswith(INFERRED):
+                records.append(record)
+                continue
+            quantity = record.quantity.removesuffix(variant) if variant else record.quantity
+            name = f"{record.channel} {quantity}" if record.channel in CHANNELS else quantity
+            # The default variant's own number gives way to that of this variant.
+            if name not in values:
+                records.append(record)
+            elif record.quantity == f"{quantity}{variant}":
+                value = values[name]
+                records.append(replace(record, value=value, low=None, high=None, method=f"draw {k} of the posterior"))
+                if variant:
+                    records.append(replace(records[-1], quantity=quantity))
+        return Table(f"draw {k}", tuple(records))
+
+    def observer(self, k: int) -> Observer:
+        """The observer of one draw."""
+        variable, model = self.variant
+        return Observer.from_table(self.table(k), variable=variable, model=model)
+
+    @property
+    def nearest_median(self) -> int:
+        """Number of the draw nearest to the median of all constants, in SDs of the draws; laboratories do not count."""
+        columns = [k for k, name in enumerate(self.names) if not self.header.is_offset(name)]
+        kept = self.draws[:, columns]
+        positive = (kept > 0.0).all(axis=0)
+        places = np.where(positive, np.log(np.where(positive, kept, 1.0)), kept)
+        spread = np.where(places.std(axis=0) > 0.0, places.std(axis=0), 1.0)
+        return int(np.square((places - np.median(places, axis=0)) / spread).sum(axis=1).argmin())
+
+    def observer_nearest_median(self) -> Observer:
+        """The observer of the draw nearest to the median: single numbers that are consistent with each other."""
+        return self.observer(self.nearest_median)
+
+    def new_laboratory(self, seed: int = 0) -> Array:
+        """How much more sensitive (ln) the people of a new laboratory are, (n, 2) for cold and warm in every draw.
+
+        A threshold there is e^(−offset) times the observer's. The spread between laboratories is the draw's own; the
+        same seed gives the same laboratory in standard units.
+        """
+        standard = np.random.default_rng(seed).standard_normal((len(self), len(CHANNELS)))
+        offsets: Array = self.values(LABORATORIES)[:, None] * standard
+        return offsets
+
+    def __repr__(self) -> str:
+        size = f"{len(self)} draws of {len(self.names)} constants"
+        return f"PosteriorDraws({size}, {', '.join(self.variant)}; {self.header.status})"
+
+
+@lru_cache(maxsize=8)
+def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
+    return PosteriorDraws(*read_draws(file))

@@ -1,0 +1,221 @@
+"""The table of posterior draws as a file: header lines that say what it was made from, then one row a draw.
+
+It is written by `thermicon calibrate`. Reading needs numpy alone and refuses a table of other evidence or another form.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+
+from thermicon.circuit.records import RecordError
+from thermicon.icons.near_words import did_you_mean
+
+from ..arrays import Array
+from .observer import DATA
+from .variants import Model, Variable, check_variant
+
+FORM = 1
+"""Version of the form; a table of another one is refused."""
+FIGURES = 6
+FIRST_LINE = "# written by thermicon calibrate from inputs "
+CURE = "write it again with thermicon calibrate -o FILE"
+CONSTANTS = DATA / "constants.csv"
+APPROXIMATE = "normal approximation"
+
+
+@dataclass(frozen=True, slots=True)
+class DrawsHeader:
+    """What a table of draws was made from: digests, variant, sampler and diagnostics, all as text in the file.
+
+    `inputs`, `evidence` and `priors` are digests; `left_out` names experiments that were not conditioned on;
+    `r_hat` is the largest and `ess` the least bulk effective sample size over all constants.
+    """
+
+    inputs: str
+    evidence: str
+    priors: str
+    program: str
+    variable: Variable
+    model: Model
+    left_out: tuple[str, ...]
+    sampler: str
+    seed: int
+    likelihoods: int
+    r_hat: float
+    ess: float
+    converged: bool
+    offsets: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        check_variant(self.variable, self.model)
+
+    def is_offset(self, name: str) -> bool:
+        """Whether a column is the offset of one laboratory of the evidence, in SDs of the spread between them."""
+        return name in self.offsets
+
+    @property
+    def status(self) -> str:
+        """Diagnostics in a few words."""
+        if APPROXIMATE in self.sampler:
+            return f"{APPROXIMATE}, not sampled"
+        reached = "" if self.converged else "NOT CONVERGED, "
+        return f"{reached}R-hat up to {self.r_hat:.3f}, ESS from {self.ess:.0f}"
+
+
+LABELS: Mapping[str, str] = {
+    "evidence": "evidence",
+    "priors": "priors",
+    "program": "program",
+    "variable": "sensory variable",
+    "model": "receptor model",
+    "left_out": "left out",
+    "sampler": "sampler",
+    "seed": "seed",
+    "likelihoods": "likelihoods computed",
+    "r_hat": "largest R-hat",
+    "ess": "least bulk ESS",
+    "converged": "converged",
+    "offsets": "offsets of laboratories",
+}
+"""Names of the header's lines by field; `inputs` ends the first line."""
+
+
+def shipped_file(variable: Variable, model: Model) -> Path:
+    """Where the shipped draws of a variant lie.
+
+    >>> shipped_file("heat flow", "adapting").name
+    'posterior-heat-flow.csv'
+    """
+    if model == "ring-de-dear":
+        return DATA / "posterior-ring-de-dear.csv"
+    return DATA / ("posterior.csv" if variable == "temperature" else "posterior-heat-flow.csv")
+
+
+def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
+    """The whole file, numbers to six figures."""
+    text = StringIO()
+    text.write(f"{FIRST_LINE}{header.inputs}\n# form: {FORM}\n")
+    for field, label in LABELS.items():
+        text.write(f"# {label}: {_to_text(getattr(header, field))}\n")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([f"{value:.{FIGURES}g}" for value in row] for row in draws.tolist())
+    return text.getvalue()
+
+
+def _to_text(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, tuple):
+        return ", ".join(value) or "nothing"
+    return f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array]:
+    """Header, names and draws (n, constants) of a file; a RecordError says what is wrong, where, and the cure."""
+    try:
+        lines = path.read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "it is not text"
+        raise RecordError(f"{path}: posterior draws cannot be read: {reason}: {CURE}") from error
+    head = [line for line in lines if line.startswith("#")]
+    if not head or not head[0].startswith(FIRST_LINE):
+        raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")
+    header = _header(path.name, head)
+    rows = list(csv.reader(lines[len(head) :]))
+    if len(rows) < 2:
+        raise RecordError(f"{path.name}: the table has no draws: {CURE}")
+    names = tuple(rows[0])
+    _check_names(path.name, header, names)
+    draws = np.empty((len(rows) - 1, len(names)))
+    for number, row in enumerate(rows[1:]):
+        where = f"{path.name}, line {len(head) + 2 + number}"
+        if len(row) != len(names):
+            raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
+        for place, text in enumerate(row):
+            draws[number, place] = _number(text, f"{where}, {names[place]}")
+    return header, names, draws
+
+
+def _header(name: str, head: Sequence[str]) -> DrawsHeader:
+    known = dict(line[2:].split(": ", 1) for line in head[1:] if ": " in line)
+    if known.get("form") != str(FORM):
+        raise RecordError(
+            f"{name}, line 2: form {known.get('form', 'none')} of draws, this program reads {FORM}: {CURE}"
+        )
+    missing = [label for label in LABELS.values() if label not in known]
+    if missing:
+        raise RecordError(f"{name}: the header has no line {missing[0]!r}: {CURE}")
+    inputs, current = head[0].removeprefix(FIRST_LINE).strip(), current_inputs()
+    if inputs != current:
+        raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
+    text = {field: known[label] for field, label in LABELS.items()}
+    try:
+        variable, model = check_variant(text["variable"], text["model"])
+    except ValueError as error:
+        raise RecordError(f"{name}: {error}") from error
+    return DrawsHeader(
+        inputs,
+        text["evidence"],
+        text["priors"],
+        text["program"],
+        variable,
+        model,
+        _words(text["left_out"]),
+        text["sampler"],
+        int(_number(text["seed"], f"{name}, seed")),
+        int(_number(text["likelihoods"], f"{name}, likelihoods computed")),
+        _number(text["r_hat"], f"{name}, largest R-hat"),
+        _number(text["ess"], f"{name}, least bulk ESS"),
+        text["converged"] == "yes",
+        _words(text["offsets"]),
+    )
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return () if text == "nothing" else tuple(text.split(", "))
+
+
+def _number(text: str, where: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not np.isfinite(value):
+        raise RecordError(f"{where}: {text!r} is not a finite number: {CURE}")
+    return value
+
+
+def _check_names(name: str, header: DrawsHeader, names: Sequence[str]) -> None:
+    if len(set(names)) < len(names):
+        raise RecordError(f"{name}: two columns have one name: {CURE}")
+    expected = _inferred(header.variable, header.model)
+    for each in names:
+        if each not in expected:
+            raise RecordError(f"{name}: {each!r} is not a constant of this observer: {did_you_mean(each, expected)}")
+    for each in expected:
+        if each not in names:
+            raise RecordError(f"{name}: there is no column {each!r}: {CURE}")
+
+
+def _inferred(variable: Variable, model: Model) -> set[str]:
+    """Names of all constants that are inferred for a variant."""
+    with CONSTANTS.open(encoding="utf-8", newline="") as file:
+        file.readline()
+        rows = csv.DictReader(file)
+        return {row["name"] for row in rows if (row["variable"], row["model"]) == (variable, model)}
+
+
+def current_inputs() -> str:
+    """Digest of the evidence and priors that this program's constants were inferred from."""
+    with CONSTANTS.open(encoding="utf-8") as file:
+        return file.readline().rpartition(" ")[2].strip()
+
+
+assert {field.name for field in fields(DrawsHeader)} == {*LABELS, "inputs"}
