@@ -37,6 +37,11 @@ class Reference:
     middle: Array
     factor: Array
 
+    @classmethod
+    def at(cls, middle: Array, covariance: Array) -> Reference:
+        """The approximation by its middle and covariance."""
+        return cls(middle, np.linalg.cholesky(covariance).astype(np.float64))
+
     def vector(self, white: Array) -> Array:
         """Vectors (..., n) of the posterior from coordinates in which the approximation is standard normal."""
         vectors: Array = self.middle + white @ self.factor.T
@@ -44,7 +49,8 @@ class Reference:
 
     def white(self, vectors: Array) -> Array:
         """The other way round."""
-        return np.linalg.solve(self.factor, (vectors - self.middle).T).T
+        white: Array = np.linalg.solve(self.factor, (vectors - self.middle).T).T.astype(np.float64)
+        return white
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ R_HAT, ESS = 1.01, 400.0
 al. 2021)."""
 K_HAT = 0.7
 """Pareto-smoothed weights with a larger shape of tail are not to be trusted (Vehtari et al. 2024)."""
-EXTRA = "samplers and diagnostics are an extra: pip install 'thermicon[calibrate]'"
+EXTRA = 'calibrate needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +45,15 @@ class Diagnostics:
         return f"Diagnostics({state}: R-hat up to {self.r_hat.max():.4f}, ESS from {self.ess.min():.0f})"
 
 
+def require_extra() -> None:
+    """Raise a RecordError with the cure where sampler or diagnostics are not installed."""
+    try:
+        import arviz_stats  # noqa: F401
+        import emcee  # noqa: F401
+    except ImportError:
+        raise RecordError(EXTRA) from None
+
+
 def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
     """Diagnostics of chains (chains, steps, n)."""
     stats = _array_stats()
@@ -61,8 +71,5 @@ def smoothed_weights(log_weights: Array) -> tuple[Array, float]:
 
 
 def _array_stats() -> Any:
-    try:
-        from arviz_stats.base import array_stats
-    except ImportError as error:
-        raise RecordError(EXTRA) from error
-    return array_stats
+    require_extra()
+    return import_module("arviz_stats.base").array_stats

@@ -56,7 +56,7 @@ def learn(
         if progress is not None:
             progress(len(points))
         surrogate = fitted(posterior, reference, points)
-        vectors = reference.vector(_walked(surrogate, random, size))
+        vectors = reference.vector(walked(surrogate, random, size))
         points = points.joined(Points(vectors, evaluate(vectors)))
     return fitted(posterior, reference, points), points
 
@@ -67,7 +67,7 @@ def fitted(posterior: Posterior, reference: Reference, points: Points) -> Surrog
     return fit_surrogate(reference.white(points.vectors), points.misses[:, counted], reference.middle, reference.factor)
 
 
-def _walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> Array:
+def walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> Array:
     """Coordinates (points, n) along the surrogate."""
     visited: list[Array] = []
     for _ in range(WALKERS):

@@ -115,7 +115,7 @@ def sample(
 
     """
     found_start = start or maximise(posterior, shipped_vector(posterior))
-    reference = Reference(found_start.vector, np.linalg.cholesky(found_start.covariance))
+    reference = Reference.at(found_start.vector, found_start.covariance)
     if keep is not None:
         reference = _check_folder(keep, posterior, seed, reference)
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
@@ -170,7 +170,7 @@ def shipped_vector(posterior: Posterior) -> Array:
 def approximate_draws(found: Maximum, seed: int = 0) -> PosteriorDraws:
     """Draws from the normal approximation at a maximum, marked as such: a stand-in where nothing was sampled."""
     normal = np.random.default_rng(seed).standard_normal((DRAWS, found.vector.size))
-    reference = Reference(found.vector, np.linalg.cholesky(found.covariance))
+    reference = Reference.at(found.vector, found.covariance)
     header = header_of(found.posterior, f"{APPROXIMATE} at the maximum", seed, found.rounds, 1.0, float(DRAWS))
     return draws_of(found.posterior, reference.vector(normal), header)
 

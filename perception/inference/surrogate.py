@@ -1,7 +1,7 @@
 """A quadratic model of every residual, which moves along the posterior a hundred times faster than the laboratory does.
 
 Near the maximum each row's miss r is nearly quadratic in the constants: r ≈ a + b·w + wᵀ·Q·w in the coordinates w of
-the normal approximation, fitted to residuals that were computed at some thousand points. Its posterior is not normal, since
+the normal approximation, fitted to residuals computed at some thousand points. Its posterior is not normal, since
 squares of quadratics are quartic, and it has a gradient, so that Hamiltonian trajectories run along it (Neal 2011).
 What it gets wrong is put right afterwards: proposals that come from it are accepted by the ratio of the true posterior
 to the surrogate's, which leaves the true posterior unchanged (Liu 2001, surrogate transition).
@@ -47,6 +47,11 @@ class Surrogate:
         beyond = max(0.0, float(white @ white) - WALL * white.size)
         gradient: Array = -(self.slope + 2.0 * bent).T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
         return -0.5 * float(residuals @ residuals + vector @ vector) - 0.1 * beyond**2, gradient
+
+    def precision(self, white: Array) -> Array:
+        """Gauss–Newton precision (n, n) of the surrogate's posterior, the wall left out."""
+        slopes = self.slope + 2.0 * (self.curvature @ white)
+        return slopes.T @ slopes + self.factor.T @ self.factor
 
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
         """Where some Hamiltonian trajectories end, each accepted or not by the surrogate."""

@@ -26,6 +26,12 @@ FIGURES = 6
 FIRST_LINE = "# written by thermicon calibrate from inputs "
 CURE = "write it again with thermicon calibrate -o FILE"
 CONSTANTS = DATA / "constants.csv"
+VARIANT_NAMES: Mapping[str, tuple[Variable, Model]] = {
+    "temperature": ("temperature", "adapting"),
+    "heat-flow": ("heat flow", "adapting"),
+    "ring-de-dear": ("temperature", "ring-de-dear"),
+}
+"""Variants by the names of the command line and of files."""
 APPROXIMATE = "normal approximation"
 
 
@@ -86,15 +92,25 @@ LABELS: Mapping[str, str] = {
 """Names of the header's lines by field; `inputs` ends the first line."""
 
 
+def variant_named(name: str) -> tuple[Variable, Model]:
+    """The variant by the name that the command line gives it; a ValueError lists the names.
+
+    >>> variant_named("heat-flow")
+    ('heat flow', 'adapting')
+    """
+    if name not in VARIANT_NAMES:
+        raise ValueError(f"there is no variant {name!r}: choose one of {', '.join(VARIANT_NAMES)}")
+    return VARIANT_NAMES[name]
+
+
 def shipped_file(variable: Variable, model: Model) -> Path:
     """Where the shipped draws of a variant lie.
 
     >>> shipped_file("heat flow", "adapting").name
     'posterior-heat-flow.csv'
     """
-    if model == "ring-de-dear":
-        return DATA / "posterior-ring-de-dear.csv"
-    return DATA / ("posterior.csv" if variable == "temperature" else "posterior-heat-flow.csv")
+    name = next(name for name, variant in VARIANT_NAMES.items() if variant == (variable, model))
+    return DATA / ("posterior.csv" if name == "temperature" else f"posterior-{name}.csv")
 
 
 def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
