@@ -30,10 +30,10 @@ def calibrate_command(
             "--keep", metavar="DIR", readable=False, help="Keep the chains here; a later run goes on from them."
         ),
     ] = None,
-    steps: Annotated[int, typer.Option("--steps", metavar="N", help="Most steps of each of the 8 chains.")] = 6000,
+    steps: Annotated[int, typer.Option("--steps", metavar="N", help="Most steps of each of the 4 chains.")] = 20_000,
     workers: Annotated[
         int | None,
-        typer.Option("--workers", metavar="N", help="Number of processes.  [default: the cores there are, up to 8]"),
+        typer.Option("--workers", metavar="N", help="Number of processes.  [default: the cores there are, up to 4]"),
     ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Write draws of chains that have not converged; the file is marked.")
@@ -42,7 +42,7 @@ def calibrate_command(
     """Infer all constants of the observer together: sample their posterior and write 1,000 draws as a table.
 
     Evidence and priors are the shipped ones. Chains run until every constant has converged (R-hat below 1.01, bulk
-    effective sample size above 800) or --steps is reached. What did not converge is refused without --force. The same
+    effective sample size above 600) or --steps is reached. What did not converge is refused without --force. The same
     seed gives the same draws, however many workers there are and however often the run was interrupted.
     """
     for option, value, least, most in (
@@ -57,8 +57,9 @@ def calibrate_command(
         check_folder(keep)
     from thermicon.circuit.solver.cores import cores
     from thermicon.perception.inference.diagnostics import require_extra
+    from thermicon.perception.inference.learning import CHAINS
     from thermicon.perception.inference.posterior import Posterior
-    from thermicon.perception.inference.sampling import CHAINS, LEAST_STEPS, sample
+    from thermicon.perception.inference.sampling import LEAST_STEPS, sample
     from thermicon.perception.observer.draws_file import to_text, variant_named
 
     require_extra()

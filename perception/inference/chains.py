@@ -14,12 +14,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..arrays import Array
-from .posterior import Posterior
 from .surrogate import Surrogate
 
 LONG, MIDDLE = 0.7, 0.85
@@ -27,6 +26,15 @@ LONG, MIDDLE = 0.7, 0.85
 TRAJECTORIES = 3
 BETA, WALK = 0.3, 1.7
 """β of Crank–Nicolson; length of a random walk in SDs over the root of the number of constants."""
+
+
+class HasResiduals(Protocol):
+    """What chains need of a posterior."""
+
+    def residuals(self, vector: Array) -> Array:
+        """Residuals, of which half the squares are the negative log density."""
+
+
 IMPOSSIBLE = -1e300
 
 
@@ -65,6 +73,11 @@ class Chain:
     def __len__(self) -> int:
         return int(self.white.shape[0])
 
+    @property
+    def last(self) -> Chain:
+        """A chain of no steps that goes on from the last one of this."""
+        return Chain(self.white[-1:], self.log_posterior[-1:], 0, self.random)
+
     def save(self, path: Path) -> None:
         """Write the chain completely or not at all."""
         draft = path.with_suffix(".part")
@@ -98,7 +111,7 @@ def begin(size: int, seed: int, number: int) -> Chain:
     return Chain(start[None], np.full(1, np.nan), 0, tuple(random.get_state(legacy=True)))
 
 
-def extend(chain: Chain, posterior: Posterior, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
+def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
     """The chain with more steps; the same steps whether they are taken at once or in parts."""
     import emcee
 

@@ -65,7 +65,8 @@ def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
 
 def smoothed_weights(log_weights: Array) -> tuple[Array, float]:
     """Pareto-smoothed weights (draws,) that sum to 1, and the shape k-hat of their tail (Vehtari et al. 2024)."""
-    smoothed, k_hat = _array_stats().psislw(log_weights)
+    # ArviZ takes log likelihoods, whose weights are one over them.
+    smoothed, k_hat = _array_stats().psislw(-log_weights)
     weights = np.exp(smoothed - np.max(smoothed))
     return weights / weights.sum(), float(k_hat)
 

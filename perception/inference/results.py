@@ -89,19 +89,19 @@ def load_constants(variable: Variable = "temperature", model: Model = "adapting"
     >>> constant("cold limit").unit
     'degC'
     """
-    return tuple(row for row in _read(CONSTANTS, Constant) if (row.variable, row.model) == (variable, model))
+    return tuple(row for row in read_rows(CONSTANTS, Constant) if (row.variable, row.model) == (variable, model))
 
 
 @lru_cache(maxsize=1)
 def load_predictions() -> tuple[PredictedRow, ...]:
     """Predictions of every row."""
-    return tuple(_read(PREDICTIONS, PredictedRow))
+    return tuple(read_rows(PREDICTIONS, PredictedRow))
 
 
 @lru_cache(maxsize=1)
 def load_ablation() -> tuple[AblatedRow, ...]:
     """The ablation, the default variant first."""
-    return tuple(_read(ABLATION, AblatedRow))
+    return tuple(read_rows(ABLATION, AblatedRow))
 
 
 def constant(name: str) -> Constant:
@@ -133,7 +133,8 @@ def digest_of(path: Path) -> str:
         return file.readline().rpartition(" ")[2].strip()
 
 
-def _read(name: str, kind: Any) -> Iterable[Any]:
+def read_rows(name: str, kind: Any) -> Iterable[Any]:
+    """Rows of a shipped table as frozen rows of a kind."""
     with (DATA / name).open(encoding="utf-8", newline="") as file:
         file.readline()
         types = {field.name: field.type for field in fields(kind)}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -25,9 +25,9 @@ from ..arrays import Array
 from ..kernels.parallel import quiet_blas
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
-from .chains import Chain, Reference, begin, extend
+from .chains import Chain, Reference, extend
 from .diagnostics import ESS, R_HAT, Diagnostics, diagnose
-from .learning import Points, fitted, learn, misses_at
+from .learning import CHAIN_STEPS, CHAINS, Points, Recorder, fitted, learn, misses_at
 from .maximum import Maximum, maximise
 from .posterior import LABORATORIES, Posterior
 from .prior_file import load_priors
@@ -35,15 +35,14 @@ from .results import inputs_digest, load_constants
 from .rows import load_rows
 from .surrogate import Surrogate
 
-CHAINS = 8
 BLOCK = 100
 """Steps of a chain between two looks at the diagnostics, and between two savings."""
-LEAST_STEPS, MOST_STEPS = 1000, 6000
-BURN_IN = 0.2
-"""Share of the steps that is left out at the start."""
+LEAST_STEPS, MOST_STEPS = 1000, 20_000
+BURN_IN = 0.1
+"""Share of the steps that is left out at the start; chains have warmed up while the surrogate learnt."""
 DRAWS = 1000
-ENOUGH_ESS = 800.0
-"""Chains go on until every constant has so many effective draws, twice what counts as converged."""
+ENOUGH_ESS = 600.0
+"""Chains go on until every constant has so many effective draws, more than what counts as converged."""
 POINTS, PART = "points.npz", 50
 Progress = Callable[[int, int, str], None]
 
@@ -63,9 +62,7 @@ class Sampled:
     @property
     def vectors(self) -> Array:
         """DRAWS vectors (DRAWS, n), evenly spaced along all chains."""
-        steps = self.chains.reshape(-1, self.chains.shape[2])
-        chosen: Array = steps[np.linspace(0, len(steps) - 1, DRAWS).round().astype(np.int64)]
-        return chosen
+        return thinned(self.chains)
 
     def draws(self) -> PosteriorDraws:
         """The draws in each constant's own unit, with a header that says where they come from."""
@@ -82,7 +79,6 @@ def sample(
     seed: int = 0,
     *,
     start: Maximum | None = None,
-    known: Points | None = None,
     keep: Path | None = None,
     workers: int = 1,
     least_steps: int = LEAST_STEPS,
@@ -97,8 +93,6 @@ def sample(
         What is sampled; the same seed gives the same draws.
     start
         Its maximum, where known.
-    known
-        Points where the misses of all rows are known already, from a posterior of the same constants.
     keep
         A folder for the chains, from which a later call goes on.
     workers
@@ -117,7 +111,7 @@ def sample(
     found_start = start or maximise(posterior, shipped_vector(posterior))
     reference = Reference.at(found_start.vector, found_start.covariance)
     if keep is not None:
-        reference = _check_folder(keep, posterior, seed, reference)
+        _check_folder(keep, posterior, seed)
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
     with pool as shared:
         run: Callable[..., Iterable[Any]] = map if shared is None else shared.map
@@ -126,16 +120,21 @@ def sample(
             parts = np.array_split(vectors, max(1, len(vectors) // PART))
             return np.concatenate(list(run(_misses, [(posterior, part) for part in parts])))
 
+        def visit(chains: Sequence[Chain], at: Reference, by: Surrogate) -> list[tuple[Chain, Points]]:
+            return list(run(_visited, [(chain, posterior, at, by) for chain in chains]))
+
         def learnt(count: int) -> None:
             if progress is not None:
                 progress(count, count + CHAINS * most_steps, "learning the surrogate")
 
-        points = _known_points(keep)
-        surrogate = None if points is None else fitted(posterior, reference, points)
-        if surrogate is None or points is None:
-            surrogate, points = learn(posterior, reference, seed, evaluate, known, learnt)
-            _save_points(keep, points)
-        chains = [_resumed(keep, number, reference, seed) for number in range(CHAINS)]
+        learned = load_learned(keep)
+        if learned is None:
+            surrogate, reference, points, begun = learn(posterior, reference, seed, evaluate, visit, learnt)
+            _save_learned(keep, reference, points, begun)
+        else:
+            reference, points, begun = learned
+            surrogate = fitted(posterior, reference, points)
+        chains = [_resumed(keep, number, chain) for number, chain in enumerate(begun)]
         while True:
             steps = min(len(chain) for chain in chains) - 1
             found = diagnose(posterior.priors.names, _kept(chains, reference)) if steps >= BLOCK else None
@@ -220,19 +219,49 @@ def _misses(part: tuple[Posterior, Array]) -> Array:
         return misses_at(*part)
 
 
-def _known_points(keep: Path | None) -> Points | None:
+def _visited(part: tuple[Chain, Posterior, Reference, Surrogate]) -> tuple[Chain, Points]:
+    chain, posterior, reference, surrogate = part
+    recorder = Recorder(posterior)
+    with quiet_blas():
+        return extend(chain, recorder, reference, surrogate, CHAIN_STEPS), recorder.points
+
+
+def load_learned(keep: Path | None) -> tuple[Reference, Points, tuple[Chain, ...]] | None:
+    """What was learnt in a folder: coordinates, points and warm chains; None where nothing was."""
     if keep is None or not (keep / POINTS).exists():
         return None
     with np.load(keep / POINTS) as arrays:
-        return Points(arrays["vectors"], arrays["misses"])
+        reference, points = Reference(arrays["middle"], arrays["factor"]), Points(arrays["vectors"], arrays["misses"])
+    return reference, points, tuple(Chain.load(keep / f"warm-{number}.npz") for number in range(CHAINS))
 
 
-def _save_points(keep: Path | None, points: Points) -> None:
-    if keep is not None:
-        draft = keep / "points.part"
-        with draft.open("wb") as file:
-            np.savez(file, vectors=points.vectors, misses=points.misses)
-        draft.replace(keep / POINTS)
+def _save_learned(keep: Path | None, reference: Reference, points: Points, begun: tuple[Chain, ...]) -> None:
+    if keep is None:
+        return
+    for number, chain in enumerate(begun):
+        chain.save(keep / f"warm-{number}.npz")
+    draft = keep / "points.part"
+    with draft.open("wb") as file:
+        np.savez(
+            file,
+            middle=reference.middle,
+            factor=reference.factor,
+            vectors=points.vectors,
+            misses=points.misses,
+        )
+    draft.replace(keep / POINTS)
+
+
+def load_vectors(keep: Path, reference: Reference) -> Array:
+    """DRAWS vectors (DRAWS, n) of the chains in a folder."""
+    return thinned(_kept([Chain.load(_file(keep, number)) for number in range(CHAINS)], reference))
+
+
+def thinned(chains: Array) -> Array:
+    """DRAWS vectors (DRAWS, n), evenly spaced along all chains (chains, steps, n)."""
+    steps = chains.reshape(-1, chains.shape[2])
+    chosen: Array = steps[np.linspace(0, len(steps) - 1, DRAWS).round().astype(np.int64)]
+    return chosen
 
 
 def _kept(chains: list[Chain], reference: Reference) -> Array:
@@ -250,32 +279,27 @@ def _file(keep: Path, number: int) -> Path:
     return keep / f"chain-{number}.npz"
 
 
-def _resumed(keep: Path | None, number: int, reference: Reference, seed: int) -> Chain:
-    if keep is not None and _file(keep, number).exists():
-        return Chain.load(_file(keep, number))
-    return begin(reference.middle.size, seed, number)
+def _resumed(keep: Path | None, number: int, begun: Chain) -> Chain:
+    return Chain.load(_file(keep, number)) if keep is not None and _file(keep, number).exists() else begun
 
 
-def _check_folder(keep: Path, posterior: Posterior, seed: int, reference: Reference) -> Reference:
-    """The reference that the folder's chains were begun with; a new folder takes this one."""
+def _check_folder(keep: Path, posterior: Posterior, seed: int) -> None:
+    """Refuse a folder that holds chains of another posterior or seed; a new one takes these."""
     wanted = {
         "inputs": inputs_digest(),
         "variant": [posterior.variable, posterior.model],
         "left out": sorted(posterior.left_out),
         "seed": seed,
     }
-    about, held = keep / "posterior.json", keep / "reference.npz"
+    about = keep / "posterior.json"
     keep.mkdir(parents=True, exist_ok=True)
-    if about.exists() and held.exists():
-        found = json.loads(about.read_text(encoding="utf-8"))
-        for name, value in wanted.items():
-            if found.get(name) != value:
-                raise RecordError(
-                    f"{keep}: the chains kept here have {name} {found.get(name)!r}, not {value!r}: "
-                    "give another folder, or remove this one"
-                )
-        with np.load(held) as arrays:
-            return Reference(arrays["middle"], arrays["factor"])
-    np.savez(held, middle=reference.middle, factor=reference.factor)
-    about.write_text(json.dumps(wanted, indent=1) + "\n", encoding="utf-8")
-    return reference
+    if not about.exists():
+        about.write_text(json.dumps(wanted, indent=1) + "\n", encoding="utf-8")
+        return
+    found = json.loads(about.read_text(encoding="utf-8"))
+    for name, value in wanted.items():
+        if found.get(name) != value:
+            raise RecordError(
+                f"{keep}: the chains kept here have {name} {found.get(name)!r}, not {value!r}: "
+                "give another folder, or remove this one"
+            )

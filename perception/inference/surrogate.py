@@ -19,9 +19,9 @@ RIDGE = 0.01
 """Weight of keeping coefficients small, as a share of the number of points."""
 FADING = 15.0
 """Points count e times less for so much less log posterior than the median point: the fit is for where chains go."""
-WALL = 2.0
+WALL, LEAST_WALL = 2.0, 25.0
 """Squared distances from the maximum, over the number of constants, beyond which a wall keeps trajectories from where
-the quadratics were not fitted; the other steps of a chain go there."""
+the quadratics were not fitted (and at least, for few constants); the other steps of a chain go there."""
 LEAPS, LEAP = 10, 0.16
 """Steps of a trajectory and their length, in SDs of the normal approximation."""
 
@@ -44,9 +44,9 @@ class Surrogate:
         bent = self.curvature @ white
         residuals = self.offset + (self.slope + bent) @ white
         vector = self.middle + self.factor @ white
-        beyond = max(0.0, float(white @ white) - WALL * white.size)
+        beyond = np.maximum(0.0, white @ white - max(WALL * white.size, LEAST_WALL))
         gradient: Array = -(self.slope + 2.0 * bent).T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
-        return -0.5 * float(residuals @ residuals + vector @ vector) - 0.1 * beyond**2, gradient
+        return float(-0.5 * (residuals @ residuals + vector @ vector) - 0.1 * beyond**2), gradient
 
     def precision(self, white: Array) -> Array:
         """Gauss–Newton precision (n, n) of the surrogate's posterior, the wall left out."""

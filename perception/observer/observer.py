@@ -198,9 +198,10 @@ class Observer:
         Parameters
         ----------
         path
-            A parameter file; None for the shipped one.
+            A parameter file, or a .csv table of posterior draws, whose draw nearest to the median it is then; None
+            for the shipped parameters.
         variable, model
-            The variant.
+            The variant; a table of draws has its own.
         without
             Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
 
@@ -212,6 +213,12 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
+        if path is not None and Path(path).suffix.lower() == ".csv":
+            from .draws import PosteriorDraws
+
+            drawn = PosteriorDraws.load(path).observer_nearest_median()
+            off = check_without(without, "observer")
+            return drawn.with_mechanisms_off(off) if off else drawn
         table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")

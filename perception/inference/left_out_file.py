@@ -1,0 +1,160 @@
+"""The shipped table of left-out predictions, and the run that writes it.
+
+`python -m thermicon.perception.inference.left_out_file DIR` goes on from the folder that `thermicon calibrate --keep
+DIR` left, and keeps each experiment there as it is done.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, dataclass
+from functools import lru_cache
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..kernels.parallel import quiet_blas
+from .evidence import DATA
+from .learning import Points, misses_at
+from .left_out import leave_out
+from .posterior import Posterior
+from .results import inputs_digest, read_rows, to_csv
+from .rows import load_rows
+from .sampling import load_learned, load_vectors
+from .scores import Score, score
+
+LEFT_OUT = "left-out.csv"
+PART = 25
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOutRow:
+    """One row predicted by a posterior that never saw its experiment; numbers in the row's own unit.
+
+    `probability` is that of a smaller number than the published one; `naive` is the log score of the naive baseline,
+    NaN where there is none; `k_hat` the shape of the weights' tail, good below 0.7.
+    """
+
+    experiment: str
+    statistic: str
+    channel: str
+    label: str
+    unit: str
+    published: float
+    low: float
+    lower: float
+    median: float
+    upper: float
+    high: float
+    probability: float
+    log_score: float
+    naive: float
+    k_hat: float
+    method: str
+
+
+@lru_cache(maxsize=1)
+def load_left_out() -> tuple[LeftOutRow, ...]:
+    """The shipped predictions of every row.
+
+    >>> len(load_left_out()) == len(load_rows())
+    True
+    """
+    return tuple(read_rows(LEFT_OUT, LeftOutRow))
+
+
+def row_of(each: Score) -> LeftOutRow:
+    """A score in the row's own unit."""
+    row = each.row
+    low, lower, median, upper, high = (row.shown(place) for place in each.quantiles)
+    return LeftOutRow(
+        *row.key,
+        row.label,
+        row.unit,
+        row.shown(row.value),
+        low,
+        lower,
+        median,
+        upper,
+        high,
+        each.probability,
+        each.log_score,
+        each.baseline,
+        each.k_hat,
+        each.method,
+    )
+
+
+def leave_each_out(
+    keep: Path,
+    posterior: Posterior,
+    seed: int = 0,
+    workers: int = 1,
+    progress: Callable[[int, int, str], None] | None = None,
+) -> tuple[LeftOutRow, ...]:
+    """Every experiment left out in turn, from the chains in a folder; what is done already is read from there."""
+    learned = load_learned(keep)
+    if learned is None:
+        raise ValueError(f"{keep}: there are no chains here: run thermicon calibrate --keep {keep} first")
+    reference, points, _ = learned
+    vectors = load_vectors(keep, reference)
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+
+        def evaluate(at: Array) -> Array:
+            parts = np.array_split(at, max(1, len(at) // PART))
+            return np.concatenate(list(pool.map(_misses, [(posterior, part) for part in parts])))
+
+        file = keep / "draws.npz"
+        if not file.exists():
+            np.savez(file, vectors=vectors, misses=evaluate(vectors))
+        with np.load(file) as arrays:
+            draws = Points(arrays["vectors"], arrays["misses"])
+        rows: list[LeftOutRow] = []
+        experiments = tuple(dict.fromkeys(row.experiment for row in load_rows()))
+        for done, experiment in enumerate(experiments):
+            if progress is not None:
+                progress(done, len(experiments), experiment)
+            part = keep / f"left-out-{experiment}.json"
+            if not part.exists():
+                scores = leave_out(posterior, draws, reference, points, seed, evaluate, (experiment,))
+                found = [asdict(row_of(score(each))) for each in scores]
+                part.write_text(json.dumps(found, indent=1), encoding="utf-8")
+            rows += [LeftOutRow(**each) for each in json.loads(part.read_text(encoding="utf-8"))]
+    return tuple(rows)
+
+
+def _misses(part: tuple[Posterior, Array]) -> Array:
+    with quiet_blas():
+        return misses_at(*part)
+
+
+def write(rows: Iterable[LeftOutRow], path: Path) -> None:
+    """Write the table with the digest of its inputs."""
+    head = f"# written by python -m thermicon.perception.inference.left_out_file from inputs {inputs_digest()}\n"
+    path.write_text(head + to_csv(list(rows)), encoding="utf-8")
+
+
+def main(arguments: list[str]) -> None:
+    """Write the table of the package from the chains in a folder."""
+    from tqdm import tqdm
+
+    (keep,) = arguments
+    bar: Any = tqdm(desc="left out", unit=" experiments")
+
+    def show(done: int, total: int, name: str) -> None:
+        bar.total = total
+        bar.update(done - bar.n)
+        bar.set_postfix_str(name)
+
+    write(leave_each_out(Path(keep), Posterior(), workers=2, progress=show), DATA / LEFT_OUT)
+    bar.close()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,116 @@
+"""Posterior draws: consistent observers, and every way in which a file can be wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit.records import RecordError
+from thermicon.perception import Observer
+from thermicon.perception.inference.posterior import Posterior
+from thermicon.perception.inference.results import inputs_digest
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.draws_file import current_inputs, read_draws, shipped_file, to_text, variant_named
+from thermicon.perception.observer.observer import variant_records
+
+
+@pytest.fixture(scope="module")
+def posterior() -> PosteriorDraws:
+    return PosteriorDraws.load()
+
+
+@pytest.fixture
+def text() -> str:
+    lines = shipped_file("temperature", "adapting").read_text(encoding="utf-8").splitlines()
+    head = sum(line.startswith("#") for line in lines)
+    return "\n".join(lines[: head + 4]) + "\n"
+
+
+def refused(tmp_path: Path, text: str, match: str) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(RecordError, match=match):
+        PosteriorDraws.load(path)
+
+
+def test_the_shipped_draws_belong_to_the_shipped_inputs(posterior: PosteriorDraws) -> None:
+    assert posterior.header.inputs == inputs_digest() == current_inputs()
+    assert posterior.names == Posterior().priors.names
+    assert len(posterior) == 1000
+    assert posterior.header.left_out == ()
+
+
+def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
+    observer, values = posterior.observer(17), posterior.draw(17)
+    assert observer.cold.threshold_drive == values["cold threshold drive"]
+    assert observer.warm.velocity_m_per_s == values["warm conduction velocity"]
+    assert observer.criterion == values["criterion of speeded answers"]
+    assert observer.memory_max == Observer.load().memory_max
+    table = posterior.table(17)
+    assert table.one("sensitivity between people", channel="cold").central == values["cold sensitivity between people"]
+    assert {r.quantity for r in table} == {r.quantity for r in variant_records()}
+
+
+def test_the_nominal_draw_lies_in_the_middle(posterior: PosteriorDraws) -> None:
+    nominal = posterior.draw(posterior.nearest_median)
+    for name in ("cold threshold drive", "criterion between people", "cold rating exponent"):
+        low, _, high = posterior.interval(name, 0.98)
+        assert low < nominal[name] < high
+    assert posterior.observer_nearest_median() == posterior.observer(posterior.nearest_median)
+
+
+def test_a_new_laboratory_differs_by_the_inferred_spread(posterior: PosteriorDraws) -> None:
+    offsets = posterior.new_laboratory(3)
+    assert offsets.shape == (len(posterior), 2)
+    standard = offsets / posterior.values("sensitivity between laboratories")[:, None]
+    assert standard.std() == pytest.approx(1.0, abs=0.07)
+    np.testing.assert_array_equal(offsets, posterior.new_laboratory(3))
+
+
+def test_a_file_comes_back_as_it_was_written(posterior: PosteriorDraws, tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(to_text(posterior.header, posterior.names, posterior.draws[:5]), encoding="utf-8")
+    header, names, draws = read_draws(path)
+    assert (header, names) == (posterior.header, posterior.names)
+    np.testing.assert_allclose(draws, posterior.draws[:5], rtol=1e-5)
+    assert Observer.load(path) == PosteriorDraws.load(path).observer_nearest_median()
+    assert Observer.load(path, without=["cold limit"]).cold.limit_C is None
+
+
+def test_an_unknown_constant_names_the_nearest(posterior: PosteriorDraws) -> None:
+    with pytest.raises(ValueError, match=r"no constant 'cold limt'.*cold limit"):
+        posterior.values("cold limt")
+
+
+def test_what_is_no_table_of_draws_is_refused(tmp_path: Path) -> None:
+    refused(tmp_path, "a,b\n1,2\n", r"mine.csv, line 1: this is not a table of posterior draws.*thermicon calibrate")
+    with pytest.raises(RecordError, match=r"absent.csv: posterior draws cannot be read: No such file"):
+        PosteriorDraws.load(tmp_path / "absent.csv")
+
+
+def test_another_version_is_refused(tmp_path: Path, text: str) -> None:
+    refused(tmp_path, text.replace("# form: 1", "# form: 9"), r"line 2: form 9 .*reads.* 1")
+    refused(tmp_path, text.replace(current_inputs(), "0123456789abcdef", 1), r"made from evidence and priors 0123")
+
+
+def test_missing_and_unknown_columns_are_named(tmp_path: Path, text: str) -> None:
+    refused(tmp_path, text.replace("cold limit,", "cold limt,"), r"'cold limt' is not a constant.*cold limit")
+    refused(tmp_path, text.replace("cold limit,", "warm limit,", 1), r"two columns have one name")
+    refused(tmp_path, text.replace("# sampler:", "# simpler:"), r"the header has no line 'sampler'")
+    refused(tmp_path, "\n".join(text.splitlines()[:-3]) + "\n", r"the table has no draws")
+
+
+def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str) -> None:
+    lines = text.splitlines()
+    head = sum(line.startswith("#") for line in lines)
+    lines[head + 2] = "x" + lines[head + 2]
+    refused(tmp_path, "\n".join(lines), rf"line {head + 3}, cold conduction velocity: 'x.*' is not a finite number")
+    lines[head + 2] = "1,2"
+    refused(tmp_path, "\n".join(lines), rf"line {head + 3}: 2 numbers for 52 constants")
+
+
+def test_variants_have_names() -> None:
+    with pytest.raises(ValueError, match=r"no variant 'heat': choose one of temperature, heat-flow"):
+        variant_named("heat")
