@@ -13,10 +13,11 @@ import numpy as np
 
 from ..arrays import Array
 from .chains import Chain, Reference, begin
+from .limit_features import LimitFeatures
 from .posterior import Posterior
 from .surrogate import Surrogate, fit_surrogate
 
-AROUND, ROUNDS = 2400, (1200, 1200, 1200)
+AROUND, ROUNDS = 2400, (1200, 1200)
 """Points from the normal approximation, and from each next surrogate; a quadratic has 1431 coefficients a row."""
 CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 3, 250
 """Chains that visit the posterior while the surrogate learns, how often it learns from them, and steps in between."""
@@ -99,7 +100,13 @@ class Recorder:
 def fitted(posterior: Posterior, reference: Reference, points: Points) -> Surrogate:
     """The surrogate of the rows that count."""
     counted = posterior.counted
-    return fit_surrogate(reference.white(points.vectors), points.misses[:, counted], reference.middle, reference.factor)
+    return fit_surrogate(
+        reference.white(points.vectors),
+        points.misses[:, counted],
+        reference.middle,
+        reference.factor,
+        LimitFeatures.of(posterior.priors),
+    )
 
 
 def walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> Array:

@@ -153,7 +153,7 @@ def summarise(scores: Sequence[Score]) -> Summary:
         float(np.mean([each.covered(0.95) for each in scores])),
         float(np.mean([each.log_score for each in scores])),
         len(compared),
-        float(np.mean([each.log_score for each in compared])),
-        float(np.mean([each.baseline for each in compared])),
+        float(np.mean([each.log_score for each in compared])) if compared else math.nan,
+        float(np.mean([each.baseline for each in compared])) if compared else math.nan,
         float(np.median([each.width for each in scores if each.row.log])),
     )

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from .limit_features import LimitFeatures
 
 RIDGE = 0.01
 """Weight of keeping coefficients small, as a share of the number of points."""
@@ -30,7 +31,8 @@ LEAPS, LEAP = 10, 0.16
 class Surrogate:
     """Rows' residuals as quadratics: `offset` (rows,), `slope` (rows, n) and `curvature` (rows, n, n), symmetric.
 
-    Distances from the priors' middles, the other residuals, are linear: `middle` (n,) and `factor` (n, n).
+    `weights` (rows, features) are those of the `features`, where the posterior has any. Distances from the priors'
+    middles, the other residuals, are linear: `middle` (n,) and `factor` (n, n).
     """
 
     offset: Array
@@ -38,19 +40,33 @@ class Surrogate:
     curvature: Array
     middle: Array
     factor: Array
+    features: LimitFeatures | None
+    weights: Array
 
     def log_density(self, white: Array) -> tuple[float, Array]:
         """Log density of the surrogate's posterior, up to a constant, and its gradient (n,)."""
         bent = self.curvature @ white
         residuals = self.offset + (self.slope + bent) @ white
         vector = self.middle + self.factor @ white
+        slopes = self.slope + 2.0 * bent
+        if self.features is not None:
+            residuals = residuals + self.weights @ self.features.at(vector)
+            slopes = slopes + self._feature_slopes(vector)
         beyond = np.maximum(0.0, white @ white - max(WALL * white.size, LEAST_WALL))
-        gradient: Array = -(self.slope + 2.0 * bent).T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
+        gradient: Array = -slopes.T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
         return float(-0.5 * (residuals @ residuals + vector @ vector) - 0.1 * beyond**2), gradient
+
+    def _feature_slopes(self, vector: Array) -> Array:
+        """Slopes (rows, n) of the features' part."""
+        assert self.features is not None
+        slopes: Array = self.weights @ self.features.slopes(vector) @ self.factor[list(self.features.places)]
+        return slopes
 
     def precision(self, white: Array) -> Array:
         """Gauss–Newton precision (n, n) of the surrogate's posterior, the wall left out."""
         slopes = self.slope + 2.0 * (self.curvature @ white)
+        if self.features is not None:
+            slopes = slopes + self._feature_slopes(self.middle + self.factor @ white)
         return slopes.T @ slopes + self.factor.T @ self.factor
 
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
@@ -78,17 +94,24 @@ class Surrogate:
         return white
 
 
-def fit_surrogate(white: Array, residuals: Array, middle: Array, factor: Array) -> Surrogate:
+def fit_surrogate(
+    white: Array, residuals: Array, middle: Array, factor: Array, features: LimitFeatures | None = None
+) -> Surrogate:
     """Weighted least squares from residuals (points, rows) at points (points, n), coefficients kept small."""
     points, size = white.shape
+    vectors = middle + white @ factor.T
     first, second = np.triu_indices(size)
-    features = np.concatenate([np.ones((points, 1)), white, white[:, first] * white[:, second]], axis=1)
-    density = -0.5 * (np.square(residuals).sum(axis=1) + np.square(middle + white @ factor.T).sum(axis=1))
+    bent = np.empty((points, 0)) if features is None else features.at(vectors)
+    columns = np.concatenate([np.ones((points, 1)), white, bent, white[:, first] * white[:, second]], axis=1)
+    density = -0.5 * (np.square(residuals).sum(axis=1) + np.square(vectors).sum(axis=1))
     weight = np.exp(0.5 * np.minimum(0.0, (density - np.median(density)) / FADING))[:, None]
-    features *= weight
-    small = np.diag(RIDGE * points * np.concatenate([[0.0], np.full(size, 0.01), np.ones(first.size)]))
-    fitted = np.linalg.solve(features.T @ features + small, features.T @ (residuals * weight)).T
+    columns *= weight
+    linear = size + bent.shape[1]
+    small = np.concatenate([[0.0], np.full(size, 0.01), np.full(bent.shape[1], 0.001), np.ones(first.size)])
+    normal = columns.T @ columns + np.diag(RIDGE * points * small)
+    fitted = np.linalg.solve(normal, columns.T @ (residuals * weight)).T
     curvature = np.zeros((residuals.shape[1], size, size))
-    curvature[:, first, second] = 0.5 * fitted[:, 1 + size :]
+    curvature[:, first, second] = 0.5 * fitted[:, 1 + linear :]
     curvature += curvature.transpose(0, 2, 1)
-    return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor)
+    weights = fitted[:, 1 + size : 1 + linear]
+    return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor, features, weights)

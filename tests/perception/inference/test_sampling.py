@@ -13,6 +13,7 @@ from thermicon.circuit.records import RecordError
 from thermicon.perception.inference import learning, sampling
 from thermicon.perception.inference.chains import Chain, Reference, begin, extend
 from thermicon.perception.inference.diagnostics import diagnose, smoothed_weights
+from thermicon.perception.inference.limit_features import LimitFeatures
 from thermicon.perception.inference.posterior import Posterior
 from thermicon.perception.inference.sampling import sample, shipped_vector
 from thermicon.perception.inference.surrogate import Surrogate, fit_surrogate
@@ -124,3 +125,18 @@ def test_a_short_run_can_be_repeated_and_resumed(tmp_path: Path, monkeypatch: py
     again = sample(posterior, 5, keep=tmp_path, least_steps=100, most_steps=200)
     np.testing.assert_array_equal(once.vectors, again.vectors)
     assert not once.diagnostics.converged
+
+
+def test_features_of_the_limits_have_the_right_slopes() -> None:
+    priors = Posterior().priors
+    features = LimitFeatures.of(priors)
+    assert features is not None
+    vector = np.random.default_rng(2).standard_normal(len(priors))
+    slopes = features.slopes(vector)
+    for k, place in enumerate(features.places):
+        step = np.zeros(vector.size)
+        step[place] = 1e-6
+        np.testing.assert_allclose(
+            slopes[:, k], (features.at(vector + step) - features.at(vector - step)) / 2e-6, atol=1e-6
+        )
+    assert LimitFeatures.of(Posterior("heat flow").priors) is None
