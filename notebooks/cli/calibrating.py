@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ..files.outputs import check_folder, check_output, complete_or_absent
+from ..files.outputs import STDOUT, check_folder, check_output, complete_or_absent
 from ..text.messages import REFUSED, note, progress_bar, usage
 
 if TYPE_CHECKING:
@@ -78,7 +78,8 @@ def calibrate_command(
             most_steps=steps,
             progress=progress,
         )
-    _report(sampled)
+    if output != STDOUT:
+        _report(sampled)
     if not sampled.diagnostics.converged and not force:
         note(
             f"{output} was not written: {sampled.diagnostics.worst} has not converged "
@@ -86,8 +87,12 @@ def calibrate_command(
         )
         raise typer.Exit(REFUSED)
     draws = sampled.draws()
+    text = to_text(draws.header, draws.names, draws.draws)
+    if output == STDOUT:
+        typer.echo(text, nl=False)
+        return
     with complete_or_absent(output) as draft:
-        draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
+        draft.write_text(text, encoding="utf-8")
     note(f"wrote {output}")
 
 

@@ -71,7 +71,7 @@ class Surrogate:
 
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
         """Where some Hamiltonian trajectories end, each accepted or not by the surrogate."""
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             return self._walk(white, random, trajectories)
 
     def _walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:

@@ -5,8 +5,7 @@ Every number comes from the shipped data files, so that a page cannot say anythi
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from thermicon.circuit.records import Record
 
@@ -16,19 +15,19 @@ from ..observer.observer import load_thresholds, observer_records
 from ..observer.people import people_records
 from .evidence import load_evidence
 from .leave_out import WITHIN_95
+from .posterior_tables import (
+    moved_sentence,
+    posterior_table,
+    sampled_left_out_table,
+    sampled_sentence,
+    scores_sentence,
+)
 from .results import AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
 from .rows import PEOPLE_WRIST, load_rows
+from .table_text import UNITS, markdown, number, signed, span
 
 NARROWED = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
-UNITS = {
-    "1": "",
-    "degC": "°C",
-    "m2K/W": "m²K/W",
-    "d'": "d′",
-    "ln per d'": "ln per d′",
-    "multiple of the hand": "× the hand",
-}
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),
     "sensation": ("sensitivity", "summation", "transducer", "compression"),
@@ -50,7 +49,7 @@ def experiments_table() -> str:
         else (key, *_published(key), counts[key])
         for key in counts
     ]
-    return _table(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
+    return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
 
 
 def _published(key: str) -> tuple[str, str, str, str]:
@@ -78,7 +77,7 @@ def constants_table(mechanisms: Sequence[str] = (), *, sources: bool = True) -> 
         cells = (mechanism, each.name, f"{number(each.value)} {unit}".strip(), span(each.low, each.high))
         source = (each.source,) if sources else ()
         lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", *source))
-    return _table(head, lines)
+    return markdown(head, lines)
 
 
 def _order(each: Constant, rows: Sequence[Constant]) -> int:
@@ -88,7 +87,9 @@ def _order(each: Constant, rows: Sequence[Constant]) -> int:
 def offsets_table() -> str:
     """Offsets of laboratories, in SDs of the spread between them."""
     rows = [each for each in load_constants() if each.unit == "SD"]
-    return _table(("laboratory", "offset (SD)", "95 %"), [(r.name, number(r.value), span(r.low, r.high)) for r in rows])
+    return markdown(
+        ("laboratory", "offset (SD)", "95 %"), [(r.name, number(r.value), span(r.low, r.high)) for r in rows]
+    )
 
 
 def unmoved_sentence() -> str:
@@ -111,7 +112,7 @@ def ablation_table() -> str:
         )
         for row in rows
     ]
-    return _table(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
+    return markdown(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
 
 
 def _ran(row: AblatedRow) -> str:
@@ -135,7 +136,7 @@ def left_out_table() -> str:
         numbers = (number(row.published), number(row.fitted), number(row.left_out))
         interval = span(row.left_out_low, row.left_out_high)
         lines.append((row.experiment, f"{mark}{row.label}{mark}", unit, *numbers, interval, signed(row.score, 1)))
-    return _table(("key", "row", "unit", "published", "fitted", "left out", "95 %", "miss (SD)"), lines)
+    return markdown(("key", "row", "unit", "published", "fitted", "left out", "95 %", "miss (SD)"), lines)
 
 
 def coverage_sentence() -> str:
@@ -160,14 +161,14 @@ def predicted_table() -> str:
         if record.use == "predict":
             key = (record.quantity, record.source)
             records[key] = records.get(key, 0) + 1
-    return _table(("quantity", "source", "records"), [(*key, count) for key, count in sorted(records.items())])
+    return markdown(("quantity", "source", "records"), [(*key, count) for key, count in sorted(records.items())])
 
 
 def memory_table() -> str:
     """Noise of identification of the default observer, by norm of distance."""
     records = [observer_records().one("memory noise", method=norm) for norm in MEMORY_NORMS]
     lines = [(f"`{record.method}`", _log_units(record.central), _ends(record)) for record in records]
-    return _table(("norm", "memory noise σ (log units)", "interval"), lines)
+    return markdown(("norm", "memory noise σ (log units)", "interval"), lines)
 
 
 def _ends(record: Record) -> str:
@@ -180,7 +181,7 @@ def _log_units(sigma: float) -> str:
 
 def people_table() -> str:
     """How virtual people differ: one row a column of `People`."""
-    return _table(
+    return markdown(
         ("column", "spread", "basis"),
         [(f"`{name}`", _spread(record), _basis(record)) for name, record in people_records().items()],
     )
@@ -212,46 +213,14 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "predicted": predicted_table,
     "memory noise": memory_table,
     "people": people_table,
+    "posterior": posterior_table,
+    "sampled": sampled_sentence,
+    "moved": moved_sentence,
+    "left out by draws": sampled_left_out_table,
+    "scores": scores_sentence,
     "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
     "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
     "constants of detection": lambda: constants_table(GROUPS["detection"]),
     "constants of people": lambda: constants_table(GROUPS["people"]),
 }
 """Every table by the name that a page's mark gives."""
-
-
-def number(value: float) -> str:
-    """Three figures, with a minus sign.
-
-    >>> number(-0.02042), number(151.97), number(0.0002049)
-    ('−0.0204', '152', '0.000205')
-    >>> number(1073.0), number(0.25), number(0.0000787)
-    ('1073', '0.25', '0.0000787')
-    """
-    digits = 2 - math.floor(math.log10(abs(value))) if value else 0
-    text = f"{value:.{max(digits, 0)}f}"
-    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
-
-
-def signed(value: float, digits: int) -> str:
-    """A number with its sign, 0 without one.
-
-    >>> signed(-12.61, 1), signed(0.0, 1), signed(2.04, 1)
-    ('−12.6', '0', '+2.0')
-    """
-    return "0" if value == 0.0 else f"{value:+.{digits}f}".replace("-", "−")
-
-
-def span(low: float, high: float) -> str:
-    """Both ends of an interval.
-
-    >>> span(-0.1, 0.3)
-    '−0.1 to 0.3'
-    """
-    return f"{number(low)} to {number(high)}"
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    lines = [" | ".join(head), " | ".join("---" for _ in head)]
-    lines += [" | ".join(str(cell) for cell in row) for row in rows]
-    return "\n".join(f"| {line} |" for line in lines)

@@ -1,0 +1,93 @@
+"""Tables of the sampled posterior as Markdown, from the shipped draws and left-out predictions."""
+
+from __future__ import annotations
+
+import math
+
+from ..observer.draws import PosteriorDraws
+from .left_out_file import LeftOutRow, load_left_out
+from .results import load_constants
+from .rows import load_rows
+from .summaries import Summary, summarise
+from .table_text import UNITS, markdown, number, signed, span
+
+
+def posterior_table() -> str:
+    """Median and 95 % interval of every constant in the draws, beside the maximum; offsets of laboratories last."""
+    maxima = {each.name: each.value for each in load_constants()}
+    rows = []
+    for each in summarise(PosteriorDraws.load()):
+        unit = "" if each.unit == "SD" else UNITS.get(each.unit, each.unit)
+        remark = "edge of its prior" if each.at_edge else "not moved" if each.unmoved else ""
+        median = f"{number(each.median)} {unit}".strip()
+        ends = span(each.low, each.high)
+        rows.append((each.name, median, ends, number(maxima[each.name]), f"{each.narrowed:.2f}", remark))
+    return markdown(("constant", "median", "95 %", "at the maximum", "SD left", ""), rows)
+
+
+def sampled_sentence() -> str:
+    """How the shipped draws were made."""
+    header = PosteriorDraws.load().header
+    return f"{header.sampler}, seed {header.seed}, {header.likelihoods} likelihoods: {header.status}."
+
+
+def moved_sentence() -> str:
+    """What the evidence did not move, and what it pushed to the edge of its prior."""
+    found = [each for each in summarise(PosteriorDraws.load()) if each.unit != "SD"]
+    return (
+        f"Not moved (SD above 0.9 of the prior's, median within 0.3 of its middle): {_names(found, 'unmoved')}. "
+        f"At the edge of the prior (median beyond its 95 %): {_names(found, 'at_edge')}."
+    )
+
+
+def _names(found: list[Summary], what: str) -> str:
+    names = sorted(each.name for each in found if getattr(each, what))
+    return ", ".join(names) if names else "none"
+
+
+def sampled_left_out_table() -> str:
+    """Every row predicted by draws that never saw its experiment; misses of the 95 % interval are bold."""
+    rows = []
+    for each in load_left_out():
+        mark = "" if covered(each, 0.95) else "**"
+        unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
+        naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
+        rows.append(
+            (
+                each.experiment,
+                f"{mark}{each.label}{mark}",
+                unit,
+                number(each.published),
+                number(each.median),
+                span(each.lower, each.upper),
+                span(each.low, each.high),
+                signed(each.log_score, 2),
+                naive,
+            )
+        )
+    return markdown(
+        ("key", "row", "unit", "published", "predicted", "50 %", "95 %", "log score", "over the naive baseline"), rows
+    )
+
+
+def scores_sentence() -> str:
+    """Coverage, widths and log scores of the left-out predictions."""
+    rows = load_left_out()
+    inside = [sum(covered(each, share) for each in rows) for share in (0.5, 0.95)]
+    logs = {row.key for row in load_rows() if row.log}
+    ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
+    compared = [each for each in rows if not math.isnan(each.naive)]
+    gain = sum(each.log_score - each.naive for each in compared) / len(compared)
+    refits = sorted({each.experiment for each in rows if each.method == "refit"})
+    return (
+        f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval. "
+        f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
+        f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
+        f"over the naive baseline. "
+        f"Weights were enough for all but {', '.join(refits) if refits else 'none'}, which were refitted."
+    )
+
+
+def covered(row: LeftOutRow, share: float) -> bool:
+    """Whether the central interval of a share contains the published number."""
+    return abs(row.probability - 0.5) <= 0.5 * share
