@@ -17,8 +17,8 @@ LADDER = {
     "icons": ("pictures", "model", "language", "files", "recordings", "papers"),
     "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "studies"),
     "perception": (
-        *("kernels", "observer", "plots", "sensation", "procedures", "inference", "identification", "comparison"),
-        *("selection", "ranking", "sensitivity", "validation"),
+        *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
+        *("comparison", "selection", "ranking", "sensitivity", "validation"),
     ),
     "notebooks": ("text", "files", "figures", "pages", "cli", "workbench"),
 }

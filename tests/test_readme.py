@@ -20,7 +20,7 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.perception.inference import tables
+from thermicon.perception.posterior import posterior_tables as tables
 from thermicon.perception.validation.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -11,7 +11,7 @@ from ..files.outputs import STDOUT, check_folder, check_output, complete_or_abse
 from ..text.messages import REFUSED, note, progress_bar, usage
 
 if TYPE_CHECKING:
-    from thermicon.perception.inference.sampling import Sampled
+    from thermicon.perception.posterior.sampling import Sampled
 
 VariantName = Literal["temperature", "heat-flow", "ring-de-dear"]
 MOST_STEPS = 100_000
@@ -56,11 +56,11 @@ def calibrate_command(
     if keep is not None:
         check_folder(keep)
     from thermicon.circuit.solver.cores import cores
-    from thermicon.perception.inference.diagnostics import require_extra
-    from thermicon.perception.inference.learning import CHAINS
     from thermicon.perception.inference.posterior import Posterior
-    from thermicon.perception.inference.sampling import LEAST_STEPS, sample
     from thermicon.perception.observer.draws_file import to_text, variant_named
+    from thermicon.perception.posterior.diagnostics import require_extra
+    from thermicon.perception.posterior.learning import CHAINS
+    from thermicon.perception.posterior.sampling import LEAST_STEPS, sample
 
     require_extra()
     with progress_bar("sampling") as bar:
@@ -98,7 +98,7 @@ def calibrate_command(
 
 def _report(sampled: Sampled) -> None:
     """Print diagnostics and every constant: median, 95 % interval, and what the evidence left of its prior."""
-    from thermicon.perception.inference.summaries import summarise
+    from thermicon.perception.posterior.summaries import summarise
 
     from ..text.tables import show, table
 

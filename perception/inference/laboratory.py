@@ -47,7 +47,7 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
     """Samples between which the drive of a course from corner to corner, then held until `end_s`, changes little.
 
     >>> samples_of(((0.1, 1.0),), 1.6).size
-    33
+    38
     """
     rows = round(end_s / DT_S)
     chosen, level = [0], 0.0

@@ -15,13 +15,6 @@ from ..observer.observer import load_thresholds, observer_records
 from ..observer.people import people_records
 from .evidence import load_evidence
 from .leave_out import WITHIN_95
-from .posterior_tables import (
-    moved_sentence,
-    posterior_table,
-    sampled_left_out_table,
-    sampled_sentence,
-    scores_sentence,
-)
 from .results import AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
 from .rows import PEOPLE_WRIST, load_rows
 from .table_text import UNITS, markdown, number, signed, span
@@ -213,11 +206,6 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "predicted": predicted_table,
     "memory noise": memory_table,
     "people": people_table,
-    "posterior": posterior_table,
-    "sampled": sampled_sentence,
-    "moved": moved_sentence,
-    "left out by draws": sampled_left_out_table,
-    "scores": scores_sentence,
     "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
     "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
     "constants of detection": lambda: constants_table(GROUPS["detection"]),

@@ -9,7 +9,7 @@ import pytest
 
 from thermicon.perception.inference.maximum import maximise
 from thermicon.perception.inference.posterior import Posterior
-from thermicon.perception.inference.sampling import shipped_vector
+from thermicon.perception.posterior.sampling import shipped_vector
 
 FEW = (
     "warm conduction velocity",

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception.inference.left_out import Predictive
 from thermicon.perception.inference.rows import Row, load_rows
-from thermicon.perception.inference.scores import KINDS, naive_log_score, score, stacking_weights, summarise
+from thermicon.perception.posterior.left_out import Predictive
+from thermicon.perception.posterior.scores import KINDS, naive_log_score, score, stacking_weights, summarise
 
 
 def predictive(value: float, draws: int = 4000) -> Predictive:

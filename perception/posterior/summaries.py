@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..inference.posterior import Posterior
 from ..observer.draws import PosteriorDraws
-from .posterior import Posterior
 
 UNMOVED_SD, UNMOVED_SHIFT = 0.9, 0.3
 """A constant that keeps more of its prior's SD, with its median moved by less of it, was not moved by the evidence."""

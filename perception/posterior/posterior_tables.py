@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 
+from ..inference.results import load_constants
+from ..inference.rows import load_rows
+from ..inference.table_text import UNITS, markdown, number, signed, span
+from ..inference.tables import TABLES as INFERRED
 from ..observer.draws import PosteriorDraws
 from .left_out_file import LeftOutRow, load_left_out
-from .results import load_constants
-from .rows import load_rows
 from .summaries import Summary, summarise
-from .table_text import UNITS, markdown, number, signed, span
 
 
 def posterior_table() -> str:
@@ -91,3 +93,14 @@ def scores_sentence() -> str:
 def covered(row: LeftOutRow, share: float) -> bool:
     """Whether the central interval of a share contains the published number."""
     return abs(row.probability - 0.5) <= 0.5 * share
+
+
+TABLES: Mapping[str, Callable[[], str]] = {
+    **INFERRED,
+    "posterior": posterior_table,
+    "sampled": sampled_sentence,
+    "moved": moved_sentence,
+    "left out by draws": sampled_left_out_table,
+    "scores": scores_sentence,
+}
+"""Every table of the pages by the name that a page's mark gives, those of the inference included."""

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import RecordError
-from thermicon.perception.inference import learning, sampling
-from thermicon.perception.inference.chains import Chain, Reference, begin, extend
-from thermicon.perception.inference.diagnostics import diagnose, smoothed_weights
-from thermicon.perception.inference.limit_features import LimitFeatures
 from thermicon.perception.inference.posterior import Posterior
-from thermicon.perception.inference.sampling import sample, shipped_vector
-from thermicon.perception.inference.surrogate import Surrogate, fit_surrogate
+from thermicon.perception.posterior import learning, sampling
+from thermicon.perception.posterior.chains import Chain, Reference, begin, extend
+from thermicon.perception.posterior.diagnostics import diagnose, smoothed_weights
+from thermicon.perception.posterior.limit_features import LimitFeatures
+from thermicon.perception.posterior.sampling import sample, shipped_vector
+from thermicon.perception.posterior.surrogate import Surrogate, fit_surrogate
 
 SIZE = 3
 TRUTH = np.array([[1.0, 0.5, 0.0], [0.0, 2.0, -0.5], [0.3, 0.0, 1.5], [1.0, 1.0, 1.0]])

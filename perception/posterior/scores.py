@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..inference.rows import Row, load_rows
 from ..observer.observer import load_thresholds
 from .left_out import Predictive
-from .rows import Row, load_rows
 
 LN10 = math.log(10.0)
 KINDS: Mapping[str, tuple[str, float]] = {

@@ -1,6 +1,6 @@
 """Which variant predicts experiments that it never saw best: left-out log scores and stacking weights.
 
-`python -m thermicon.perception.inference.variant_scores` writes the table, in tens of minutes; each variant is refitted
+`python -m thermicon.perception.posterior.variant_scores` writes the table, in tens of minutes; each variant is refitted
 at its own maximum without each experiment, and predicts by the normal approximation there.
 """
 
@@ -14,14 +14,14 @@ from multiprocessing import get_context
 import numpy as np
 
 from ..arrays import Array
+from ..inference.evidence import DATA
+from ..inference.leave_out import leave_each_out
+from ..inference.maximum import maximise
+from ..inference.posterior import Posterior
+from ..inference.results import inputs_digest, read_rows, to_csv
+from ..inference.rows import load_rows
 from ..kernels.parallel import quiet_blas
 from ..observer.variants import VARIANTS, Model, Variable
-from .evidence import DATA
-from .leave_out import leave_each_out
-from .maximum import maximise
-from .posterior import Posterior
-from .results import inputs_digest, read_rows, to_csv
-from .rows import load_rows
 from .sampling import shipped_vector
 from .scores import stacking_weights
 
@@ -78,7 +78,7 @@ def main() -> None:
     with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
         scores = list(pool.map(log_scores_of, VARIANTS))
     rows = [VariantScores(*row.key, *(each[k] for each in scores)) for k, row in enumerate(load_rows())]
-    head = f"# written by python -m thermicon.perception.inference.variant_scores from inputs {inputs_digest()}\n"
+    head = f"# written by python -m thermicon.perception.posterior.variant_scores from inputs {inputs_digest()}\n"
     (DATA / SCORES).write_text(head + to_csv(rows), encoding="utf-8")
 
 

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..inference.posterior import Posterior
+from ..inference.rows import Row, load_rows
 from .chains import Reference
 from .diagnostics import K_HAT, smoothed_weights
 from .learning import Evaluate, Points, fitted, walked
-from .posterior import Posterior
-from .rows import Row, load_rows
-from .surrogate import Surrogate
+from .surrogate import WIDE, Surrogate
 
 ROUNDS, PROPOSED = 5, 600
 """Most refits of a posterior without an experiment, and draws of each."""
@@ -138,7 +138,7 @@ def _fit(posterior: Posterior, reference: Reference, points: Points) -> tuple[Su
     wide = Reference.at(
         reference.vector(white), reference.factor @ np.linalg.inv(surrogate.precision(white)) @ reference.factor.T
     )
-    return fitted(posterior, wide, points), wide
+    return fitted(posterior, wide, points, WIDE), wide
 
 
 def _log_density(posterior: Posterior, points: Points) -> Array:

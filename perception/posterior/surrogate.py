@@ -20,9 +20,11 @@ RIDGE = 0.01
 """Weight of keeping coefficients small, as a share of the number of points."""
 FADING = 15.0
 """Points count e times less for so much less log posterior than the median point: the fit is for where chains go."""
-WALL, LEAST_WALL = 2.0, 25.0
-"""Squared distances from the maximum, over the number of constants, beyond which a wall keeps trajectories from where
-the quadratics were not fitted (and at least, for few constants); the other steps of a chain go there."""
+NARROW, WIDE = (2.0, 1.0), (2.6, 1.12)
+"""Wall and heat, for learning and for chains. Beyond a squared distance of so many times the number of constants, a
+wall keeps trajectories from where nothing was fitted; heat divides the log density, which gives it longer tails than
+the posterior: a chain that is where the proposals never go has to stay there."""
+LEAST_WALL = 25.0
 LEAPS, LEAP = 10, 0.16
 """Steps of a trajectory and their length, in SDs of the normal approximation."""
 
@@ -42,6 +44,8 @@ class Surrogate:
     factor: Array
     features: LimitFeatures | None
     weights: Array
+    wall: float
+    heat: float
 
     def log_density(self, white: Array) -> tuple[float, Array]:
         """Log density of the surrogate's posterior, up to a constant, and its gradient (n,)."""
@@ -52,9 +56,10 @@ class Surrogate:
         if self.features is not None:
             residuals = residuals + self.weights @ self.features.at(vector)
             slopes = slopes + self._feature_slopes(vector)
-        beyond = np.maximum(0.0, white @ white - max(WALL * white.size, LEAST_WALL))
+        beyond = np.maximum(0.0, white @ white - max(self.wall * white.size, LEAST_WALL))
         gradient: Array = -slopes.T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
-        return float(-0.5 * (residuals @ residuals + vector @ vector) - 0.1 * beyond**2), gradient
+        density = float(-0.5 * (residuals @ residuals + vector @ vector) - 0.1 * beyond**2)
+        return density / self.heat, gradient / self.heat
 
     def _feature_slopes(self, vector: Array) -> Array:
         """Slopes (rows, n) of the features' part."""
@@ -95,7 +100,12 @@ class Surrogate:
 
 
 def fit_surrogate(
-    white: Array, residuals: Array, middle: Array, factor: Array, features: LimitFeatures | None = None
+    white: Array,
+    residuals: Array,
+    middle: Array,
+    factor: Array,
+    features: LimitFeatures | None = None,
+    reach: tuple[float, float] = NARROW,
 ) -> Surrogate:
     """Weighted least squares from residuals (points, rows) at points (points, n), coefficients kept small."""
     points, size = white.shape
@@ -114,4 +124,4 @@ def fit_surrogate(
     curvature[:, first, second] = 0.5 * fitted[:, 1 + linear :]
     curvature += curvature.transpose(0, 2, 1)
     weights = fitted[:, 1 + size : 1 + linear]
-    return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor, features, weights)
+    return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor, features, weights, *reach)

@@ -22,18 +22,18 @@ import numpy as np
 from thermicon.circuit.records import RecordError
 
 from ..arrays import Array
+from ..inference.maximum import Maximum, maximise
+from ..inference.posterior import LABORATORIES, Posterior
+from ..inference.prior_file import load_priors
+from ..inference.results import inputs_digest, load_constants
+from ..inference.rows import load_rows
 from ..kernels.parallel import quiet_blas
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from .chains import Chain, Reference, extend
 from .diagnostics import ESS, R_HAT, Diagnostics, diagnose
 from .learning import CHAIN_STEPS, CHAINS, Points, Recorder, fitted, learn, misses_at
-from .maximum import Maximum, maximise
-from .posterior import LABORATORIES, Posterior
-from .prior_file import load_priors
-from .results import inputs_digest, load_constants
-from .rows import load_rows
-from .surrogate import Surrogate
+from .surrogate import WIDE, Surrogate
 
 BLOCK = 100
 """Steps of a chain between two looks at the diagnostics, and between two savings."""
@@ -133,7 +133,7 @@ def sample(
             _save_learned(keep, reference, points, begun)
         else:
             reference, points, begun = learned
-            surrogate = fitted(posterior, reference, points)
+            surrogate = fitted(posterior, reference, points, WIDE)
         chains = [_resumed(keep, number, chain) for number, chain in enumerate(begun)]
         while True:
             steps = min(len(chain) for chain in chains) - 1

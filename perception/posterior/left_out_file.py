@@ -1,6 +1,6 @@
 """The shipped table of left-out predictions, and the run that writes it.
 
-`python -m thermicon.perception.inference.left_out_file DIR` goes on from the folder that `thermicon calibrate --keep
+`python -m thermicon.perception.posterior.left_out_file DIR` goes on from the folder that `thermicon calibrate --keep
 DIR` left, and keeps each experiment there as it is done.
 """
 
@@ -19,13 +19,13 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
+from ..inference.evidence import DATA
+from ..inference.posterior import Posterior
+from ..inference.results import inputs_digest, read_rows, to_csv
+from ..inference.rows import load_rows
 from ..kernels.parallel import quiet_blas
-from .evidence import DATA
 from .learning import Points, misses_at
 from .left_out import leave_out
-from .posterior import Posterior
-from .results import inputs_digest, read_rows, to_csv
-from .rows import load_rows
 from .sampling import load_learned, load_vectors
 from .scores import Score, score
 
@@ -136,7 +136,7 @@ def _misses(part: tuple[Posterior, Array]) -> Array:
 
 def write(rows: Iterable[LeftOutRow], path: Path) -> None:
     """Write the table with the digest of its inputs."""
-    head = f"# written by python -m thermicon.perception.inference.left_out_file from inputs {inputs_digest()}\n"
+    head = f"# written by python -m thermicon.perception.posterior.left_out_file from inputs {inputs_digest()}\n"
     path.write_text(head + to_csv(list(rows)), encoding="utf-8")
 
 

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..inference.posterior import Posterior
 from .chains import Chain, Reference, begin
 from .limit_features import LimitFeatures
-from .posterior import Posterior
-from .surrogate import Surrogate, fit_surrogate
+from .surrogate import NARROW, WIDE, Surrogate, fit_surrogate
 
 AROUND, ROUNDS = 2400, (1200, 1200)
 """Points from the normal approximation, and from each next surrogate; a quadratic has 1431 coefficients a row."""
-CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 3, 250
+CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 6, 250
 """Chains that visit the posterior while the surrogate learns, how often it learns from them, and steps in between."""
 WALKERS, WARM_UP, BETWEEN = 12, 20, 2
 """Walkers along the surrogate, and trajectories before the first and between two points."""
@@ -71,11 +71,11 @@ def learn(
     for _ in range(CHAIN_ROUNDS):
         if progress is not None:
             progress(len(points))
-        visited = visit(chains, reference, fitted(posterior, reference, points))
+        visited = visit(chains, reference, fitted(posterior, reference, points, WIDE))
         chains = tuple(chain for chain, _ in visited)
         for _, seen in visited:
             points = points.joined(seen)
-    return fitted(posterior, reference, points), reference, points, tuple(chain.last for chain in chains)
+    return fitted(posterior, reference, points, WIDE), reference, points, tuple(chain.last for chain in chains)
 
 
 class Recorder:
@@ -97,7 +97,9 @@ class Recorder:
         return Points(np.stack([vector for vector, _ in self.seen]), np.stack([misses for _, misses in self.seen]))
 
 
-def fitted(posterior: Posterior, reference: Reference, points: Points) -> Surrogate:
+def fitted(
+    posterior: Posterior, reference: Reference, points: Points, reach: tuple[float, float] = NARROW
+) -> Surrogate:
     """The surrogate of the rows that count."""
     counted = posterior.counted
     return fit_surrogate(
@@ -106,6 +108,7 @@ def fitted(posterior: Posterior, reference: Reference, points: Points) -> Surrog
         reference.middle,
         reference.factor,
         LimitFeatures.of(posterior.priors),
+        reach,
     )
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from .priors import Priors
+from ..inference.priors import Priors
 
 NAMES = ("cold limit", "warm limit", "softness of the limits")
 COLD_C, WARM_C = (30.0, 31.0, 31.8, 32.0), (31.0, 32.0, 32.4, 34.0)
