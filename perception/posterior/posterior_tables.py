@@ -10,6 +10,7 @@ from ..inference.rows import load_rows
 from ..inference.table_text import UNITS, markdown, number, signed, span
 from ..inference.tables import TABLES as INFERRED
 from ..observer.draws import PosteriorDraws
+from .left_out import FROM_WEIGHTS
 from .left_out_file import LeftOutRow, load_left_out
 from .summaries import Summary, summarise
 
@@ -80,13 +81,13 @@ def scores_sentence() -> str:
     ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
     compared = [each for each in rows if not math.isnan(each.naive)]
     gain = sum(each.log_score - each.naive for each in compared) / len(compared)
-    refits = sorted({each.experiment for each in rows if each.method == "refit"})
+    weighted = dict.fromkeys(each.experiment for each in rows if each.method == FROM_WEIGHTS)
     return (
         f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval. "
         f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
         f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
         f"over the naive baseline. "
-        f"Weights were enough for all but {', '.join(refits) if refits else 'none'}, which were refitted."
+        f"Weights were enough for {', '.join(weighted) if weighted else 'no experiment'}; the others were refitted."
     )
 
 
