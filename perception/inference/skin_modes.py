@@ -71,7 +71,7 @@ class SkinModes:
         """Change (rows,) in K or W/m² at a depth every `dt_s` s, for a display that rises by 1 K/s from time 0 on.
 
         >>> skin_modes("forearm", 2.5e-4).ramp_response(0.15e-3, 0.5, 3).round(2)
-        array([0.  , 0.1 , 0.33])
+        array([0.  , 0.11, 0.33])
         """
         steady, weight = self.at(depth_m, variable)
         response = np.empty(rows)
@@ -117,7 +117,7 @@ def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0,
     Effusivity √(k·ρ·c) is raised with conductivity and heat capacity alike, so that diffusivity stays.
 
     >>> round(skin_modes("forearm", 2.5e-4).at(0.15e-3)[0], 3)
-    0.991
+    0.975
     """
     from scipy.linalg import eigh_tridiagonal
 

@@ -36,7 +36,7 @@ class PosteriorDraws:
     >>> posterior.values("cold limit").shape == (len(posterior),)
     True
     >>> observer = posterior.observer(0)
-    >>> observer.cold.limit_C == posterior.values("cold limit")[0]
+    >>> bool(observer.cold.limit_C == posterior.values("cold limit")[0])
     True
     """
 
