@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from thermicon.perception.inference.tables import UNITS, number, signed
+from thermicon.perception.inference.table_text import UNITS, number, signed
 from thermicon.perception.validation.conditioning import ConditionedRow, Conditioning
 from thermicon.perception.validation.magnitudes import CHANGES_K
 

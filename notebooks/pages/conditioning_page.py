@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from thermicon.perception.inference.onset_stages import OnsetStages
-from thermicon.perception.inference.tables import UNITS, number, signed, span
+from thermicon.perception.inference.table_text import UNITS, number, signed, span
 from thermicon.perception.observer.variants import VARIANTS
 from thermicon.perception.validation.comparisons import experiment_title
 from thermicon.perception.validation.conditioning import (

@@ -198,10 +198,9 @@ class Observer:
         Parameters
         ----------
         path
-            A parameter file, or a .csv table of posterior draws, whose draw nearest to the median it is then; None
-            for the shipped parameters.
+            A parameter file, or a .csv table of posterior draws (the draw nearest to the median); None: the shipped.
         variable, model
-            The variant; a table of draws has its own.
+            The variant.
         without
             Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
 
@@ -213,12 +212,6 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        if path is not None and Path(path).suffix.lower() == ".csv":
-            from .draws import PosteriorDraws
-
-            drawn = PosteriorDraws.load(path).observer_nearest_median()
-            off = check_without(without, "observer")
-            return drawn.with_mechanisms_off(off) if off else drawn
         table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")

@@ -24,7 +24,7 @@ from ..identification.from_memory import dprimes_from_memory
 from ..inference.evidence import load_evidence
 from ..inference.experiments import E6_K_PER_S, E6_SIZES
 from ..inference.skin_modes import skin_modes
-from ..inference.tables import number
+from ..inference.table_text import number
 from ..observer.channels import CHANNELS, NORMS, Channel, Norm, check_norm, sign_of, trace_norm
 from ..observer.observer import DATA, Observer
 from ..sensation.percept import perceive_many
