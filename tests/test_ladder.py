@@ -18,8 +18,7 @@ LADDER = {
     "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "studies"),
     "perception": (
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
-        "comparison",
-        *("selection", "ranking", "sensitivity", "validation"),
+        *("comparison", "selection", "ranking", "sensitivity", "validation"),
     ),
     "notebooks": ("text", "files", "figures", "pages", "cli", "workbench"),
 }

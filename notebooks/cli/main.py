@@ -17,7 +17,7 @@ import typer
 from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
-from . import calibrating, hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
+from . import hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
 from .app import Commands
 from .options import (
     Bias,
@@ -306,7 +306,7 @@ for _name, _command, _panel in (
     ("netlist", whatif_commands.netlist_command, SIMULATE),
     ("search", searching.search_command, PREDICT),
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
-    ("calibrate", calibrating.calibrate_command, PREDICT),
+    ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
     ("session", session.session_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),

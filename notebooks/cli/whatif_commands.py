@@ -1,14 +1,17 @@
-"""The commands for studies of a rig: ``netlist``, ``sweep``, ``compare``, ``sensitivity``; ``main`` registers them."""
+"""The commands for studies of rig and model: ``netlist``, ``sweep``, ``compare``, ``sensitivity``, ``calibrate``.
+
+``main`` registers them.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
-from ..text.messages import check_changes, load_rig, note, usage
+from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
+from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
 from .cues import only, read_set, warn_of_site
 from .options import Changes, IconName, OneFile, RigName, Tail, check_tail
 
@@ -16,6 +19,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 METHODS = ("sobol",)
+VariantName = Literal["temperature", "heat-flow", "ring-de-dear"]
+MOST_STEPS = 100_000
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
@@ -184,3 +189,85 @@ def sensitivity_command(
 
     request = Request(people=people, seed=seed, samples=samples, norm=norm)
     sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)
+
+
+def calibrate_command(
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="FILE", readable=False, help="Write the draws to this .csv file."),
+    ] = Path("posterior.csv"),
+    variant: Annotated[VariantName, typer.Option("--variant", help="What receptors respond to.")] = "temperature",
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the chains.")] = 0,
+    keep: Annotated[
+        Path | None,
+        typer.Option(
+            "--keep", metavar="DIR", readable=False, help="Keep the chains here; a later run goes on from them."
+        ),
+    ] = None,
+    steps: Annotated[int, typer.Option("--steps", metavar="N", help="Most steps of each of the 4 chains.")] = 20_000,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", metavar="N", help="Number of processes.  [default: the cores there are, up to 4]"),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Write draws of chains that have not converged; the file is marked.")
+    ] = False,
+) -> None:
+    """Infer all constants of the observer together: sample their posterior and write 1,000 draws as a table.
+
+    Evidence and priors are the shipped ones. Chains run until every constant has converged (R-hat below 1.01, bulk
+    effective sample size above 600) or --steps is reached. What did not converge is refused without --force. The same
+    seed gives the same draws, however many workers there are and however often the run was interrupted.
+    """
+    for option, value, least, most in (
+        ("--seed", seed, 0, 2**32 - 1),
+        ("--steps", steps, 100, MOST_STEPS),
+        ("--workers", workers if workers is not None else 1, 1, 8),
+    ):
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+    check_output(output, (".csv",), "a table of draws")
+    if keep is not None:
+        check_folder(keep)
+    from thermicon.circuit.solver.cores import cores
+    from thermicon.perception.inference.posterior import Posterior
+    from thermicon.perception.observer.draws_file import to_text, variant_named
+    from thermicon.perception.posterior.diagnostics import require_extra
+    from thermicon.perception.posterior.learning import CHAINS
+    from thermicon.perception.posterior.sampling import LEAST_STEPS, sample
+
+    from ..text.calibrate_text import show_constants, worst_text
+
+    require_extra()
+    with progress_bar("sampling") as bar:
+
+        def progress(done: int, total: int, words: str) -> None:
+            if bar is not None:
+                bar(done, total)
+
+        sampled = sample(
+            Posterior(*variant_named(variant)),
+            seed,
+            keep=keep,
+            workers=min(cores(), CHAINS) if workers is None else workers,
+            least_steps=min(LEAST_STEPS, steps),
+            most_steps=steps,
+            progress=progress,
+        )
+    if output != STDOUT:
+        show_constants(sampled)
+    if not sampled.diagnostics.converged and not force:
+        note(
+            f"{output} was not written: {sampled.diagnostics.worst} has not converged "
+            f"({worst_text(sampled)}). Give more --steps{'' if keep else ' and --keep DIR'}, "
+            "or --force to write it marked."
+        )
+        raise typer.Exit(REFUSED)
+    draws = sampled.draws()
+    text = to_text(draws.header, draws.names, draws.draws)
+    if output == STDOUT:
+        typer.echo(text, nl=False)
+        return
+    with complete_or_absent(output) as draft:
+        draft.write_text(text, encoding="utf-8")
+    note(f"wrote {output}")

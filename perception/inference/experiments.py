@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..arrays import Array
-from ..kernels.psychometric import psychometric
 from ..observer.channels import CHANNELS, Channel, sign_of
 from .laboratory import DT_S, FEEBLE, Laboratory, samples_of
 
@@ -122,6 +121,8 @@ HALVES = (0.16, 0.5, 0.84)
 
 def _psychometric(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
     """Logs (people,) of the size at one half and of the SD, guesses taken out; reports are (people, sizes)."""
+    from ..kernels.psychometric import psychometric
+
     logs = np.empty((reported.shape[0], len(HALVES)))
     psychometric(reported, log_sizes, np.array(HALVES), logs)
     sizes = np.exp(logs)

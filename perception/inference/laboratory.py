@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernels import passage as first_passage
-from ..kernels.adapted_drive import adapted_drive
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.delays import LEG_M_PER_S, Conduction
 from ..observer.mechanisms import Without
@@ -134,6 +132,8 @@ class Laboratory:
 
     @cached_property
     def _psi_table(self) -> Array:
+        from ..kernels import passage as first_passage
+
         logs = first_passage.LOG_U_FROM + first_passage.LOG_U_STEP * np.arange(first_passage.LOG_U_POINTS)
         return self.transducer.psi(np.exp(logs))
 
@@ -141,6 +141,8 @@ class Laboratory:
         self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
     ) -> Array:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
+        from ..kernels.adapted_drive import adapted_drive
+
         values = self.values
         skin = _skin(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
         depth = skin.corneum_m + 1e-3 * values[f"{channel} receptor depth"]
@@ -200,6 +202,8 @@ class Laboratory:
         self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float
     ) -> tuple[Array, Array]:
         """Times (people, TRIALS) at which sensation passes the criterion; probabilities (people, 4) that it does."""
+        from ..kernels import passage as first_passage
+
         log_gains, cautions, back = self._lanes[channel]
         times = np.empty((log_gains.size, SHARES.size))
         passed = first_passage.passage(

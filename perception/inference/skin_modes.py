@@ -18,7 +18,6 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.skin import STRATUM_CORNEUM, Skin, column_of
 
 from ..arrays import Array
-from ..kernels import superposed
 from ..observer.variants import Variable
 
 Corner = tuple[float, float]
@@ -73,6 +72,8 @@ class SkinModes:
         >>> skin_modes("forearm", 2.5e-4).ramp_response(0.15e-3, 0.5, 3).round(2)
         array([0.  , 0.11, 0.33])
         """
+        from ..kernels import superposed
+
         steady, weight = self.at(depth_m, variable)
         response = np.empty(rows)
         superposed.ramp_response(steady, weight, self.rate_per_s, dt_s, response)
@@ -98,6 +99,8 @@ class SkinModes:
 
 def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
     """A course (rows,) from a baseline by corners of the display, for skin with a `ramp_response` of `rows` or more."""
+    from ..kernels import superposed
+
     starts, slopes, slope, start = [], [], 0.0, (0.0, 0.0)
     for corner in (*corners, None):
         rate = 0.0 if corner is None else (corner[1] - start[1]) / (corner[0] - start[0])

@@ -13,6 +13,7 @@ from ..observer.draws import PosteriorDraws
 from .left_out import FROM_WEIGHTS
 from .left_out_file import LeftOutRow, load_left_out
 from .summaries import Summary, summarise
+from .variant_scores import variant_log_scores, variant_weights
 
 
 def posterior_table() -> str:
@@ -96,6 +97,17 @@ def covered(row: LeftOutRow, share: float) -> bool:
     return abs(row.probability - 0.5) <= 0.5 * share
 
 
+def variants_sentence() -> str:
+    """Mean left-out log score of each variant, and the weights of their best mixture."""
+    names, means = ("temperature", "heat flow", "impulses after Ring & de Dear"), variant_log_scores().mean(axis=1)
+    weights = variant_weights().values()
+    parts = [
+        f"{name} {signed(mean, 2)} (weight {weight:.2f})"
+        for name, mean, weight in zip(names, means.tolist(), weights, strict=True)
+    ]
+    return f"Mean log score a row: {', '.join(parts)}."
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     **INFERRED,
     "posterior": posterior_table,
@@ -103,5 +115,6 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "moved": moved_sentence,
     "left out by draws": sampled_left_out_table,
     "scores": scores_sentence,
+    "variants": variants_sentence,
 }
 """Every table of the pages by the name that a page's mark gives, those of the inference included."""

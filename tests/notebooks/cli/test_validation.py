@@ -17,7 +17,7 @@ from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.pages.blocks import Bullets, Cell, Grid, Heading, Picture, Text, as_html, as_markdown
 from thermicon.notebooks.pages.conditioning_page import TITLE
 from thermicon.notebooks.pages.validation_page import page, target_rows
-from thermicon.perception.inference.tables import number
+from thermicon.perception.inference.table_text import number
 from thermicon.perception.validation.validate import ValidationReport, validate
 
 NOTEBOOK = Path(__file__).parents[3] / "notebooks/07_validation.ipynb"

@@ -17,6 +17,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.posterior.left_out_file import LEFT_OUT, load_left_out
 from thermicon.perception.posterior.posterior_tables import TABLES, covered
 from thermicon.perception.posterior.summaries import summarise
+from thermicon.perception.posterior.variant_scores import SCORES, variant_weights
 
 
 def test_draws_have_converged_and_left_nothing_out() -> None:
@@ -64,6 +65,12 @@ def test_summaries_say_what_was_not_moved() -> None:
     assert found["softness of the limits"].unmoved
     assert not found["warm threshold drive"].unmoved
     assert found["warm threshold drive"].narrowed < 0.4
+
+
+def test_temperature_predicts_best_of_the_variants() -> None:
+    weights = variant_weights()
+    assert digest_of(DATA / SCORES) == inputs_digest()
+    assert max(weights, key=lambda each: weights[each]) == ("temperature", "adapting")
 
 
 @pytest.mark.parametrize("name", sorted(set(TABLES) - set(INFERRED)))
