@@ -182,12 +182,6 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        if path is not None and Path(path).suffix.lower() == ".csv":
-            from .draws import PosteriorDraws
-
-            drawn = PosteriorDraws.load(path).nominal()
-            off = check_without(without, "observer")
-            return drawn.with_mechanisms_off(off) if off else drawn
         table = None if path is None else read_observer_file(Path(path))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")

@@ -47,15 +47,15 @@ MOST_NAMED = 6
 def read_observer_file(path: Path) -> Table:
     """Records of a file; a RecordError names the file, what is wrong, and a cure."""
     if path.suffix.lower() == ".csv":
-        return _nearest_draw(path)
+        return _nominal_draw(path)
     try:
         return load_records(path)
     except UnicodeDecodeError as problem:
         raise RecordError(f"{path.name}: is not UTF-8 text (byte {problem.start}): {CURE}") from None
 
 
-def _nearest_draw(path: Path) -> Table:
-    """Records of the draw nearest to the median of a table of posterior draws."""
+def _nominal_draw(path: Path) -> Table:
+    """Records of the nominal draw of a table of posterior draws."""
     from .draws import PosteriorDraws
     from .variants import VARIANTS
 
@@ -63,9 +63,9 @@ def _nearest_draw(path: Path) -> Table:
     if drawn.variant != VARIANTS[0]:
         raise RecordError(
             f"{path.name}: draws of {', '.join(drawn.variant)}, which is not the default variant: "
-            "use PosteriorDraws.load(path).observer_nearest_median()"
+            "use PosteriorDraws.load(path).nominal()"
         )
-    return drawn.table(drawn.nearest_median)
+    return drawn.table(0)
 
 
 def check_complete(table: Table, variable: str, variant: str) -> None:
