@@ -7,6 +7,7 @@ from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.perception import Observer
 from thermicon.perception.inference.results import constant, load_constants
 from thermicon.perception.observer.channels import MEMORY_NORMS
+from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import CHANNELS, DATA, load_thresholds
 from thermicon.perception.observer.variants import VARIANTS, source_of
 from thermicon.perception.validation.calibrate import MODEL_CONSTANTS, calibrate, to_toml
@@ -56,11 +57,12 @@ def test_every_number_of_the_observer_says_where_it_is_from() -> None:
         assert {r.method for r in found} == set(MEMORY_NORMS)
 
 
-def test_constants_are_those_of_the_maximum_with_their_intervals() -> None:
+def test_constants_are_those_of_the_maximum_with_the_intervals_of_the_draws() -> None:
     shipped = load_records(SHIPPED)
     limit, record = constant("cold limit"), shipped.one("limit", channel="cold")
     assert record.central == pytest.approx(limit.value, rel=1e-3)
-    assert record.interval == pytest.approx((limit.low, limit.high), rel=1e-3)
+    low, _, high = PosteriorDraws.load().interval("cold limit")
+    assert record.interval == pytest.approx((low, high), rel=1e-3)
     assert "Campero" in record.source
     for variant in VARIANTS:
         drive = shipped.one(f"threshold drive{source_of(*variant)}", channel="warm")
