@@ -30,8 +30,9 @@ PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 class Request:
     """Options of ``rank``: people, seed, tracking (None: by the icons' control), norm, trials, and what to score by.
 
-    ``parameters`` is the number of observers drawn for the model uncertainty; 0 draws none. ``choosing`` selects the
-    best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all`` indistinguishable pairs.
+    ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory; 0 draws none.
+    ``choosing`` selects the best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all``
+    indistinguishable pairs.
     ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
     number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
     """

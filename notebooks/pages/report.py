@@ -25,7 +25,7 @@ LIMITS = (
     "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
     "experiment has confirmed it for these icons.",
     "The order of icons is less certain than the overall level: for the six icons of the only published experiment "
-    "that it can be checked against, the model's best icon was the worst.",
+    "that it can be checked against, the model does not find the order.",
     "Predicted onsets are later than the usually quoted windows, those of warmth most.",
     "The skin is a stack of flat layers: no edges, no lateral heat flow, one patch at a time. Pain, adaptation over "
     "minutes, training, attention and several simultaneous elements are outside the model.",

@@ -76,7 +76,7 @@ def ranked() -> Bench:
 
 def test_a_set_is_ranked_with_its_intervals_and_worst_pair(ranked: Bench) -> None:
     assert "24 people" in ranked.said("status")
-    assert "model uncertainty" in ranked.said("scores")
+    assert "a new laboratory: " in ranked.said("scores")
     assert ranked.said("table").count("<tr>") == 4
     assert "near" in ranked.said("pair")
     assert "nearer" in ranked.said("pair")
