@@ -6,6 +6,7 @@ Each is the part of d′ from memory that it carries, so that their squares add 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -33,8 +34,8 @@ class DistanceComponent:
     value
         The part of the d′ of the pair that it carries.
     a, b
-        Values of the strongest episode of each icon, in multiples of threshold (intensity), those per second (rate) or
-        s (duration, pause); None for an icon that is not felt, and for `direction`.
+        Values of the two episodes at one place that differ most in it, in multiples of threshold (intensity), those per
+        second (rate) or s (duration, pause); None for an icon that is not felt, and for `direction`.
 
     See Also
     --------
@@ -111,9 +112,9 @@ def distance_components(
 def components_of(episodes: Episodes, i: int, j: int, observer: Observer) -> tuple[DistanceComponent, ...]:
     """The components of two of the first person's icons."""
     shares = distance_shares(episodes, i, episodes, j, observer, "episodes")
-    one, other = (strongest(episodes.listed(0, place)) for place in (i, j))
+    one, other = (episodes.listed(0, place) for place in (i, j))
     return tuple(
-        DistanceComponent(name, math.sqrt(max(shares[name], 0.0)), _value(one, name), _value(other, name))
+        DistanceComponent(name, math.sqrt(max(shares[name], 0.0)), *most_different(one, other, name))
         for name in COMPONENTS
     )
 
@@ -123,12 +124,22 @@ def strongest(episodes: tuple[Episode, ...]) -> Episode | None:
     return max(episodes, key=lambda episode: episode.peak, default=None)
 
 
-def _value(episode: Episode | None, name: str) -> float | None:
-    if episode is None or name == "direction":
-        return None
-    return {
-        "intensity": episode.peak,
-        "rate": episode.rate_per_s,
-        "duration": episode.length_s,
-        "pause": episode.pause_s,
-    }[name]
+FIELDS = {"intensity": "peak", "rate": "rate_per_s", "duration": "length_s", "pause": "pause_s"}
+"""Attribute of an episode behind each component; `direction` has none."""
+NEAR_NOTHING = 0.1
+"""Added to both values before their ratio is taken, so that a pause of 0 does not count as infinitely short."""
+
+
+def most_different(one: Sequence[Episode], other: Sequence[Episode], name: str) -> tuple[float | None, float | None]:
+    """A component's values of the two episodes at one place that differ most in it, or of the strongest."""
+    if name not in FIELDS:
+        return None, None
+    pairs = [(x, y) for x, y in zip(one, other, strict=False) if x.channel == y.channel]
+    if not pairs:
+        first, second = (
+            None if top is None else float(getattr(top, FIELDS[name]))
+            for top in (strongest(tuple(one)), strongest(tuple(other)))
+        )
+        return first, second
+    values = [(float(getattr(x, FIELDS[name])), float(getattr(y, FIELDS[name]))) for x, y in pairs]
+    return max(values, key=lambda pair: abs(math.log((pair[0] + NEAR_NOTHING) / (pair[1] + NEAR_NOTHING))))

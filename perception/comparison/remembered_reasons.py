@@ -7,17 +7,17 @@ from collections.abc import Sequence
 
 from ..identification.episodes import PARTS, Episode, Episodes, distance_shares
 from ..observer.observer import Norm, Observer
-from .distance_components import strongest
+from .distance_components import most_different
 
 ALIKE_DPRIME = 0.3
 """Below this no feature is named: two icons are then told apart in less than 56 % of trials."""
 FEATURES = {
-    "intensity": ("how strong they are", "peak", "times threshold"),
-    "rate": ("how fast they start", "rate_per_s", "times threshold per second"),
-    "duration": ("how long they last", "length_s", "s at half the peak"),
-    "pause": ("when they start", "pause_s", "s after what was before"),
+    "intensity": ("how strong they are", "times threshold"),
+    "rate": ("how fast they start", "times threshold per second"),
+    "duration": ("how long they last", "s at half the peak"),
+    "pause": ("the pause before an episode", "s"),
 }
-"""Part of a distance: the feature in words, its name in an episode, its unit in words."""
+"""Part of a distance: the feature in words, and its unit in words."""
 
 
 def carrying_feature(
@@ -41,8 +41,8 @@ def carrying_feature(
             f"mostly distinguished by what is felt: {names[0]} {_said(one)}, {names[1]} {_said(other)}: {size}",
             values,
         )
-    words, name, unit = FEATURES[most]
-    first, second = _most_different(one, other, name)
+    words, unit = FEATURES[most]
+    first, second = (value or 0.0 for value in most_different(one, other, most))
     values.update(a=first, b=second)
     return (
         f"mostly distinguished by {words}: {names[0]} {_number(first)}, {names[1]} {_number(second)} {unit}: {size}",
@@ -52,16 +52,6 @@ def carrying_feature(
 
 def _said(episodes: Sequence[Episode]) -> str:
     return ", then ".join(episode.channel for episode in episodes) or "nothing"
-
-
-def _most_different(one: Sequence[Episode], other: Sequence[Episode], name: str) -> tuple[float, float]:
-    """A feature of the two episodes at one place that differ most in it; of the strongest where qualities differ."""
-    pairs = [(x, y) for x, y in zip(one, other, strict=False) if x.channel == y.channel]
-    if not pairs:
-        x, y = strongest(tuple(one)), strongest(tuple(other))
-        pairs = [(x, y)] if x is not None and y is not None else []
-    values = [(float(getattr(x, name)), float(getattr(y, name))) for x, y in pairs]
-    return max(values, key=lambda pair: abs(math.log((pair[0] + 0.1) / (pair[1] + 0.1))))
 
 
 def _number(value: float) -> str:

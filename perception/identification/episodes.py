@@ -154,7 +154,11 @@ def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: 
 
 
 def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> dict[str, float]:
-    """Parts of d′² between two icons for the first person, by the names of `PARTS`, without their sign."""
+    """Parts of d′² between two icons for the first person, by the names of `PARTS`, without their sign.
+
+    Icons with the same qualities in the same order differ by features, also where those differ so much that the
+    alignment leaves episodes without a partner: then d′² is divided as the features at equal places are.
+    """
     from ..kernels import alignment
 
     first, second = one.scaled(norm, observer), other.scaled(norm, observer)
@@ -163,7 +167,27 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
         first.features[0, i], first.counts[0, i], second.features[0, j], second.counts[0, j],
         intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing, shares,
     )  # fmt: skip
+    if shares[alignment.MISSING] > 0.0 and _same_qualities(one, i, other, j):
+        shares = float(shares.sum()) * _by_place(first, i, second, j, observer, norm)
     return dict(zip(PARTS, shares.tolist(), strict=True))
+
+
+def _same_qualities(one: Episodes, i: int, other: Episodes, j: int) -> bool:
+    first, second = ([each.channel for each in held.listed(0, k)] for held, k in ((one, i), (other, j)))
+    return first == second
+
+
+def _by_place(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> Array:
+    """Shares (parts,) of the features of episodes at equal places; their sum is 1."""
+    from ..kernels import alignment
+
+    intensity = intensity_noise(norm, observer, np.ones(1))[0]
+    total, own = np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
+    for x, y in zip(one.features[0, i, : one.counts[0, i]], other.features[0, j, : other.counts[0, j]], strict=True):
+        alignment.matched(x, y, intensity, observer.memory.timing, own)
+        total += own
+    shares: Array = total / total.sum()
+    return shares
 
 
 def remembered(percepts: Sequence[Percept], observer: Observer | None = None) -> Episodes:

@@ -7,6 +7,7 @@ the inference and stays that of the shipped observer.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -33,7 +34,7 @@ INFERRED = "inferred from published evidence"
 class PosteriorDraws:
     """Equally weighted draws: `draws` (n, constants) read-only, in each constant's own unit, columns as in `names`.
 
-    The first is the nominal one: what it predicts of the evidence is nearest to the medians of what all predict.
+    The first is the nominal one: its constants, and what they predict of the evidence, are nearest to their medians.
 
     >>> posterior = PosteriorDraws.load()
     >>> posterior.values("cold limit").shape == (len(posterior),)
@@ -74,10 +75,18 @@ class PosteriorDraws:
         RecordError
             For a file that is no such table, was made from other evidence or priors, or lacks a constant.
 
+        Warns
+        -----
+        UserWarning
+            For draws of a sampler that did not converge.
+
         """
         variant = check_variant(variable, model)
         file = shipped_file(*variant) if path is None else Path(path)
-        return _read(file, file.stat().st_mtime_ns if file.exists() else 0)
+        draws = _read(file, file.stat().st_mtime_ns if file.exists() else 0)
+        if not draws.header.converged:
+            warnings.warn(f"{file.name}: {draws.header.status}: its intervals are not to be trusted", stacklevel=2)
+        return draws
 
     def __len__(self) -> int:
         return int(self.draws.shape[0])
@@ -129,7 +138,7 @@ class PosteriorDraws:
         return observer_with(Observer.load(variable=variable, model=model), self.draw(k))
 
     def nominal(self) -> Observer:
-        """The observer of the first draw, whose predictions of the evidence are nearest to their medians."""
+        """The observer of the first draw, which is nearest to the medians. The shipped observer is the maximum."""
         return self.observer(0)
 
     def new_laboratory(self, seed: int = 0) -> Array:

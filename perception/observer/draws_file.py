@@ -139,7 +139,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array]:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
-        raise RecordError(f"{path}: posterior draws cannot be read: {reason}: {CURE}") from error
+        raise RecordError(f"{path}: posterior draws cannot be read: {reason}: check the path, or {CURE}") from error
     head = [line for line in lines if line.startswith("#")]
     if not head or not head[0].startswith(FIRST_LINE):
         raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")

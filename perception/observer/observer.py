@@ -182,7 +182,7 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        table = None if path is None else read_observer_file(Path(path))
+        table = None if path is None else read_observer_file(Path(path), (variable, model))
         whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
         off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole

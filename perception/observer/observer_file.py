@@ -44,22 +44,27 @@ CURE = (
 MOST_NAMED = 6
 
 
-def read_observer_file(path: Path) -> Table:
-    """Records of a file; a RecordError names the file, what is wrong, and a cure."""
+def read_observer_file(path: Path, variant: tuple[str, str]) -> Table:
+    """Records of a file for a variant (variable, model); a RecordError names the file, what is wrong, and a cure."""
     if path.suffix.lower() == ".csv":
-        return _nominal_draw(path)
+        return _nominal_draw(path, variant)
     try:
         return load_records(path)
     except UnicodeDecodeError as problem:
         raise RecordError(f"{path.name}: is not UTF-8 text (byte {problem.start}): {CURE}") from None
 
 
-def _nominal_draw(path: Path) -> Table:
+def _nominal_draw(path: Path, variant: tuple[str, str]) -> Table:
     """Records of the nominal draw of a table of posterior draws."""
     from .draws import PosteriorDraws
     from .variants import VARIANTS
 
     drawn = PosteriorDraws.load(path)
+    if drawn.variant != variant:
+        raise RecordError(
+            f"{path.name}: draws of the variant {', '.join(drawn.variant)}, not of {', '.join(variant)}, which was "
+            "asked for: ask for the variant of the file"
+        )
     if drawn.variant != VARIANTS[0]:
         raise RecordError(
             f"{path.name}: draws of {', '.join(drawn.variant)}, which is not the default variant: "

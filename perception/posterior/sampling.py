@@ -209,13 +209,20 @@ def draws_of(posterior: Posterior, vectors: Array, header: DrawsHeader) -> Poste
 
 
 def in_the_middle(posterior: Posterior, vectors: Array) -> int:
-    """Number of the vector whose predictions of all rows are nearest to their medians, in SDs of the draws.
+    """Number of the vector nearest to the medians of constants and of predicted rows, in SDs of the draws.
 
-    In as many dimensions as there are constants no draw is near the median of each; what they predict has a middle.
+    In as many dimensions as there are constants no draw is near the median of each.
     """
-    each = np.array([[found[row.key] for row in posterior.rows] for found in map(posterior.predictions, vectors)])
+    predicted = np.array([[found[row.key] for row in posterior.rows] for found in map(posterior.predictions, vectors)])
+    constants = [k for k, prior in enumerate(posterior.priors.each) if prior.mechanism != "laboratories"]
+    return int((_off_centre(vectors[:, constants]) + _off_centre(predicted)).argmin())
+
+
+def _off_centre(each: Array) -> Array:
+    """Mean square (draws,) of how many SDs a draw lies from the median of each column."""
     spread = np.where(each.std(axis=0) > 0.0, each.std(axis=0), 1.0)
-    return int(np.square((each - np.median(each, axis=0)) / spread).sum(axis=1).argmin())
+    found: Array = np.square((each - np.median(each, axis=0)) / spread).mean(axis=1)
+    return found
 
 
 def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain:

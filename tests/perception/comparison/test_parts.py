@@ -87,3 +87,19 @@ def test_of_what_is_not_felt_there_are_no_values(cue: Cue, observer: Observer) -
         "part": "rate", "value": 0.0, "unit": "d′", "noticeable": 1.0, "above": False, "a": parts["rate"].a, "b": None,
     }  # fmt: skip
     assert repr(DistanceComponent("rate", 2.0, 3.0, 1.0)) == "DistanceComponent(rate 2 d′)"
+
+
+def test_pauses_that_differ_much_are_still_pauses() -> None:
+    """A second dip after 6 s instead of 2 s: the alignment leaves it without a partner, the reason is its pause."""
+    text = "cue 1\nset s { control display }\n"
+    for name, rest_s in (("a", 2), ("b", 6)):
+        dip = "cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s"
+        text += f"icon {name} {{ {dip}; rest for {rest_s} s; {dip} }}\n"
+    icons, rig = parse(text), Rig.load("thenar")
+    longest = max(icon.corners().duration_s for icon in icons)
+    a, b = (simulate(icon, rig, tail_s=10 + longest - icon.corners().duration_s) for icon in icons)
+    parts = distance_components(a, b)
+    assert largest(parts) == "pause"
+    pause = named(parts)["pause"]
+    assert pause.a is not None and pause.b is not None and pause.b > pause.a + 2.0
+    assert math.hypot(*(part.value for part in parts)) == pytest.approx(dprime_from_memory(perceive(a), perceive(b)))

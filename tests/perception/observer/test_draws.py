@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -114,3 +115,18 @@ def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text
 def test_variants_have_names() -> None:
     with pytest.raises(ValueError, match=r"no variant 'heat': choose one of temperature, heat-flow"):
         variant_named("heat")
+
+
+def test_draws_of_another_variant_are_refused(posterior: PosteriorDraws, tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    path.write_text(to_text(posterior.header, posterior.names, posterior.draws[:5]), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"mine.csv: draws of the variant temperature, adapting, not of heat flow"):
+        Observer.load(path, variable="heat flow")
+
+
+def test_draws_that_did_not_converge_warn(posterior: PosteriorDraws, tmp_path: Path) -> None:
+    path = tmp_path / "mine.csv"
+    header = replace(posterior.header, converged=False)
+    path.write_text(to_text(header, posterior.names, posterior.draws[:5]), encoding="utf-8")
+    with pytest.warns(UserWarning, match=r"mine.csv: NOT CONVERGED, .* not to be trusted"):
+        PosteriorDraws.load(path)
