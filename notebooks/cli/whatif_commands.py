@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 METHODS = ("sobol",)
-VariantName = Literal["temperature", "heat-flow", "ring-de-dear"]
+VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
 MOST_STEPS = 100_000
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
@@ -196,7 +196,10 @@ def calibrate_command(
         Path,
         typer.Option("-o", "--output", metavar="FILE", readable=False, help="Write the draws to this .csv file."),
     ] = Path("posterior.csv"),
-    variant: Annotated[VariantName, typer.Option("--variant", help="What receptors respond to.")] = "temperature",
+    variant: Annotated[
+        str,
+        typer.Option("--variant", metavar="NAME", help=f"What receptors respond to: {', '.join(VARIANT_NAMES)}."),
+    ] = "temperature",
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the chains.")] = 0,
     keep: Annotated[
         Path | None,
@@ -226,6 +229,8 @@ def calibrate_command(
     ):
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
+    if variant not in VARIANT_NAMES:
+        raise usage(f"{variant!r} is not one of {', '.join(VARIANT_NAMES)}", "--variant")
     check_output(output, (".csv",), "a table of draws")
     if keep is not None:
         check_folder(keep)
