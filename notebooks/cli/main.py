@@ -30,6 +30,7 @@ from .options import (
     IconName,
     Keep,
     NormName,
+    ObserverFile,
     ReportPage,
     RigName,
     Tracking,
@@ -217,6 +218,7 @@ def rank_command(
     context: Context = 0.0,
     gap: Gap = None,
     bias: Bias = 0.0,
+    observer: ObserverFile = None,
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
@@ -274,6 +276,7 @@ def rank_command(
         context=context,
         gap=gap,
         bias=bias,
+        observer=observer,
         workers=workers,
         cluster=cluster,
         keep=keep,

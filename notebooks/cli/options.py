@@ -35,6 +35,15 @@ Cluster = Annotated[
     str | None,
     typer.Option("--cluster", metavar="ADDRESS", help="Compute on a dask cluster: the address of its scheduler."),
 ]
+ObserverFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--observer",
+        metavar="FILE",
+        readable=False,
+        help="Predict with another observer: draws of thermicon calibrate or observed (.csv), or its records (.toml).",
+    ),
+]
 Keep = Annotated[
     Path | None,
     typer.Option(

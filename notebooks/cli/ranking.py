@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
-from ..text.messages import note, progress_bar, usage
+from ..text.messages import check_draws, load_observer, note, progress_bar, usage
 from ..text.rank_text import show_ranking
 from .cache import kept
 from .cues import MOST_ICONS, read_set, warn_of_frames
@@ -22,7 +22,19 @@ if TYPE_CHECKING:
     from thermicon.perception import Ranking
     from thermicon.perception.selection.request import Selection
 
-PLAIN_OPTIONS = ("people", "seed", "tracking", "norm", "trials", "by", "parameters", "context", "gap", "bias")
+PLAIN_OPTIONS = (
+    "people",
+    "seed",
+    "tracking",
+    "norm",
+    "trials",
+    "by",
+    "parameters",
+    "context",
+    "gap",
+    "bias",
+    "observer",
+)
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
 
@@ -33,6 +45,7 @@ class Request:
     ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory; 0 draws none.
     ``choosing`` selects the best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all``
     indistinguishable pairs.
+    ``observer`` is a file to predict with in place of the shipped observer.
     ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
     number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
     """
@@ -49,6 +62,7 @@ class Request:
     context: float = 0.0
     gap: float | None = None
     bias: float = 0.0
+    observer: Path | None = None
     workers: int | None = None
     cluster: str | None = None
     keep: Path | None = None
@@ -87,6 +101,8 @@ def rank_files(
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     warn_of_frames(files, icons, rig)
+    model = load_observer(request.observer)
+    check_draws(model, request.parameters, "--parameters")
     what = f"{icons}\0{rig.document}\0{request}"
     with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
         ranking = rank(
@@ -102,6 +118,7 @@ def rank_files(
             choosing=request.choosing,
             edits=request.edits if request.by == "model" else "none",
             task=Task(request.context, request.gap, request.bias),
+            observer=model,
             workers=request.workers,
             cluster=request.cluster,
             keep=keep,

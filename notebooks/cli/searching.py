@@ -9,8 +9,8 @@ import typer
 
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES
-from ..text.messages import check_changes, load_rig, note, usage
-from .options import Changes, NormName, OneFile, RigName, Tracking, check_tracking
+from ..text.messages import check_changes, load_observer, load_rig, note, usage
+from .options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
 
 if TYPE_CHECKING:
     from thermicon.perception import SearchResult
@@ -40,6 +40,7 @@ def search_command(
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
     tracking: Tracking = None,
     norm: NormName = "episodes",
+    observer: ObserverFile = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -82,7 +83,7 @@ def search_command(
     from ..text.messages import progress_bar
     from .cues import read_set, warn_of_frames
 
-    icons, where = read_set([file]), load_rig(rig, changes or [])
+    icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
     warn_of_frames([file], icons, where)
     with progress_bar("searching") as progress:
         found = search(
@@ -95,6 +96,7 @@ def search_command(
             seed=seed,
             tracking=tracking,
             norm=norm,
+            observer=model,
             progress=progress,
         )
     if output == STDOUT:

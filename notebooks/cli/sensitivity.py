@@ -1,4 +1,4 @@
-"""``thermicon sensitivity``: which uncertain parameters change the prediction for a set most."""
+"""``thermicon sensitivity``: which constants carry the doubt about a set, and what to measure first."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 from thermicon.icons.number_text import percent
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import fail, note, progress_bar, usage
+from ..text.messages import check_draws, fail, load_observer, note, progress_bar, usage
 from ..text.tables import show, table
 from .cues import read_set, warn_of_frames
 from .sweep import write_frame
@@ -20,21 +20,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Sensitivity
 
-HOW = {
-    "reference area": "the area of the published thresholds; measure thresholds on your own display instead",
-    "slope of sensation": "amplitude difference thresholds, at several amplitudes",
-    "memory noise": "let people name a few icons from memory and count",
-    "share of the scatter of ratings": "let people name icons that differ in intensity alone, from memory",
-    "transducer exponent": "how fast the share of reports rises with the size of a change near threshold",
-    "gain noise": "the scatter of one person's repeated thresholds, beyond that of the criterion",
-    "criterion of speeded answers": "false alarms and reaction times of the same people",
-    "limit": "coolings of warm skin and warmings of cool skin, at several starting temperatures",
-    "lapse rate": "errors on two icons that are unmistakable",
-    "contact resistance": "skin or interface thermistor under your display, then fit the rig to its log",
-    "spread of thresholds between people": "thresholds of a dozen people on your own display",
-    "onset uncertainty": "how well people distinguish two onsets in time",
-}
-"""How to measure a parameter whose name does not say it."""
+SHOWN = 12
+"""Constants in the table; a file has them all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +30,9 @@ class Request:
 
     people: int = 24
     seed: int = 0
-    samples: int = 64
+    draws: int = 256
     norm: str = "episodes"
+    observer: Path | None = None
 
 
 def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:
@@ -62,14 +50,19 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
     if len(icons) < 2:
         fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")
     warn_of_frames([file], icons, rig)
+    model = load_observer(request.observer)
+    check_draws(model, request.draws, "--draws")
+    if model.posterior is None:
+        fail(f"{model.name}: a sensitivity is read from draws of a posterior: give a table of thermicon calibrate")
     with progress_bar("sensitivity") as progress:
         found = sensitivity(
             icons,
             rig,
             people=request.people,
             seed=request.seed,
-            samples=request.samples,
+            draws=request.draws,
             norm=request.norm,
+            observer=model,
             progress=progress,
         )
     if output is not None and output != STDOUT:
@@ -88,48 +81,40 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
 
 
 def show_sensitivity(found: Sensitivity, title: str) -> None:
-    """Print one row per parameter, the most important first, and what to measure first."""
+    """Print one row per constant that counts, the most important first, and what to measure first."""
     made = table(
-        "parameter", "interval", "correct", "bits", "correct low–high", numbers=("correct", "bits", "correct low–high")
+        "constant",
+        "95 % of draws",
+        "correct",
+        "bits",
+        "correct low–high",
+        numbers=("correct", "bits", "correct low–high"),
     )
-    for effect in found.effects:
-        parameter = effect.parameter
-        unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-        low, high = effect.proportion_correct_ends
+    for effect in found.effects[:SHOWN]:
+        unit = "" if effect.unit in ("", "1") else f" {effect.unit}"
         made.add_row(
-            parameter.name,
-            f"{parameter.low:.3g}–{parameter.high:.3g}{unit}",
+            effect.constant,
+            f"{effect.low:.3g} to {effect.high:.3g}{unit}",
             percent(effect.proportion_correct),
             percent(effect.information_bits),
-            f"{percent(low)} – {percent(high)}",
+            f"{percent(effect.at_low)} – {percent(effect.at_high)}",
         )
     heading = [title, ""] if title else []
     show(*heading, made, "", *sentences(found))
 
 
-def how(name: str) -> str:
-    """Describe how a lab would measure a parameter; nothing where the name says it.
-
-    >>> how("memory noise (max)")
-    ': let people name a few icons from memory and count'
-    """
-    found = HOW.get(name.split(" (")[0])
-    return f": {found}" if found else ""
-
-
 def sentences(found: Sensitivity) -> list[str]:
     """Return what to measure first, what the numbers are, and what they were computed from."""
-    kind = (
-        "Shares of the variance of the proportion correct and of the bits, interactions included (total Sobol indices)"
-    )
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
     crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
-    lead = "Measure these first; all others influence the prediction less:"
+    low, high = found.proportion_correct_interval
+    lead = "Measure first, by the share of the variance of the proportion correct that would go:"
     return [
-        lead if found.first else "None of these parameters influences the prediction.",
-        *(f"  - {name}{how(name)}" for name in found.first),
+        lead if found.first else "No measurement would narrow the prediction noticeably.",
+        *(f"  - {percent(each.proportion_correct)}: {each.measurement}" for each in found.first),
         "",
-        f"{kind}; beside them the proportion correct at the low and at the high end of each interval. "
-        f"{found.runs} predictions for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm), "
-        f"{percent(found.proportion_correct)} correct and {found.information_bits:.2f} bits with all at their values.",
+        "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that shares "
+        "need not add up to 100 %. Beside them the proportion correct expected at both ends of the interval. "
+        f"{found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm): "
+        f"{percent(low)}–{percent(high)} correct, median {percent(found.proportion_correct)}.",
     ]

@@ -13,12 +13,11 @@ import typer
 from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
 from .cues import only, read_set, warn_of_site
-from .options import Changes, IconName, OneFile, RigName, Tail, check_tail
+from .options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-METHODS = ("sobol",)
 VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
 MOST_STEPS = 100_000
 Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
@@ -153,11 +152,10 @@ def sensitivity_command(
     file: OneFile,
     people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people in each run.")] = 24,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
-    method: Annotated[
-        str,
-        typer.Option("--method", metavar="|".join(METHODS), help="Total Sobol indices: shares of the variance."),
-    ] = "sobol",
-    samples: Annotated[int, typer.Option("--samples", metavar="N", help="Base samples, a power of 2.")] = 64,
+    draws: Annotated[
+        int, typer.Option("--draws", metavar="N", help="Draws of the posterior; more take longer and scatter less.")
+    ] = 256,
+    observer: ObserverFile = None,
     norm: Annotated[
         str, typer.Option("--norm", metavar="NAME", help="episodes, naming, max, rms or integral.")
     ] = "episodes",
@@ -175,19 +173,18 @@ def sensitivity_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Find which uncertain parameters of model, contact and skin change the prediction most: what to measure first."""
+    """Find which constants of observer, contact and skin carry the doubt about a set, and what to measure first.
+
+    The shares are read from draws of the posterior, with which the set is predicted as a new laboratory would see it.
+    """
     check_changes(changes or [])
-    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--samples", samples, 2, 65_536))
+    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--draws", draws, 64, 100_000))
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
-    if method not in METHODS:
-        raise usage(f"{method!r} is not one of {', '.join(METHODS)}", "--method")
-    if samples & (samples - 1):
-        raise usage(f"{samples} is not a power of 2, which sobol needs, such as 64", "--samples")
     from .sensitivity import Request, sensitivity_file
 
-    request = Request(people=people, seed=seed, samples=samples, norm=norm)
+    request = Request(people=people, seed=seed, draws=draws, norm=norm, observer=observer)
     sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)
 
 

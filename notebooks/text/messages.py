@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import typer
@@ -14,6 +16,7 @@ from thermicon.icons.model.cleaning import clean, clean_line
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.perception.observer.observer_model import ObserverModel
 
 Progress = Callable[[int, int], None]
 
@@ -88,6 +91,26 @@ def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
     for warning in rig.warnings:
         note(f"warning: {warning}")
     return rig
+
+
+def load_observer(file: Path | None) -> ObserverModel:
+    """Load the shipped observer, or that of ``--observer``, of which notes on stderr say what it cannot give."""
+    from thermicon.perception.observer.observer_model import ObserverModel
+
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always")
+        model = ObserverModel.load(file)
+    for warning in raised:
+        note(f"warning: {warning.message}")
+    if model.posterior is None:
+        note(f"note: {model.name} has no posterior draws, so that there are no intervals for a new laboratory")
+    return model
+
+
+def check_draws(model: ObserverModel, draws: int, option: str) -> None:
+    """Fail where more draws are asked for than the observer has."""
+    if model.posterior is not None and draws > len(model.posterior):
+        fail(f"{option} {draws}: the {model.name} posterior has {len(model.posterior)} draws: ask for as many or fewer")
 
 
 @contextlib.contextmanager

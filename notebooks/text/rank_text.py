@@ -105,6 +105,8 @@ def number_lines(result: dict[str, Any]) -> list[str]:
     whole = result["set"]
     (low, high), bits = whole["proportion_correct_interval"], whole["information_bits"]
     lines = [f"Set: {percent(whole['proportion_correct'])} correct" + _range(result, percent_span(low, high))]
+    if result["observer"] != "shipped":
+        lines.append(f"     predicted with the observer of {result['observer']}")
     if whole["proportion_correct_interval_new_laboratory"]:
         low, high = whole["proportion_correct_interval_new_laboratory"]
         people = whole["new_laboratory_people"]

@@ -127,13 +127,14 @@ def prepare_task(
     end_s: float,
     counted: Sequence[int] = (),
     tracking: str | None = None,
+    observer: Observer | None = None,
 ) -> tuple[Task, CarryOver | None]:
     """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
     asked = task.asked()
     if asked.plain:
         return asked, None
     played = tuple(counted or range(len(icons)))
-    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s, tracking=tracking)
+    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s, observer, tracking=tracking)
     return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
 
 

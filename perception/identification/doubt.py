@@ -13,7 +13,7 @@ from statistics import NormalDist
 import numpy as np
 
 from ..arrays import Array
-from .laboratory import LaboratoryDraws
+from .laboratory_draws import LaboratoryDraws
 
 TERMS = 2
 LEAST_SHARE = 0.02
@@ -52,20 +52,30 @@ def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
 
 def explained(values: Array, predicted: Array) -> Array:
     """Adjusted shares (constants,) of the variance of `predicted` (draws,) that each column of `values` explains."""
-    draws, constants = values.shape
+    return np.array([explained_together(values[:, [place]], predicted) for place in range(values.shape[1])])
+
+
+def explained_together(values: Array, predicted: Array) -> float:
+    """Adjusted share of the variance of `predicted` (draws,) that some columns of `values` explain together.
+
+    Parabolas in the normal scores of each; interactions are left out.
+    """
+    varied = [column for column in values.T if np.ptp(column) > 0.0]
+    draws, terms = predicted.size, TERMS * len(varied)
     off = predicted - predicted.mean()
     total = float(off @ off)
-    shares = np.zeros(constants)
-    if total <= 0.0 or draws <= TERMS + 2:
-        return shares
-    normal = np.array([NormalDist().inv_cdf((k + 0.5) / draws) for k in range(draws)])
-    for place in range(constants):
-        if np.ptp(values[:, place]) == 0.0:
-            continue
-        scores = np.empty(draws)
-        scores[np.argsort(values[:, place], kind="stable")] = normal
-        design = np.stack([scores, scores**2 - (scores**2).mean()], axis=1)
-        fitted = design @ np.linalg.lstsq(design, off, rcond=None)[0]
-        missed = float((off - fitted) @ (off - fitted)) / total
-        shares[place] = max(1.0 - missed * (draws - 1) / (draws - TERMS - 1), 0.0)
-    return shares
+    if total <= 0.0 or not varied or draws <= terms + 2:
+        return 0.0
+    scores = np.stack([scores_of(column) for column in varied], axis=1)
+    design = np.hstack([scores, scores**2 - (scores**2).mean(axis=0)])
+    left = off - design @ np.linalg.lstsq(design, off, rcond=None)[0]
+    return max(1.0 - float(left @ left) / total * (draws - 1) / (draws - terms - 1), 0.0)
+
+
+def scores_of(values: Array) -> Array:
+    """Normal scores (draws,) of the ranks of some values."""
+    scores = np.empty(values.size)
+    scores[np.argsort(values, kind="stable")] = [
+        NormalDist().inv_cdf((k + 0.5) / values.size) for k in range(values.size)
+    ]
+    return scores

@@ -1,39 +1,26 @@
 """What a new laboratory will find: a prediction repeated with draws from the posterior, people and laboratory included.
 
-Every draw is one consistent set of constants. It brings its own spread between people, an offset of the laboratory
-drawn from the spread between laboratories, and memory drawn from its intervals, which no posterior knows of; the same
-few people are invited in a random sample of their number. Depths of receptors stay those of the rig.
+Each draw invites a random sample of the same few people. Draws are laid about the prediction for many people: what a
+draw adds is its difference from the nominal observer with the same people and noise.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernels.parallel import in_order
 from ..observer.channels import Norm
-from ..observer.draws import PosteriorDraws
-from ..observer.observer import Observer
-from ..observer.people import People, draw_people
-from ..sensation.memory_parameters import memory_parameters, with_memory
-from ..sensation.parameters import latin
-from .measures import information_bits, proportion_correct
-from .population import ReceptorTemperatures, identify, respond
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People
+from .laboratory_draws import MANY, LaboratoryDraws, laboratory_draws, people_for_intervals, scored
+from .population import ReceptorTemperatures
 from .task import USUAL, Task
 
-PEOPLE, FEWEST, PRESENTED = 24, 12, 768
-"""Number of people: 24, of larger sets fewer, but at least 12, so that about 768 icons are judged."""
-EVERY = 8
-"""Draws are judged at 12.5 Hz: this changes the scores of shipped icons by less than 0.001, and the change cancels."""
-MANY = 32
-"""Larger sets are judged at half of these instants: this changes the ends of an interval by less than 0.002."""
-SAMPLES, LEAST, NAMED = 512, 128, 8192
-"""Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 DRAWS = 128
 """The ends of the interval scatter by one to two points of per cent correct from seed to seed."""
 COVER = (2.5, 97.5)
@@ -42,30 +29,12 @@ Interval = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class LaboratoryDraws:
-    """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
-
-    `values` (draws, constants) belong to `names`; `proportion_correct` and `information_bits` (draws,) are means over
-    the people of a draw, `detected` (draws, icons), `d_prime` (draws, icons, icons) their medians.
-    """
-
-    names: tuple[str, ...]
-    values: Array
-    proportion_correct: Array
-    information_bits: Array
-    detected: Array
-    d_prime: Array
-
-    def __len__(self) -> int:
-        return int(self.proportion_correct.size)
-
-
-@dataclass(frozen=True, slots=True)
 class NewLaboratory:
     """95 % intervals of what a new laboratory will find: people, constants and laboratory together.
 
     Proportion correct and bits of the set, as the mean over `people` invited, detected share of every icon in file
-    order, and d′ of every pair (icons, icons), lower and upper.
+    order, its onset in the draws in which it is felt (None where it is not felt in most), and d′ of every pair (icons,
+    icons), lower and upper.
     """
 
     draws: int
@@ -74,12 +43,20 @@ class NewLaboratory:
     proportion_correct: Interval
     information_bits: Interval
     detected: tuple[Interval, ...]
+    onset_s: tuple[Interval | None, ...]
     d_prime: tuple[Array, Array]
     each: LaboratoryDraws
 
     def pair(self, i: int, j: int) -> Interval:
         """Interval of the d′ of one pair."""
         return float(self.d_prime[0][i, j]), float(self.d_prime[1][i, j])
+
+    def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
+        """The intervals of every icon, by the keys of `rank --json`."""
+        return [
+            {"name": name, "detected_interval_new_laboratory": share, "onset_interval_new_laboratory_s": onset}
+            for name, share, onset in zip(names, self.detected, self.onset_s, strict=True)
+        ]
 
     def __repr__(self) -> str:
         (low, high), (least, most) = self.proportion_correct, self.information_bits
@@ -97,6 +74,7 @@ class Nominal:
     information_bits: float
     detected: Array
     d_prime: Array
+    onset_s: Array
 
 
 def new_laboratory(
@@ -105,7 +83,7 @@ def new_laboratory(
     predicted: Nominal,
     norm: Norm,
     *,
-    posterior: PosteriorDraws | None = None,
+    model: ObserverModel | None = None,
     draws: int = DRAWS,
     seed: int = 0,
     task: Task = USUAL,
@@ -123,8 +101,8 @@ def new_laboratory(
         The prediction; each draw adds what it changes against the nominal observer on the same people and noise.
     norm, task, seed
         As in `rank`.
-    posterior
-        Draws of the constants (None: the shipped ones).
+    model
+        The observer with its draws of the constants (None: the shipped one).
     draws
         How many of them, evenly spaced.
     step
@@ -133,77 +111,48 @@ def new_laboratory(
     Raises
     ------
     ValueError
-        For fewer than two draws, which have no interval.
+        For fewer than two draws, which have no interval, and for an observer without draws.
 
     """
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the constants, not {draws}")
-    held = PosteriorDraws.load() if posterior is None else posterior
+    own = ObserverModel.load() if model is None else model
+    if own.posterior is None:
+        raise ValueError(f"{own.name} has no posterior draws, from which an interval for a new laboratory is made")
     icons = predicted.detected.size
     few = thin.thinned(people_for_intervals(icons), 1 if icons <= MANY else 2)
     persons = crowd.part(0, len(few.cold_C))
-    samples = min(SAMPLES, max(LEAST, NAMED // icons))
-    chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
-    offsets, memory = held.new_laboratory(seed), memory_parameters(norm)
-    shares = latin(len(memory), draws, seed)
     chance = np.random.default_rng(np.random.SeedSequence([seed, 9]))
     invited = chance.integers(len(persons), size=(draws, len(persons)))
-    # Means over all the people of the nominal observer: their sample belongs to the draw.
-    centre = _scored(few, persons, Observer.load(), norm, seed, samples, task, np.arange(len(persons)))
-
-    def one(place: int) -> tuple[Array, ...]:
-        k = int(chosen[place])
-        moved = {p.name: p.at(float(share)) for p, share in zip(memory, shares[place], strict=True)}
-        observer = with_memory(held.observer(k), moved, norm)
-        people = draw_people(len(persons), seed, spreads=held.draw(k)).less_sensitive(*(-offsets[k]))
-        return _scored(few, people, observer, norm, seed, samples, task, invited[place])
-
-    found = []
-    for scores in in_order(one, list(range(draws))):
-        found.append(scores)
-        if step is not None:
-            step()
-    about = (predicted.proportion_correct, predicted.information_bits, predicted.detected, predicted.d_prime)
-    most = (1.0, math.log2(icons), 1.0, math.inf)
-    correct, bits, detected, apart = (
-        np.clip(np.stack([scores[k] for scores in found]) + about[k] - centre[k], 0.0, most[k]) for k in range(4)
+    each = laboratory_draws(
+        lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, invited=invited, step=step
     )
-    names = (*held.names, *(parameter.name for parameter in memory), "laboratory, cold", "laboratory, warm")
-    moved = np.array([[p.at(float(s)) for p, s in zip(memory, row, strict=True)] for row in shares]).reshape(draws, -1)
-    values = np.hstack([held.draws[chosen], moved, offsets[chosen]])
-    each = LaboratoryDraws(names, values, correct, bits, detected, apart)
+    # Means over all the people of the nominal observer: their sample belongs to the draw.
+    centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
+    about: tuple[float | Array, ...] = (
+        predicted.proportion_correct,
+        predicted.information_bits,
+        predicted.detected,
+        predicted.d_prime,
+        predicted.onset_s,
+    )
+    most = (1.0, math.log2(icons), 1.0, math.inf, math.inf)
+    raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s)
+    correct, bits, detected, apart, onset = (
+        np.clip(values + (nominal - own_values), 0.0, top)
+        for values, nominal, own_values, top in zip(raw, about, centre, most, strict=True)
+    )
     low, high = np.percentile(apart, COVER, axis=0)
     return NewLaboratory(
         draws=draws,
         people=len(persons),
-        posterior=held.header.status,
+        posterior=own.posterior.header.status,
         proportion_correct=_ends(correct),
         information_bits=_ends(bits),
         detected=tuple(_ends(detected[:, icon]) for icon in range(icons)),
+        onset_s=tuple(_ends_of_felt(onset[:, icon]) for icon in range(icons)),
         d_prime=(low, high),
-        each=each,
-    )
-
-
-def _scored(
-    few: ReceptorTemperatures,
-    people: People,
-    observer: Observer,
-    norm: Norm,
-    seed: int,
-    samples: int,
-    task: Task,
-    invited: NDArray[np.int64],
-) -> tuple[Array, ...]:
-    """Proportion correct, bits, detected (icons,) and d′ (icons, icons) of those who are invited."""
-    felt = respond(few, people, observer, [norm])
-    d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
-    correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
-    return (
-        correct[invited].mean(),
-        bits[invited].mean(),
-        felt.probability[invited].mean(axis=0),
-        np.median(d_prime[invited], axis=0),
+        each=LaboratoryDraws(each.names, each.values, correct, bits, detected, apart, onset),
     )
 
 
@@ -212,10 +161,7 @@ def _ends(values: Array) -> Interval:
     return float(low), float(high)
 
 
-def people_for_intervals(icons: int) -> int:
-    """Largest number of people who judge a set of this size with every draw.
-
-    >>> people_for_intervals(6), people_for_intervals(64)
-    (24, 12)
-    """
-    return min(PEOPLE, max(FEWEST, PRESENTED // icons))
+def _ends_of_felt(onset_s: Array) -> Interval | None:
+    """Interval over the draws in which an icon is felt; None where these are not the most."""
+    felt = onset_s[np.isfinite(onset_s)]
+    return _ends(felt) if 2 * felt.size > onset_s.size else None

@@ -1,4 +1,4 @@
-"""Figure of a sensitivity study: two bars for each parameter, the most important at the top."""
+"""Figure of a sensitivity study: two bars for each constant, the most important at the top."""
 
 from __future__ import annotations
 
@@ -6,25 +6,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.icons.pictures.draw import COOL, WARM
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..sensitivity.sensitivity import Sensitivity
 
 HEIGHT = 0.38
+MOST = 16
+"""Further constants explain less than chance does."""
 
 
 def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
-    """Draw the total Sobol indices of every parameter, proportion correct above bits."""
-    axes = _axes(len(found.effects)) if ax is None else ax
-    names = [effect.parameter.name for effect in found.effects]
+    """Draw the shares of the constants that count most, proportion correct above bits."""
+    shown = found.effects[:MOST]
+    axes = _axes(len(shown)) if ax is None else ax
+    names = [effect.constant for effect in shown]
     places = np.arange(len(names))
-    correct = np.array([effect.proportion_correct for effect in found.effects])
-    bits = np.array([effect.information_bits for effect in found.effects])
-    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color=COOL, label="proportion correct")
-    axes.barh(places + HEIGHT / 2, bits, HEIGHT, color=WARM, label="bits")
+    correct = np.array([effect.proportion_correct for effect in shown])
+    bits = np.array([effect.information_bits for effect in shown])
+    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color="0.3", label="proportion correct")
+    axes.barh(places + HEIGHT / 2, bits, HEIGHT, color="0.68", label="bits")
     axes.set_yticks(places, names)
     axes.invert_yaxis()
     axes.set_xlim(left=0.0)
@@ -32,8 +33,8 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel("share of the variance (total Sobol index)")
-    axes.set_title("Parameters to measure first", loc="left")
+    axes.set_xlabel("share of the variance between draws of the posterior")
+    axes.set_title("Constants that carry the doubt", loc="left")
     axes.legend(frameon=False, loc="lower right")
     return axes
 

@@ -20,13 +20,14 @@ from thermicon.circuit.program import code_digest as digest_of
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised, sampling_error
-from ..identification.laboratory import EVERY, PEOPLE
+from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
-from ..observer.observer import NORMS, Norm, Observer
-from ..observer.people import People, draw_people
+from ..observer.observer import NORMS, Norm
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
 from .batch_store import BatchStore
@@ -76,7 +77,10 @@ class BatchResult:
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, by a norm."""
+    """Icons on a rig, simulated to one common end (s), for people drawn from a seed, by a norm.
+
+    `observer` is another than the shipped one. Its draws of the posterior do not travel with the job.
+    """
 
     icons: tuple[Icon, ...]
     rig: Rig
@@ -87,6 +91,7 @@ class Job:
     tracking: str | None
     norm: Norm
     task: Task = USUAL
+    observer: ObserverModel | None = None
 
     @property
     def at_once(self) -> int:
@@ -120,6 +125,7 @@ class Job:
             str(self.seed),
         ]
         parts += [str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
+        parts += [] if self.observer is None else [self.observer.key]
         for icon in self.icons:
             corners = icon.corners(None if icon.context.control != "current" else 0.0)
             parts += [icon.name, repr(icon.context), repr(corners.time_s), repr(corners.value), str(icon)]
@@ -131,7 +137,8 @@ def run(job: Job, number: int) -> BatchResult:
     from thermicon.circuit import simulate_many
 
     start, stop = job.span(number)
-    crowd = _crowd(job.people, job.seed).part(start, stop)
+    model = ObserverModel.of(job.observer)
+    crowd = _crowd(job.people, job.seed, model).part(start, stop)
     batch = simulate_many(
         job.icons,
         crowd.rigs(job.rig),
@@ -142,7 +149,7 @@ def run(job: Job, number: int) -> BatchResult:
         probes=PROBES,
     )
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
-    observer = Observer.load()
+    observer = model.nominal
     felt = respond(played, crowd, observer, NORMS, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     others = [
@@ -346,8 +353,8 @@ def _added(parts: Sequence[Array]) -> Array:
 
 
 @lru_cache(maxsize=2)
-def _crowd(people: int, seed: int) -> People:
-    return draw_people(people, seed)
+def _crowd(people: int, seed: int, model: ObserverModel) -> People:
+    return model.people(people, seed)
 
 
 def code_digest() -> str:

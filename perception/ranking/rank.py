@@ -25,8 +25,9 @@ from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import DATA, Norm, Observer, check_norm
-from ..observer.people import People, draw_people
+from ..observer.observer import Norm, Observer, check_norm
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People
 from ..selection.choose import Choice, choose
 from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, objection
@@ -62,6 +63,7 @@ def rank(
     choosing: Selection | None = None,
     edits: str = "none",
     task: Task = USUAL,
+    observer: ObserverModel | Path | str | None = None,
     workers: int | None = None,
     cluster: str | None = None,
     keep: Path | None = None,
@@ -97,6 +99,9 @@ def rank(
         Find the cheapest edit of the `worst` pair, of `all` pairs that are not distinguishable, or of `none`.
     task
         The identification task: memory noise that follows the range of the set, a short gap, favoured names.
+    observer
+        Another posterior or observer in place of the shipped one: `ObserverModel`, or its file. One without draws
+        gives no intervals for a new laboratory.
     workers, cluster
         Threads (None: one per core), or the address of the scheduler of a dask cluster.
     keep
@@ -138,23 +143,28 @@ def rank(
         raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
     draws = parameters if by == "model" else 0
     execution = Execution(workers, cluster, keep)
-    observer = Observer.load()
-    crowd = draw_people(people, seed)
+    model = ObserverModel.of(observer)
+    nominal, crowd = model.nominal, model.people(people, seed)
+    if model.posterior is None:
+        draws = 0
+    elif draws > len(model.posterior):
+        raise ValueError(f"{draws} draws of the parameters were asked for; {model.name} has {len(model.posterior)}")
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
-    task, left = prepare_task(task, members, rig, end, fine, tracking)
-    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task)
+    task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
+    alone = None if not model.key else replace(model, posterior=None)
+    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, alone)
     report = _steps(progress, 2 + job.batches + draws + (choosing is not None))
-    percepts = [perceive(trace, observer) for trace in traces]
+    percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
     all_ = collect_batches(job, execution, report)
-    made = _assemble(members, traces, percepts, all_, chosen, observer)
+    made = _assemble(members, traces, percepts, all_, chosen, nominal)
     counted = _playable(made)
     worst = _worst(counted) if by == "model" else worst_by_rules(counted)
-    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task)
+    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task, nominal)
     picked = None
     if choosing is not None:
         picked = choose(
@@ -169,15 +179,20 @@ def rank(
             norm=chosen,
             task=task,
             left=left,
+            observer=nominal,
         )
         report()
     elsewhere = None
     if draws and picked is None:
-        whole = Nominal(float(all_.correct.mean()), float(all_.bits.mean()), all_.detected, all_.middle)
-        elsewhere = new_laboratory(all_.thin, crowd, whole, chosen, draws=draws, seed=seed, task=task, step=report)
+        whole = Nominal(
+            float(all_.correct.mean()), float(all_.bits.mean()), all_.detected, all_.middle, all_.detection.onset_s
+        )
+        elsewhere = new_laboratory(
+            all_.thin, crowd, whole, chosen, model=model, draws=draws, seed=seed, task=task, step=report
+        )
     elif draws and picked is not None:
         picked = _with_interval(
-            picked, [icon.name for icon in members], all_, crowd, chosen, draws, seed, (task, left), report
+            picked, [icon.name for icon in members], all_, crowd, chosen, model, draws, seed, (task, left), report
         )
     ranking = Ranking(
         version=own_version(),
@@ -188,7 +203,10 @@ def rank(
         tracking=_tracking(members, tracking),
         by=by,
         norm=chosen,
-        content_hash=_hash(icons, rig),
+        content_hash=_hash(icons, rig, model),
+        observer=model.name,
+        rig_text=rig.document,
+        persons=tuple(all_.correct.tolist()),
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,
@@ -300,6 +318,7 @@ def _with_interval(
     all_: PooledResult,
     crowd: People,
     norm: Norm,
+    model: ObserverModel,
     draws: int,
     seed: int,
     asked: tuple[Task, CarryOver | None],
@@ -309,9 +328,19 @@ def _with_interval(
     places = [names.index(name) for name in picked.icons]
     own = picked.at_own_range
     middle = all_.middle[np.ix_(places, places)]
-    alone = Nominal(own.proportion_correct, own.information_bits, all_.detected[places], middle)
+    alone = Nominal(
+        own.proportion_correct, own.information_bits, all_.detected[places], middle, all_.detection.onset_s[places]
+    )
     found = new_laboratory(
-        all_.thin.of(places), crowd, alone, norm, draws=draws, seed=seed, task=task_among(*asked, places), step=step
+        all_.thin.of(places),
+        crowd,
+        alone,
+        norm,
+        model=model,
+        draws=draws,
+        seed=seed,
+        task=task_among(*asked, places),
+        step=step,
     )
     return replace(picked, new_laboratory=found)
 
@@ -347,8 +376,7 @@ def _steps(progress: Progress | None, total: int) -> Callable[[], None]:
     return step
 
 
-def _hash(icons: IconSet, rig: Rig) -> str:
-    """Hash of everything that was ranked: the icons' canonical text, the rig and the observer's numbers."""
-    observer = (DATA / "observer.toml").read_text(encoding="utf-8")
-    held = "\0".join([str(icons), rig.document, observer])
+def _hash(icons: IconSet, rig: Rig, model: ObserverModel) -> str:
+    """Hash of everything that was ranked: the icons' canonical text, the rig and the observer's file."""
+    held = "\0".join([str(icons), rig.document, model.digest])
     return hashlib.sha256(held.encode("utf-8")).hexdigest()

@@ -20,16 +20,23 @@ if TYPE_CHECKING:
     from .ranking import IconScore, PairScore, Ranking
 
 
+NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_laboratory_s")
+
+
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
     model = ranking.by == "model"
     asked = ranking.new_laboratory if model else None
-    detected: tuple[Interval | None, ...] = asked.detected if asked else (None,) * len(ranking.icons)
+    elsewhere: list[dict[str, Any]] = (
+        asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
+    )
     made: dict[str, Any] = plain(
         {
             "thermicon": ranking.version,
             "rig": ranking.rig,
             "rig_changes": list(ranking.rig_changes),
+            "rig_text": ranking.rig_text,
+            "observer": ranking.observer,
             "seed": ranking.seed,
             "people": ranking.people,
             "tracking": ranking.tracking,
@@ -38,8 +45,8 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "content_hash": ranking.content_hash,
             "task": ranking.task.to_dict(),
             "icons": [
-                {**_icon(icon, model, d), "carry_over": _carried(ranking, place)}
-                for place, (icon, d) in enumerate(zip(ranking.icons, detected, strict=True))
+                {**_icon(icon, model), **intervals, "carry_over": _carried(ranking, place)}
+                for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],
             "pairs": [_pair(pair, model, _elsewhere(ranking, pair, asked)) for pair in ranking.pairs],
             "confusion": {
@@ -49,6 +56,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
                 "person_standard_error": ranking.person_standard_error if model else None,
             },
             "set": _set(ranking, model, asked),
+            "persons": {"proportion_correct": list(ranking.persons) if model else None},
             "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
             "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
         }
@@ -126,7 +134,7 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
     }
 
 
-def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, Any]:
+def _icon(icon: IconScore, model: bool) -> dict[str, Any]:
     def both(values: tuple[float | None, float | None]) -> dict[str, float | None]:
         return {"cold_receptor": values[0], "warm_receptor": values[1]}
 
@@ -147,7 +155,6 @@ def _icon(icon: IconScore, model: bool, detected: Interval | None) -> dict[str, 
         "rules_score": icon.rules_score,
         "rules_margin": icon.rules_margin,
         "outside_data": list(icon.outside_data),
-        "detected_interval_new_laboratory": detected,
     }
 
 

@@ -17,6 +17,7 @@ from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
+from ..observer.observer_model import SHIPPED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -191,6 +192,12 @@ class Ranking:
         The identification task.
     carry_over
         What each icon leaves behind for the next where there is a gap; None: nothing.
+    observer
+        Name of the observer's file, or `shipped`.
+    rig_text
+        The whole rig file as used.
+    persons
+        Proportion correct of every virtual person, 0–1.
 
     Raises
     ------
@@ -233,6 +240,9 @@ class Ranking:
     spread: PersonSpread | None = None
     task: Task = USUAL
     carry_over: CarryOver | None = None
+    observer: str = SHIPPED
+    rig_text: str = ""
+    persons: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         own = np.array(self.confusion, dtype=np.float64)

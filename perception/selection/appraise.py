@@ -67,6 +67,7 @@ def appraise(
     norm: Norm = USUAL_NORM,
     samples: int = SAMPLES,
     task: Task = USUAL,
+    observer: Observer | None = None,
 ) -> Appraisal:
     """Predict how well people identify these icons, with the same people and noise as `rank`.
 
@@ -81,7 +82,7 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("at least two icons are needed to be distinguished")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task)
+    d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task, observer=observer)
     return appraise_dprime([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
 
 
@@ -122,13 +123,18 @@ def population_dprime(
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
     task: Task = USUAL,
+    observer: Observer | None = None,
 ) -> tuple[Array, Array]:
     """Pairwise d′ (people, icons, icons) from memory and durations (s) of the icons.
 
-    `rigs` are those of the people, when they are not the rig with each person's contact and skin.
+    `rigs` are those of the people, when they are not the rig with each person's contact and skin; `observer` is the
+    nominal one (None: the shipped one).
     """
-    felt, durations = population_response(icons, rig, crowd, tracking, norm, rigs=rigs, rate_Hz=rate_Hz, end_s=end_s)
-    return memory_dprime(felt, norm, crowd.memory, Observer.load(), task), durations
+    nominal = Observer.load() if observer is None else observer
+    felt, durations = population_response(
+        icons, rig, crowd, tracking, norm, rigs=rigs, rate_Hz=rate_Hz, end_s=end_s, observer=nominal
+    )
+    return memory_dprime(felt, norm, crowd.memory, nominal, task), durations
 
 
 def population_response(
@@ -141,14 +147,15 @@ def population_response(
     rigs: Sequence[Rig] | None = None,
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
+    observer: Observer | None = None,
 ) -> tuple[PopulationResponse, Array]:
     """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
     from thermicon.circuit import duration_s, simulate_many
 
-    observer = Observer.load()
+    nominal = Observer.load() if observer is None else observer
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
-    return respond(played, crowd, observer, [norm], detection=False), durations
+    return respond(played, crowd, nominal, [norm], detection=False), durations

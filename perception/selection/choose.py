@@ -18,7 +18,7 @@ from ..identification.carry_over import CarryOver, task_among
 from ..identification.laboratory import NewLaboratory
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm
+from ..observer.observer import Norm, Observer
 from ..observer.people import People
 from .appraise import Appraisal, appraise
 from .max_min_subset import Limits, UndecidedError, max_min_subset
@@ -133,8 +133,15 @@ class Choice:
                 if elsewhere is None
                 else elsewhere.proportion_correct,
                 "information_bits_interval_new_laboratory": None if elsewhere is None else elsewhere.information_bits,
+                "d_prime_interval_new_laboratory": None if elsewhere is None else elsewhere.pair(*self._nearest),
+                "icons": [] if elsewhere is None else elsewhere.rows(self.icons),
             },
         }
+
+    @property
+    def _nearest(self) -> tuple[int, int]:
+        a, b = (self.icons.index(name) for name in self.at_own_range.worst_pair)
+        return a, b
 
     def __repr__(self) -> str:
         how = "proven best" if self.optimal else f"none exceeds {self.bound:.3g}"
@@ -154,6 +161,7 @@ def choose(
     norm: Norm = USUAL_NORM,
     task: Task = USUAL,
     left: CarryOver | None = None,
+    observer: Observer | None = None,
 ) -> Choice:
     """Choose among icons of which the d′ of every person and the nominal traces are known.
 
@@ -181,6 +189,8 @@ def choose(
         The task that `d_prime` was found in.
     left
         What icons leave behind for the next there; None: nothing.
+    observer
+        The nominal observer; None: the shipped one.
 
     Returns
     -------
@@ -244,6 +254,7 @@ def choose(
             tracking=tracking,
             norm=norm,
             task=task_among(task, left, chosen),
+            observer=observer,
         ),
     )
 

@@ -19,7 +19,7 @@ from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm
+from ..observer.observer import Norm, Observer
 from ..observer.people import People, draw_people
 from .appraise import population_dprime, population_response
 from .edit_result import Edit, NoEdit
@@ -75,6 +75,7 @@ def cheapest_edit(
     norm: Norm = USUAL_NORM,
     before: Array | None = None,
     task: Task = USUAL,
+    observer: Observer | None = None,
 ) -> Edit | NoEdit:
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
@@ -95,6 +96,8 @@ def cheapest_edit(
         What every person gets, and how a difference over time is counted, as in `rank`.
     before, task
         Median d′ of all pairs (icons, icons), where it is known, and the task it was found in.
+    observer
+        The nominal observer; None: the shipped one.
 
     Returns
     -------
@@ -122,20 +125,29 @@ def cheapest_edit(
     for name in (a, b):
         if name not in names:
             raise KeyError(f"no icon is called {name!r}; there are {', '.join(names[:20])}{' …' if names[20:] else ''}")
-    search = _Search(list(icons), rig, (names.index(a), names.index(b)), wanted, norm)
+    search = _Search(list(icons), rig, (names.index(a), names.index(b)), wanted, norm, observer)
     crowd = draw_people(people, seed) if isinstance(people, int) else people
     return search.run(crowd, tracking, before, task)
 
 
 class _Search:
-    def __init__(self, icons: list[Icon], rig: Rig, pair: tuple[int, int], wanted: float, norm: Norm) -> None:
+    def __init__(
+        self,
+        icons: list[Icon],
+        rig: Rig,
+        pair: tuple[int, int],
+        wanted: float,
+        norm: Norm,
+        observer: Observer | None,
+    ) -> None:
         from thermicon.circuit import duration_s
 
         self.icons, self.rig, self.pair, self.wanted, self.norm = icons, rig, pair, wanted, norm
+        self.observer = Observer.load() if observer is None else observer
         self.durations = [duration_s(icon, rig) for icon in icons]
         self.end_s = end_of(self.durations)
-        self.kept = sense(icons, rig, self.end_s)
-        self.now = dprimes(self.kept, self.kept, norm)
+        self.kept = sense(icons, rig, self.end_s, self.observer)
+        self.now = dprimes(self.kept, self.kept, norm, self.observer)
         self.target = wanted
         self.largest = LARGEST
         self.closest = 0.0
@@ -148,12 +160,24 @@ class _Search:
         rigs = crowd.rigs(self.rig)
 
         def medians(some: Sequence[Icon], end_s: float, asked: Task = USUAL) -> Array:
-            found = population_dprime(some, self.rig, crowd, tracking, self.norm, rigs=rigs, end_s=end_s, task=asked)[0]
+            found = population_dprime(
+                some,
+                self.rig,
+                crowd,
+                tracking,
+                self.norm,
+                rigs=rigs,
+                end_s=end_s,
+                task=asked,
+                observer=self.observer,
+            )[0]
             middle: Array = np.median(found, axis=0)
             return middle
 
         def of_set(icons: Sequence[Icon], end_s: float) -> Array:
-            return medians(icons, end_s, prepare_task(task, icons, self.rig, end_s, task.counted, tracking)[0])
+            return medians(
+                icons, end_s, prepare_task(task, icons, self.rig, end_s, task.counted, tracking, self.observer)[0]
+            )
 
         before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:
@@ -194,7 +218,16 @@ class _Search:
     ) -> float:
         """Share of the first people whose number of episodes of the icon changes with the edit."""
         few, both = crowd.part(0, min(len(crowd), MOST_RECOUNTED)), [self.icons[one.place], one.icon]
-        felt, _ = population_response(both, self.rig, few, tracking, rigs=rigs[: len(few)], rate_Hz=25.0, end_s=end_s)
+        felt, _ = population_response(
+            both,
+            self.rig,
+            few,
+            tracking,
+            rigs=rigs[: len(few)],
+            rate_Hz=25.0,
+            end_s=end_s,
+            observer=self.observer,
+        )
         before, after = felt.episodes.counts.T
         return float((before != after).mean())
 
@@ -296,8 +329,8 @@ class _Search:
         if not tried:
             return []
         longest = max(self.durations[one.place] + one.added_s for one in tried)
-        felt: Sensed = sense([one.icon for one in tried], self.rig, max(self.end_s, end_of([longest])))
-        found = dprimes(felt, self.kept, self.norm)
+        felt: Sensed = sense([one.icon for one in tried], self.rig, max(self.end_s, end_of([longest])), self.observer)
+        found = dprimes(felt, self.kept, self.norm, self.observer)
         answers = []
         for at, (one, row) in enumerate(zip(tried, found, strict=True)):
             other = self.pair[1] if one.place == self.pair[0] else self.pair[0]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..observer.observer import Norm, Observer
-from ..observer.people import draw_people
+from ..observer.observer import Norm
+from ..observer.observer_model import ObserverModel
 from .appraise import population_dprime
 from .candidates import Candidate
 from .nominal import dprimes, end_of, sense
@@ -25,16 +25,17 @@ PEOPLE = 24
 class NominalEvaluator:
     """The nominal person; `objections` states why each icon of the last pool cannot be played, or None."""
 
-    def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int) -> None:
+    def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int, model: ObserverModel) -> None:
         self.rig, self.objective, self.norm, self.seed = rig, objective, norm, seed
-        self.lapse = np.array([Observer.load().lapse])
+        self.observer = model.nominal
+        self.lapse = np.array([self.observer.lapse])
         self.objections: tuple[str | None, ...] = ()
 
     def pairwise_dprime(self, icons: Sequence[Icon]) -> Array:
         """d′ (1, icons, icons) from memory."""
-        felt = sense(icons, self.rig, end_of(self._durations(icons).tolist()))
+        felt = sense(icons, self.rig, end_of(self._durations(icons).tolist()), self.observer)
         self.objections = felt.objections()
-        return dprimes(felt, felt, self.norm)[None]
+        return dprimes(felt, felt, self.norm, self.observer)[None]
 
     def namings(self, d_prime: Array, icons: Sequence[Icon]) -> SubsetIdentification:
         """Who is named what, for the objectives that count errors."""
@@ -49,15 +50,26 @@ class NominalEvaluator:
 class PopulationEvaluator(NominalEvaluator):
     """The first 24 people of a seed, who differ in contact, skin and thresholds."""
 
-    def __init__(self, rig: Rig, objective: Objective, norm: Norm, seed: int, tracking: str | None) -> None:
-        super().__init__(rig, objective, norm, seed)
-        self.crowd, self.tracking = draw_people(PEOPLE, seed), tracking
+    def __init__(
+        self, rig: Rig, objective: Objective, norm: Norm, seed: int, model: ObserverModel, tracking: str | None
+    ) -> None:
+        super().__init__(rig, objective, norm, seed, model)
+        self.crowd, self.tracking = model.people(PEOPLE, seed), tracking
         self.rigs, self.lapse = self.crowd.rigs(rig), self.crowd.lapse
 
     def pairwise_dprime(self, icons: Sequence[Icon]) -> Array:
         """d′ (24, icons, icons) from memory; safety and reach are those of the rig."""
-        self.objections = sense(icons, self.rig, end_of(self._durations(icons).tolist())).objections()
-        return population_dprime(icons, self.rig, self.crowd, self.tracking, self.norm, rigs=self.rigs, rate_Hz=25.0)[0]
+        self.objections = sense(icons, self.rig, end_of(self._durations(icons).tolist()), self.observer).objections()
+        return population_dprime(
+            icons,
+            self.rig,
+            self.crowd,
+            self.tracking,
+            self.norm,
+            rigs=self.rigs,
+            rate_Hz=25.0,
+            observer=self.observer,
+        )[0]
 
     def better(self, one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
         """The better of two sets for these people; the first where they are equal."""

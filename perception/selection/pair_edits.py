@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.task import USUAL, Task
-from ..observer.observer import Norm
+from ..observer.observer import Norm, Observer
 from ..observer.people import People
 from .edit import cheapest_edit
 
@@ -31,6 +31,7 @@ def with_edits(
     norm: Norm,
     middle: Array,
     task: Task = USUAL,
+    observer: Observer | None = None,
 ) -> tuple[PairScore, ...]:
     """The pairs, with an edit for the `worst`, for `all` that are not distinguishable, or for `none`.
 
@@ -46,7 +47,16 @@ def with_edits(
         replace(
             pair,
             edit=cheapest_edit(
-                icons, rig, pair.a, pair.b, people=crowd, tracking=tracking, norm=norm, before=middle, task=task
+                icons,
+                rig,
+                pair.a,
+                pair.b,
+                people=crowd,
+                tracking=tracking,
+                norm=norm,
+                before=middle,
+                task=task,
+                observer=observer,
             ),
         )
         if wants_edit(pair)

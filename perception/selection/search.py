@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,7 @@ import numpy as np
 from ..arrays import Array
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
-from ..observer.people import draw_people
+from ..observer.observer_model import ObserverModel
 from .appraise import Appraisal, appraise
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
@@ -91,6 +92,7 @@ def search(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = USUAL_NORM,
+    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> SearchResult:
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.
@@ -115,7 +117,9 @@ def search(
     tracking
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered, as in `rank`.
+    observer
+        An observer or its file, as in `rank`; None: the shipped one.
     progress
         Called with (steps done, steps in all).
 
@@ -142,9 +146,10 @@ def search(
     """
     fixed, free = _asked(icons, count, objective)
     run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)
+    model = ObserverModel.of(observer)
     nominal, few = (
-        NominalEvaluator(rig, objective, named, seed),
-        PopulationEvaluator(rig, objective, named, seed, tracking),
+        NominalEvaluator(rig, objective, named, seed, model),
+        PopulationEvaluator(rig, objective, named, seed, model, tracking),
     )
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
@@ -157,9 +162,12 @@ def search(
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
     best = run.improve(few.better(start, held), few, max(1, rounds // PER_ROUND), REFINING, rng, REFINED, tell)
-    crowd = draw_people(people, seed)
+    crowd = model.people(people, seed)
     finalists = [[gene.icon for gene in genes] for genes in (start, best)]
-    before, after = (appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named) for one in finalists)
+    before, after = (
+        appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named, observer=model.nominal)
+        for one in finalists
+    )
     if after.value(objective) < before.value(objective):
         finalists[1], after = finalists[0], before
     return SearchResult(

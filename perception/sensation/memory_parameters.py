@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from thermicon.circuit.records import Table
+
 from ..observer.channels import Norm, noise_norm, trace_norm
 from ..observer.observer import Observer
 from .parameters import ObserverParameter, observer_parameters
@@ -14,14 +16,14 @@ OF_EPISODES = ("share of the scatter of ratings", "cost of a missing episode")
 ONSET = "onset uncertainty"
 
 
-def memory_parameters(norm: Norm, site: str = "thenar") -> tuple[ObserverParameter, ...]:
-    """The uncertain constants of memory that a norm makes use of.
+def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = None) -> tuple[ObserverParameter, ...]:
+    """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
 
     >>> [parameter.name for parameter in memory_parameters("episodes")]
     ['share of the scatter of ratings', 'memory noise (episodes)']
     """
     names = {*OF_EPISODES, ONSET, f"memory noise ({noise_norm(norm)})"}
-    return tuple(parameter for parameter in observer_parameters(norm, site) if parameter.name in names)
+    return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in names)
 
 
 def with_memory(observer: Observer, values: Mapping[str, float], norm: Norm) -> Observer:

@@ -1,15 +1,12 @@
-"""The observer's parameters as intervals, and observers drawn from within them.
+"""The observer's parameters as intervals.
 
 A parameter is a record of `data/observer.toml` whose interval has two different ends. What is drawn
 per person (path, decision, lapse) belongs to the spread between people and is left alone here.
-The drive of a threshold step is not a free number: it is set again for every draw, so that the published
-thresholds stay what they are whatever adaptation and integration do.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,8 +15,7 @@ from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
 from ..observer.channels import USUAL_NORM, noise_norm
-from ..observer.observer import CHANNELS, NORMS, Norm, Observer, observer_records, on_forearm, variant_records
-from .fits import anchored
+from ..observer.observer import CHANNELS, NORMS, Norm, Observer, on_forearm, variant_records
 
 PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
 ANCHORED = "threshold drive"
@@ -72,9 +68,11 @@ class ObserverParameter:
         return f"ObserverParameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"
 
 
-def observer_parameters(norm: Norm = USUAL_NORM, site: str = "thenar") -> tuple[ObserverParameter, ...]:
-    """Parameters of the shipped observer that are uncertain and matter for a norm of distance and a site."""
-    known = variant_records()
+def observer_parameters(
+    norm: Norm = USUAL_NORM, site: str = "thenar", records: Table | None = None
+) -> tuple[ObserverParameter, ...]:
+    """Parameters of an observer (None: the shipped one) that are uncertain and matter for a norm and a site."""
+    known = variant_records() if records is None else records
     whole = _at_site(known, site)
     return tuple(_parameter(record) for record in known if _free(record, norm, site, known, whole))
 
@@ -91,23 +89,6 @@ def latin(parameters: int, draws: int, seed: int) -> Array:
     )
     shares: Array = (strata + rng.random(strata.shape)) / draws
     return shares
-
-
-def observer_at(values: Mapping[str, float]) -> Observer:
-    """The shipped observer with some parameters (by `Parameter.name`) at other values, its thresholds kept.
-
-    >>> slow = observer_at({"noise correlation time": 0.5})
-    >>> slow.noise_correlation_s, slow.a == Observer.load().a
-    (0.5, True)
-    """
-    names = {parameter_name(record) for record in observer_records()}
-    if unknown := sorted(set(values) - names):
-        raise ValueError(f"the observer has no parameter {unknown[0]!r}: it has {', '.join(sorted(names))}")
-    if not values:
-        return Observer.load()
-    known = variant_records()
-    moved = Observer.from_table(Table(known.name, tuple(_moved(record, values) for record in known)))
-    return anchored(moved, Observer.load())
 
 
 def parameter_name(record: Record) -> str:
@@ -148,8 +129,3 @@ def _at_site(known: Table, site: str) -> Observer:
 def _parameter(record: Record) -> ObserverParameter:
     low, high = record.interval
     return ObserverParameter(parameter_name(record), low, record.central, high, record.unit, record.source, record.use)
-
-
-def _moved(record: Record, values: Mapping[str, float]) -> Record:
-    value = values.get(parameter_name(record))
-    return record if value is None else replace(record, value=value, low=None, high=None)

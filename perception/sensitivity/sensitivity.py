@@ -1,26 +1,30 @@
-"""Which uncertain parameters influence proportion correct and bits most: what a laboratory should measure first.
+"""Which constants carry the doubt about a set on a rig, and which measurement would reduce it most.
 
-Every parameter of the observer, the contact, the skin and the people is drawn from its whole interval. Its influence is
-its total Sobol index: its share of the variance of a prediction, interactions included, so that the shares may add up
-to more than 1 (Saltelli's design, `scipy.stats.sobol_indices`).
+The set is predicted with draws of the posterior as a new laboratory would see it, contact and outermost skin layer
+included. Constants of one draw belong together, so that shares of constants that trade off overlap and need not add up
+to 1; the share of a measurement is what its constants explain together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..identification.population import score
-from ..kernels.parallel import in_order
+from ..identification.doubt import explained, explained_together, scores_of
+from ..identification.laboratory_draws import LaboratoryDraws, laboratory_draws
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, check_norm
+from ..observer.observer import check_norm
+from ..observer.observer_model import ObserverModel
+from ..ranking.rank import TAIL_S
 from ..ranking.ranking import with_changes
-from ..sensation.parameters import ObserverParameter, latin, observer_at
-from .simulation_grid import SimulationGrid, simulate_grid
+from ..sensation.parameters import latin
+from .measurements import MEASUREMENTS, base_name
+from .rig_doubt import UncertainRig, end_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,60 +33,82 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
 
-SAMPLES = 64
-PRESENTATIONS = 512
-"""Presentations of each icon to each person in a run."""
-WORTH_MEASURING = 0.2
-"""A parameter with less than this share of the largest index need not be measured first."""
-PREDICTIONS = ("proportion_correct", "information_bits")
-
+DRAWS = 256
+FEWEST_DRAWS = 64
+"""Fewer draws do not tell a share of some per cent from chance."""
+NOTEWORTHY = 0.02
 Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """Influence of one parameter on the proportion correct and on the bits.
+    """Influence of one constant on the prediction.
 
-    `proportion_correct` and `information_bits` are total Sobol indices. The fields `..._ends` are the predictions at
-    the low and at the high end of the interval, with all other parameters at their values.
+    Attributes
+    ----------
+    constant
+        Its name.
+    unit
+        Its unit, where it is known.
+    low, high
+        Ends of the 95 % interval of the draws.
+    proportion_correct, information_bits
+        Share (0–1) of the variance of each over draws that would go if the constant were known.
+    at_low, at_high
+        Proportion correct to be expected at both ends of the interval.
     """
 
-    parameter: ObserverParameter
+    constant: str
+    unit: str
+    low: float
+    high: float
     proportion_correct: float
     information_bits: float
-    proportion_correct_ends: tuple[float, float]
-    information_bits_ends: tuple[float, float]
+    at_low: float
+    at_high: float
 
     def __repr__(self) -> str:
-        low, high = self.proportion_correct_ends
         return (
-            f"Effect({self.parameter.name}: {100 * self.proportion_correct:.0f} % of the variance of the proportion "
-            f"correct, which is {100 * low:.0f} % at the low end and {100 * high:.0f} % at the high end)"
+            f"Effect({self.constant}: {100 * self.proportion_correct:.0f} % of the variance of the proportion correct, "
+            f"which is {100 * self.at_low:.0f} % at the low end and {100 * self.at_high:.0f} % at the high end)"
         )
 
 
 @dataclass(frozen=True, slots=True)
+class Reduction:
+    """A measurement, the constants that it would tell, and the share (0–1) of the variance that would go with them."""
+
+    measurement: str
+    constants: tuple[str, ...]
+    proportion_correct: float
+    information_bits: float
+
+    def __repr__(self) -> str:
+        return f"Reduction({100 * self.proportion_correct:.0f} % of the variance: {self.measurement})"
+
+
+@dataclass(frozen=True, slots=True)
 class Sensitivity:
-    """Effects of the parameters on a prediction, ordered by their influence on the proportion correct.
+    """Effects of constants, and reductions by measurements, on a prediction; the largest first.
 
     Attributes
     ----------
     rig, rig_changes
         Name of the rig, and its changed keys.
-    people, seed
-        Number of virtual people, the same in every run, and the seed.
-    norm
-        How a difference over time is counted.
-    samples, runs
-        Number of base samples and of predictions.
+    people, seed, norm, draws, observer
+        How the draws were judged: people of a draw, seed, norm, number of draws, file of the observer.
     proportion_correct, information_bits
-        The prediction with every parameter at its value: 0–1, and bits.
+        Medians over the draws: 0–1, and bits.
+    proportion_correct_interval
+        Their 95 % interval for a new laboratory, contact and skin layer of the rig uncertain.
     effects
-        Effect of each parameter.
+        Effect of each constant.
+    reductions
+        What each measurement would take away.
 
     See Also
     --------
-    sensitivity : Runs the study.
+    sensitivity : Makes it.
     """
 
     rig: str
@@ -90,41 +116,33 @@ class Sensitivity:
     people: int
     seed: int
     norm: str
-    samples: int
-    runs: int
+    draws: int
+    observer: str
     proportion_correct: float
     information_bits: float
+    proportion_correct_interval: tuple[float, float]
     effects: tuple[Effect, ...]
+    reductions: tuple[Reduction, ...]
 
     @property
-    def first(self) -> tuple[str, ...]:
-        """Names of the parameters to measure first: those with more than a fifth of the largest index."""
-        tops = [max((getattr(e, what) for e in self.effects), default=0.0) for what in PREDICTIONS]
-        return tuple(
-            e.parameter.name
-            for e in self.effects
-            if any(getattr(e, what) > WORTH_MEASURING * top for what, top in zip(PREDICTIONS, tops, strict=True))
-        )
+    def first(self) -> tuple[Reduction, ...]:
+        """Measurements that would take away at least 2 % of the variance of the proportion correct."""
+        return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
 
     def rows(self) -> list[dict[str, Any]]:
-        """One plain row for each parameter; low, value and high are in the unit of the row."""
+        """One plain row for each constant."""
         return [
             {
-                "parameter": e.parameter.name,
-                "unit": e.parameter.unit,
-                "low": e.parameter.low,
-                "value": e.parameter.value,
-                "high": e.parameter.high,
-                "proportion_correct_total_index": e.proportion_correct,
-                "information_bits_total_index": e.information_bits,
-                "proportion_correct_at_low": e.proportion_correct_ends[0],
-                "proportion_correct_at_high": e.proportion_correct_ends[1],
-                "information_bits_at_low": e.information_bits_ends[0],
-                "information_bits_at_high": e.information_bits_ends[1],
-                "use": e.parameter.use,
-                "source": e.parameter.source,
+                "constant": each.constant,
+                "unit": each.unit,
+                "low": each.low,
+                "high": each.high,
+                "proportion_correct_share": each.proportion_correct,
+                "information_bits_share": each.information_bits,
+                "proportion_correct_at_low": each.at_low,
+                "proportion_correct_at_high": each.at_high,
             }
-            for e in self.effects
+            for each in self.effects
         ]
 
     def to_frame(self) -> pd.DataFrame:
@@ -134,17 +152,16 @@ class Sensitivity:
         return pd.DataFrame(self.rows())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw two bars for each parameter, proportion correct and bits; return the axes."""
+        """Draw two bars for each constant that counts, proportion correct and bits; return the axes."""
         from ..plots.draw_sensitivity import plot_sensitivity
 
         return plot_sensitivity(self, ax)
 
     def __repr__(self) -> str:
-        first = ", ".join(self.first[:3]) or "nothing"
+        first = self.first[0].measurement if self.first else "nothing"
         return (
-            f"Sensitivity({len(self.effects)} parameters on "
-            f"{with_changes(self.rig, self.rig_changes)}, {self.runs} runs of {self.people} people, "
-            f"{100 * self.proportion_correct:.1f} % correct; measure first {first})"
+            f"Sensitivity({len(self.effects)} constants on {with_changes(self.rig, self.rig_changes)}, {self.draws} "
+            f"draws, {100 * self.proportion_correct:.1f} % correct; measure first: {first})"
         )
 
     def _repr_html_(self) -> str:
@@ -159,145 +176,127 @@ def sensitivity(
     *,
     people: int = 24,
     seed: int = 0,
-    samples: int = SAMPLES,
+    draws: int = DRAWS,
     norm: str = USUAL_NORM,
+    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> Sensitivity:
-    """Find the parameters that influence the prediction for a set most, over their whole intervals.
+    """Find the constants that carry the doubt about a set, and the measurement that would reduce it most.
 
     Parameters
     ----------
     icons
         The set, at least two icons.
     rig
-        The rig that plays it.
+        The rig that plays it; its contact is uncertain as its own table of uncertainty says.
     people
-        Virtual people; every run has the same people and the same noise.
+        Virtual people of every draw.
     seed
-        Seed of people, noise and design: the same arguments give the same numbers.
-    samples
-        Base samples, a power of 2; the study takes samples × (parameters + 2) runs, and two for each parameter.
+        Seed of people, noise and draws: the same arguments give the same numbers.
+    draws
+        Draws of the posterior, at least 64.
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered, as in `rank`.
+    observer
+        An observer or its file, as in `rank`; it needs draws.
     progress
-        Called with (runs done, runs in all).
+        Called with (draws done, draws in all).
 
     Returns
     -------
     Sensitivity
-        Effects of the parameters, the most influential first.
+        Constants and measurements, the most influential first.
 
     Raises
     ------
     ValueError
-        For fewer than two icons, a number of samples that is not a power of 2 from 2 on, and an unknown norm.
+        For fewer than two icons, too few or too many draws, an observer without draws, and an unknown norm.
 
     See Also
     --------
-    rank : Predicts with every parameter at its value.
+    rank : Names the constants with the largest shares from the draws of its own interval.
 
     Examples
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> six = read_cue("six-icons")
-    >>> sensitivity([six["cooling-step"]], Rig.load("thenar"))
+    >>> sensitivity(read_cue("six-icons"), Rig.load("thenar"), draws=3)
     Traceback (most recent call last):
     ...
-    ValueError: ...
+    ValueError: a sensitivity needs 64 to 1000 draws of the posterior, not 3
     """
-    members, chosen = list(icons), check_norm(norm)
+    members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if len(members) < 2:
         raise ValueError("a sensitivity needs at least two icons: one alone is never confused")
-    if samples < 2:
-        raise ValueError(f"a sensitivity needs at least 2 samples, not {samples}")
-    if samples & (samples - 1):
+    if model.posterior is None:
+        raise ValueError(f"{model.name} has no posterior draws, from which a sensitivity is read")
+    if not FEWEST_DRAWS <= draws <= len(model.posterior):
         raise ValueError(
-            f"sobol needs a power of 2 of samples, such as {1 << (samples - 1).bit_length()}, not {samples}"
+            f"a sensitivity needs {FEWEST_DRAWS} to {len(model.posterior)} draws of the posterior, not {draws}"
         )
-    grid = simulate_grid(members, rig, people, seed, chosen)
-    count = len(grid.parameters)
-    shares = np.concatenate([grid.centre[None], _ends(grid), saltelli_design(count, samples, seed)])
-    predicted = _predictions(grid, shares, chosen, seed, progress)
-    ends = predicted[1 : 1 + 2 * count].reshape(count, 2, len(PREDICTIONS))
-    indices = total_indices(predicted[1 + 2 * count :], samples)
-    effects = [
-        Effect(parameter, float(index[0]), float(index[1]), _both(end[:, 0]), _both(end[:, 1]))
-        for parameter, index, end in zip(grid.parameters, indices, ends, strict=True)
+    crowd = model.people(people, seed)
+    uncertain = UncertainRig.simulate(members, rig, crowd, end_of(members, rig, TAIL_S))
+    shares = latin(2, draws, seed + 1)
+    done = 0
+
+    def step() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, draws)
+
+    each = laboratory_draws(
+        lambda place: uncertain.played(*shares[place].tolist()), crowd, chosen, model, draws=draws, seed=seed, step=step
+    )
+    columns = [
+        [parameter.at(float(share)) for share in column]
+        for parameter, column in zip(uncertain.parameters, shares.T, strict=True)
     ]
+    names = (*each.names, *(parameter.name for parameter in uncertain.parameters))
+    values = np.hstack([each.values, np.array(columns).T])
+    low, middle, high = np.percentile(each.proportion_correct, [2.5, 50.0, 97.5]).tolist()
     return Sensitivity(
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         people=people,
         seed=seed,
         norm=chosen,
-        samples=samples,
-        runs=len(shares),
-        proportion_correct=float(predicted[0, 0]),
-        information_bits=float(predicted[0, 1]),
-        effects=tuple(sorted(effects, key=lambda e: (-e.proportion_correct, -e.information_bits, e.parameter.name))),
+        draws=draws,
+        observer=model.name,
+        proportion_correct=middle,
+        information_bits=float(np.median(each.information_bits)),
+        proportion_correct_interval=(low, high),
+        effects=_effects(names, values, each, model),
+        reductions=_reductions(names, values, each),
     )
 
 
-def saltelli_design(count: int, base: int, seed: int) -> Array:
-    """Shares (base × (count + 2), count): A, B, and for every parameter A with the column of that parameter from B."""
-    both = latin(2 * count, base, seed)
-    a, b = both[:, :count], both[:, count:]
-    mixed = np.repeat(a[None], count, axis=0)
-    for k in range(count):
-        mixed[k, :, k] = b[:, k]
-    return np.concatenate([a, b, *mixed])
+def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model: ObserverModel) -> tuple[Effect, ...]:
+    units = {base_name(record.quantity): record.unit for record in model.records}
+    correct, bits = explained(values, each.proportion_correct), explained(values, each.information_bits)
+    offsets = model.posterior.header.offsets if model.posterior is not None else ()
+    found = []
+    for place, name in enumerate(names):
+        if name in offsets or np.ptp(values[:, place]) == 0.0:
+            continue
+        low, high = np.percentile(values[:, place], [2.5, 97.5]).tolist()
+        scores = scores_of(values[:, place])
+        design = np.stack([np.ones_like(scores), scores, scores**2], axis=1)
+        fitted = design @ np.linalg.lstsq(design, each.proportion_correct, rcond=None)[0]
+        order = np.argsort(values[:, place], kind="stable")
+        ends = fitted[order[[round(0.025 * (len(order) - 1)), round(0.975 * (len(order) - 1))]]].tolist()
+        unit = units.get(base_name(name).removeprefix("cold ").removeprefix("warm "), "")
+        found.append(Effect(name, unit, low, high, float(correct[place]), float(bits[place]), *ends))
+    return tuple(sorted(found, key=lambda e: (-e.proportion_correct, -e.information_bits, e.constant)))
 
 
-def total_indices(predicted: Array, base: int) -> Array:
-    """Total Sobol indices (parameters, predictions) of a Saltelli design; 0 where a prediction does not vary."""
-    from scipy.stats import sobol_indices
-
-    parts = predicted.reshape(-1, base, predicted.shape[-1])
-    indices = np.zeros((len(parts) - 2, predicted.shape[-1]))
-    for k in range(predicted.shape[-1]):
-        a, b, mixed = parts[0, :, k], parts[1, :, k], parts[2:, :, k]
-        if np.ptp(np.concatenate([a, b])) > 0.0:
-            values: dict[Literal["f_A", "f_B", "f_AB"], Array] = {
-                "f_A": a[None],
-                "f_B": b[None],
-                "f_AB": mixed[:, None],
-            }
-            indices[:, k] = np.ravel(sobol_indices(func=values, n=base).total_order)
-    return indices
-
-
-def _predictions(grid: SimulationGrid, shares: Array, norm: Norm, seed: int, progress: Progress | None) -> Array:
-    """Proportion correct and bits, means over people, for every row of shares; rows that play alike share a run."""
-    groups: dict[tuple[float, float], list[int]] = {}
-    for k, row in enumerate(shares):
-        groups.setdefault(grid.played_key(row), []).append(k)
-
-    def predict(rows: Sequence[int]) -> list[tuple[int, float, float]]:
-        played, results = grid.played(shares[rows[0]]), []
-        for k in rows:
-            observer = observer_at(grid.observer_values(shares[k]))
-            scores = score(played, grid.crowd_at(shares[k]), observer, norm, seed, PRESENTATIONS)
-            results.append((k, float(scores.proportion_correct.mean()), float(scores.information_bits.mean())))
-        return results
-
-    predicted, done = np.empty((len(shares), len(PREDICTIONS))), 0
-    for results in in_order(predict, list(groups.values())):
-        for k, *both in results:
-            predicted[k], done = both, done + 1
-            if progress is not None:
-                progress(done, len(shares))
-    return predicted
-
-
-def _ends(grid: SimulationGrid) -> Array:
-    """Rows with one parameter at its low and at its high end, the others at their values."""
-    count = len(grid.parameters)
-    rows = np.repeat(grid.centre[None], 2 * count, axis=0)
-    for k in range(count):
-        rows[2 * k, k], rows[2 * k + 1, k] = 0.0, 1.0
-    return rows
-
-
-def _both(ends: Sequence[float] | Array) -> tuple[float, float]:
-    return float(ends[0]), float(ends[1])
+def _reductions(names: tuple[str, ...], values: Array, each: LaboratoryDraws) -> tuple[Reduction, ...]:
+    found = []
+    for measurement in MEASUREMENTS:
+        places = [k for k, name in enumerate(names) if base_name(name) in measurement.constants]
+        if places:
+            shares = (
+                explained_together(values[:, places], what) for what in (each.proportion_correct, each.information_bits)
+            )
+            found.append(Reduction(measurement.text, tuple(names[k] for k in places), *shares))
+    return tuple(sorted(found, key=lambda r: (-r.proportion_correct, r.measurement)))

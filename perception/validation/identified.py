@@ -16,8 +16,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
-from ..identification.laboratory import EVERY, PEOPLE
-from ..identification.laboratory import SAMPLES as FEW_SAMPLES
+from ..identification.laboratory_draws import EVERY, PEOPLE
+from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, identify, respond
 from ..kernels.parallel import in_order

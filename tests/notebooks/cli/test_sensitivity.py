@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 Cli = Callable[..., Any]
-QUICK = ("--people", 3, "--samples", 2)
+QUICK = ("--people", 3, "--draws", 64)
 
 
 def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -22,11 +22,11 @@ def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Pat
     assert max(len(line) for line in said.stdout.splitlines()) <= 80
     frame = pd.read_csv(out)
     words = " ".join(said.stdout.split())
-    assert words.startswith("Two for a test parameter interval correct bits correct low–high ")
-    assert f"Measure these first; all others influence the prediction less: - {frame['parameter'][0]}" in words
-    assert "(total Sobol indices); beside them the proportion correct at the low and at the high end" in words
-    assert "predictions for 3 virtual people on the thenar rig (seed 0, episodes norm), " in words
-    assert {"memory noise (episodes)", "contact resistance"} <= set(frame["parameter"])
+    assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
+    assert "Measure first, by the share of the variance of the proportion correct that would go: - " in words
+    assert frame["constant"][0].split()[0] in words
+    assert "64 draws for 3 virtual people on the thenar rig (seed 0, episodes norm): " in words
+    assert {"memory noise (episodes)", "contact resistance"} <= set(frame["constant"])
     assert picture.stat().st_size > 10_000
     assert not list(tmp_path.glob(".*"))
 
@@ -34,7 +34,13 @@ def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Pat
 def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path) -> None:
     said = [cli("sensitivity", two, *QUICK, "--seed", 4, "-o", "-").stdout for _ in range(2)]
     assert said[0] == said[1]
-    assert list(pd.read_csv(io.StringIO(said[0])).columns[:5]) == ["parameter", "unit", "low", "value", "high"]
+    assert list(pd.read_csv(io.StringIO(said[0])).columns[:5]) == [
+        "constant",
+        "unit",
+        "low",
+        "high",
+        "proportion_correct_share",
+    ]
 
 
 def test_a_what_if(cli: Cli, two: Path) -> None:
@@ -47,10 +53,8 @@ def test_a_what_if(cli: Cli, two: Path) -> None:
     ("options", "told"),
     [
         (("--people", 0), "'--people': 0 is outside 1 to 10000"),
-        (("--samples", 1), "'--samples': 1 is outside 2 to 65536"),
-        (("--samples", 10), "'--samples': 10 is not a power of 2, which sobol needs, such as 64"),
+        (("--draws", 2), "'--draws': 2 is outside 64 to 100000"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
-        (("--method", "luck"), "'--method': 'luck' is not one of sobol"),
         (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming, max, rms, integral"),
     ],
 )
@@ -74,16 +78,16 @@ def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path
     assert "a table of sensitivities is written as .csv or .parquet, not .txt" in said.stderr
 
 
-def test_nothing_that_moves_and_what_to_do() -> None:
-    from thermicon.notebooks.cli.sensitivity import HOW, how, sentences
-    from thermicon.perception import NORMS, Sensitivity
-    from thermicon.perception.sensation.parameters import observer_parameters
-    from thermicon.perception.sensitivity.simulation_grid import OTHERS
+def test_nothing_that_moves() -> None:
+    from thermicon.notebooks.cli.sensitivity import sentences
+    from thermicon.perception import Sensitivity
 
-    still = Sensitivity("thenar", (), 1, 0, "max", 2, 5, 1.0, 1.0, ())
-    assert sentences(still)[0] == "None of these parameters influences the prediction."
+    still = Sensitivity("thenar", (), 1, 0, "max", 64, "shipped", 1.0, 1.0, (1.0, 1.0), (), ())
+    assert sentences(still)[0] == "No measurement would narrow the prediction noticeably."
     assert "1 virtual person on the thenar rig" in sentences(still)[-1]
-    every = (parameter for norm in NORMS for parameter in observer_parameters(norm))
-    known = {parameter.name.split(" (")[0] for parameter in every} | set(OTHERS)
-    assert set(HOW) <= known
-    assert how("integration time constant") == ""
+
+
+def test_more_draws_than_the_posterior_has_is_bad_input(cli: Cli, two: Path) -> None:
+    said = cli("sensitivity", two, "--draws", 5000)
+    assert said.exit_code == 1
+    assert "--draws 5000: the shipped posterior has 1000 draws" in said.stderr

@@ -38,6 +38,10 @@ def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
     assert len(found.detected) == 6
     for icon, (low, high) in zip(ranking.icons, found.detected, strict=True):
         assert low <= icon.detected_probability <= high
+    for icon, onset in zip(ranking.icons, found.onset_s, strict=True):
+        assert onset is not None
+        assert icon.onset_s is not None
+        assert 0.5 < onset[0] < icon.onset_s < onset[1] < 5.0
     assert repr(found).startswith("NewLaboratory(16 draws, 8 people each: ")
     assert repr(found).endswith(" bits)")
 
@@ -98,6 +102,7 @@ def test_faint_icons_have_wide_intervals_of_detection(rig: Rig) -> None:
     assert found is not None
     ((low, high),) = found.detected
     assert 0.0 <= low < high <= 1.0
+
     assert high - low > 0.1
     assert found.information_bits == (0.0, 0.0)
 
@@ -105,3 +110,12 @@ def test_faint_icons_have_wide_intervals_of_detection(rig: Rig) -> None:
 def test_one_draw_is_refused(rig: Rig) -> None:
     with pytest.raises(ValueError, match=r"needs at least two draws of the parameters, or 0 for none, not 1"):
         rank(load_library("six-icons"), rig, people=1, parameters=1)
+
+
+def test_the_onset_of_an_icon_that_is_hardly_ever_felt_has_no_interval(rig: Rig) -> None:
+    from thermicon.icons import parse
+
+    text = "cue 1\nset s { control skin; baseline 32 °C }\nicon none { cool by 0.05 °C at 0.1 °C/s; hold for 1 s }"
+    found = rank(parse(text), rig, people=8, parameters=16).new_laboratory
+    assert found is not None
+    assert found.onset_s == (None,)

@@ -29,7 +29,7 @@ def ranking() -> Ranking:
 
 
 def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batches, "_crowd", lambda people, seed: People.nominal(people))
+    monkeypatch.setattr(batches, "_crowd", lambda people, seed, model: People.nominal(people))
     found = rank(ICONS, RIG, people=1, parameters=0, tracking="replay")
     traces = {trace.icon: trace for trace in simulate_all(list(ICONS), RIG, end_s=END_S)}
     assert {icon.name for icon in found.icons} == set(traces)

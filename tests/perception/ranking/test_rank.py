@@ -8,10 +8,14 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, perceive, rank
 
-TOP = "thermicon rig rig_changes seed people tracking by norm content_hash task icons pairs confusion set chosen map"
+TOP = (
+    "thermicon rig rig_changes rig_text observer seed people tracking by norm content_hash task icons pairs confusion "
+    "set persons chosen map"
+)
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
-    "reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory carry_over"
+    "reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory "
+    "onset_interval_new_laboratory_s carry_over"
 )
 PAIR = (
     "a b d_prime d_prime_interval_new_laboratory confused_probability why rules edit told_apart_by_rules rules_margin "
@@ -236,6 +240,7 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
             "channel",
             "proportion_correct",
             "detected_interval_new_laboratory",
+            "onset_interval_new_laboratory_s",
         ):
             assert icon[key] is None
         assert 0.0 <= icon["rules_score"] <= 1.0

@@ -2,12 +2,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import Record
-from thermicon.perception import CHANNELS, Observer
-from thermicon.perception.sensation.fits import peak_drive
 from thermicon.perception.sensation.parameters import (
     ObserverParameter,
     latin,
-    observer_at,
     observer_parameters,
     parameter_name,
 )
@@ -36,31 +33,6 @@ def test_other_sites_bring_other_parameters() -> None:
     here, there = ({p.name for p in observer_parameters("max", site)} for site in ("thenar", "forearm"))
     assert here < there
     assert there - here == {"threshold on the forearm (cold)", "threshold on the forearm (warm)"}
-
-
-def test_nothing_moved_is_the_shipped_observer() -> None:
-    assert observer_at({}) == Observer.load()
-    again = observer_at({p.name: p.value for p in observer_parameters()})
-    assert again == Observer.load()
-
-
-def test_every_parameter_moves_the_observer() -> None:
-    for parameter in observer_parameters():
-        assert observer_at({parameter.name: parameter.low}) != Observer.load(), parameter
-
-
-@pytest.mark.parametrize("values", [{"slow adaptation time": 40.0}, {"limit (cold)": 31.5}, {"integration time": 0.3}])
-def test_published_thresholds_stay_what_they_are(values: dict[str, float]) -> None:
-    moved, shipped = observer_at(values), Observer.load()
-    assert moved != shipped
-    for channel in CHANNELS:
-        multiples = [peak_drive(channel, each) / each.receptor(channel).threshold_drive for each in (moved, shipped)]
-        assert multiples[0] == pytest.approx(multiples[1], rel=1e-9)
-
-
-def test_an_unknown_parameter_is_named() -> None:
-    with pytest.raises(ValueError, match=r"the observer has no parameter 'memory': it has .*memory noise \(max\)"):
-        observer_at({"memory": 1.0})
 
 
 def test_a_parameter_needs_an_interval() -> None:

@@ -1,0 +1,136 @@
+"""What predictions are made with: the nominal observer, how people differ, and the posterior that both come from.
+
+The shipped one is the default. A laboratory's own, or that of a group of patients, is another file of either form: a
+table of posterior draws (.csv), or the records of one observer (.toml), which has no draws and so no intervals for a
+new laboratory.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Self
+
+from thermicon.circuit.records import RecordError, Table
+
+from .channels import CHANNELS
+from .draws import PosteriorDraws
+from .observer import DATA, Observer, variant_records
+from .observer_file import read_observer_file
+from .people import SPREADS, People, draw_people
+
+SHIPPED = "shipped"
+OF_PEOPLE = (
+    "criterion between people",
+    "correlation of cold and warm",
+    "decision time",
+    "decision time between people",
+)
+"""Inferred constants of people that both channels share; sensitivities have one a channel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ObserverModel:
+    """The observer of a file with its people and its posterior.
+
+    Attributes
+    ----------
+    name
+        Name of the file, or `shipped`.
+    digest
+        SHA-256 of its text, in hexadecimal.
+    nominal
+        The nominal observer: the most probable one of the shipped posterior, the first draw of another.
+    spreads
+        Constants of how people differ, by name; None: the shipped ones.
+    records
+        Records of the observer, from which intervals of memory noise are read.
+    posterior
+        Draws of the constants; None where the file has none.
+
+    Examples
+    --------
+    >>> ObserverModel.load().people(3, seed=1).memory.shape
+    (3,)
+    """
+
+    name: str
+    digest: str
+    nominal: Observer
+    spreads: Mapping[str, float] | None = field(repr=False)
+    records: Table = field(repr=False)
+    posterior: PosteriorDraws | None
+
+    @classmethod
+    def of(cls, observer: ObserverModel | Path | str | None) -> ObserverModel:
+        """A model as it is, that of a file, or, for None, the shipped one."""
+        return observer if isinstance(observer, ObserverModel) else cls.load(observer)
+
+    @classmethod
+    def load(cls, path: Path | str | None = None) -> Self:
+        """The shipped model, or that of a file.
+
+        Parameters
+        ----------
+        path
+            Draws written by ``thermicon calibrate`` (.csv), or records of one observer (.toml).
+
+        Raises
+        ------
+        RecordError
+            For a file that cannot be read, is incomplete, or was made from other evidence or by another version.
+
+        """
+        if path is None:
+            text = (DATA / "observer.toml").read_bytes()
+            digest = hashlib.sha256(text).hexdigest()
+            return cls(SHIPPED, digest, Observer.load(), None, variant_records(), _shipped_draws())
+        file = Path(path)
+        records = read_observer_file(file, ("temperature", "adapting"))
+        draws = PosteriorDraws.load(file) if file.suffix.lower() == ".csv" else None
+        nominal = Observer.from_table(records) if draws is None else draws.nominal()
+        spreads = _spreads(records) if draws is None else draws.draw(0)
+        return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, spreads, records, draws)
+
+    def people(self, n: int, seed: int = 0) -> People:
+        """Virtual people who differ as this model says; person i is the same whatever n is."""
+        return draw_people(n, seed, spreads=self.spreads)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ObserverModel) and (self.name, self.digest) == (other.name, other.digest)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.digest))
+
+    @property
+    def key(self) -> str:
+        """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
+        return "" if self.name == SHIPPED else self.digest
+
+    def __repr__(self) -> str:
+        draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"
+        return f"ObserverModel({self.name}, {draws})"
+
+
+@lru_cache(maxsize=1)
+def _shipped_draws() -> PosteriorDraws:
+    return PosteriorDraws.load()
+
+
+def _spreads(records: Table) -> dict[str, float]:
+    """How people differ by the records of an observer file; what it lacks is a RecordError that names it."""
+    found: dict[str, float] = {}
+    wanted = [(name, "") for name in OF_PEOPLE]
+    wanted += [(SPREADS["threshold"].format("").strip(), channel) for channel in CHANNELS]
+    for name, channel in wanted:
+        matches = [record for record in records if record.quantity == name and record.channel in (channel, "both", "")]
+        if not matches:
+            raise RecordError(
+                f"{records.name}: {name!r}{f' of {channel}' if channel else ''}, which says how people differ, is "
+                "missing: begin with a copy of the shipped observer.toml"
+            )
+        found[f"{channel} {name}" if channel else name] = matches[0].central
+    return found

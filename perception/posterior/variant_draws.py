@@ -1,0 +1,33 @@
+"""Draws of the variants that are not sampled, from the normal approximation at their maximum; marked as such.
+
+`python -m thermicon.perception.posterior.variant_draws` writes the tables of the package in a minute or two.
+`thermicon calibrate --variant NAME` samples one of them.
+"""
+
+from __future__ import annotations
+
+from ..inference.maximum import maximise
+from ..inference.posterior import Posterior
+from ..kernels.parallel import quiet_blas
+from ..observer.draws import PosteriorDraws
+from ..observer.draws_file import shipped_file, to_text
+from ..observer.variants import VARIANTS, Model, Variable
+from .sampling import approximate_draws, shipped_vector
+
+
+def draws_of_variant(variable: Variable, model: Model) -> PosteriorDraws:
+    """1,000 draws about the maximum of a variant."""
+    posterior = Posterior(variable, model)
+    with quiet_blas():
+        return approximate_draws(maximise(posterior, shipped_vector(posterior)))
+
+
+def main() -> None:
+    """Write the tables of all variants but the default one."""
+    for variant in VARIANTS[1:]:
+        drawn = draws_of_variant(*variant)
+        shipped_file(*variant).write_text(to_text(drawn.header, drawn.names, drawn.draws), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
