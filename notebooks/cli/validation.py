@@ -41,11 +41,23 @@ def validate_command(
         Path | None,
         typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON; - prints it."),
     ] = None,
+    leave_out: Annotated[
+        bool,
+        typer.Option(
+            "--leave-out",
+            help="Instead: infer all constants again without each experiment in turn, and predict it. Takes hours.",
+        ),
+    ] = False,
+    keep: Annotated[
+        Path | None,
+        typer.Option("--keep", metavar="DIR", readable=False, help="With --leave-out: folder of finished parts."),
+    ] = None,
 ) -> None:
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
     Without -o, a table is printed. With -o, validation.html, validation.md with its figures, and validation.json are
-    written, with predictions from temperature and from heat flow side by side.
+    written, with predictions from temperature and from heat flow side by side. With --leave-out, the tables that the
+    report shows of left-out experiments are made again, coverage, log scores and weights of the variants included.
     """
     for option, value, least, most in (
         ("--people", people, 2, 2000),
@@ -54,6 +66,15 @@ def validate_command(
     ):
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
+    if leave_out:
+        if json_out is not None:
+            raise usage("--leave-out writes tables: give a folder with -o", "--json")
+        from .leave_out import leave_out_files
+
+        leave_out_files(output, keep, seed)
+        return
+    if keep is not None:
+        raise usage("only --leave-out keeps parts", "--keep")
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if output is not None:

@@ -1,25 +1,18 @@
-"""The shipped table of left-out predictions, and the run that writes it.
-
-`python -m thermicon.perception.posterior.left_out_file DIR` goes on from the folder that `thermicon calibrate --keep
-DIR` left, and keeps each experiment there as it is done.
-"""
+"""The table of left-out predictions, and the run that makes it, which keeps each experiment as it is done."""
 
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import lru_cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..inference.evidence import DATA
 from ..inference.posterior import Posterior
 from ..inference.results import inputs_digest, read_rows, to_csv
 from ..inference.rows import load_rows
@@ -99,6 +92,9 @@ def leave_each_out(
     progress: Callable[[int, int, str], None] | None = None,
 ) -> tuple[LeftOutRow, ...]:
     """Every experiment left out in turn, from the chains in a folder; what is done already is read from there."""
+    experiments = tuple(dict.fromkeys(row.experiment for row in load_rows()))
+    if complete(keep):
+        return tuple(row for experiment in experiments for row in _kept(keep, experiment))
     learned = load_learned(keep)
     if learned is None:
         raise ValueError(f"{keep}: there are no chains here: run thermicon calibrate --keep {keep} first")
@@ -116,17 +112,29 @@ def leave_each_out(
         with np.load(file) as arrays:
             draws = Points(arrays["vectors"], arrays["misses"])
         rows: list[LeftOutRow] = []
-        experiments = tuple(dict.fromkeys(row.experiment for row in load_rows()))
         for done, experiment in enumerate(experiments):
             if progress is not None:
                 progress(done, len(experiments), experiment)
-            part = keep / f"left-out-{experiment}.json"
+            part = _part(keep, experiment)
             if not part.exists():
                 scores = leave_out(posterior, draws, reference, points, seed, evaluate, (experiment,))
                 found = [asdict(row_of(score(each))) for each in scores]
                 part.write_text(json.dumps(found, indent=1), encoding="utf-8")
-            rows += [LeftOutRow(**each) for each in json.loads(part.read_text(encoding="utf-8"))]
+            rows += _kept(keep, experiment)
     return tuple(rows)
+
+
+def complete(keep: Path) -> bool:
+    """Whether every experiment was left out in a folder."""
+    return all(_part(keep, row.experiment).exists() for row in load_rows())
+
+
+def _part(keep: Path, experiment: str) -> Path:
+    return keep / f"left-out-{experiment}.json"
+
+
+def _kept(keep: Path, experiment: str) -> list[LeftOutRow]:
+    return [LeftOutRow(**each) for each in json.loads(_part(keep, experiment).read_text(encoding="utf-8"))]
 
 
 def _misses(part: tuple[Posterior, Array]) -> Array:
@@ -136,25 +144,5 @@ def _misses(part: tuple[Posterior, Array]) -> Array:
 
 def write(rows: Iterable[LeftOutRow], path: Path) -> None:
     """Write the table with the digest of its inputs."""
-    head = f"# written by python -m thermicon.perception.posterior.left_out_file from inputs {inputs_digest()}\n"
+    head = f"# written by thermicon validate --leave-out from inputs {inputs_digest()}\n"
     path.write_text(head + to_csv(list(rows)), encoding="utf-8")
-
-
-def main(arguments: list[str]) -> None:
-    """Write the table of the package from the chains in a folder."""
-    from tqdm import tqdm
-
-    (keep,) = arguments
-    bar: Any = tqdm(desc="left out", unit=" experiments")
-
-    def show(done: int, total: int, name: str) -> None:
-        bar.total = total
-        bar.update(done - bar.n)
-        bar.set_postfix_str(name)
-
-    write(leave_each_out(Path(keep), Posterior(), workers=2, progress=show), DATA / LEFT_OUT)
-    bar.close()
-
-
-if __name__ == "__main__":
-    main(sys.argv[1:])

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
 
 from ..inference.results import load_constants
 from ..inference.rows import load_rows
@@ -13,7 +15,7 @@ from ..observer.draws import PosteriorDraws
 from .left_out import FROM_WEIGHTS
 from .left_out_file import LeftOutRow, load_left_out
 from .summaries import Summary, summarise
-from .variant_scores import variant_log_scores, variant_weights
+from .variant_scores import VariantScores, variant_log_scores, variant_weights
 
 
 def posterior_table() -> str:
@@ -74,9 +76,9 @@ def sampled_left_out_table() -> str:
     )
 
 
-def scores_sentence() -> str:
-    """Coverage, widths and log scores of the left-out predictions."""
-    rows = load_left_out()
+def scores_sentence(left_out: Sequence[LeftOutRow] | None = None) -> str:
+    """Coverage, widths and log scores of left-out predictions (None: the shipped ones)."""
+    rows = load_left_out() if left_out is None else left_out
     inside = [sum(covered(each, share) for each in rows) for share in (0.5, 0.95)]
     logs = {row.key for row in load_rows() if row.log}
     ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
@@ -97,15 +99,28 @@ def covered(row: LeftOutRow, share: float) -> bool:
     return abs(row.probability - 0.5) <= 0.5 * share
 
 
-def variants_sentence() -> str:
-    """Mean left-out log score of each variant, and the weights of their best mixture."""
-    names, means = ("temperature", "heat flow", "impulses after Ring & de Dear"), variant_log_scores().mean(axis=1)
-    weights = variant_weights().values()
+def variants_sentence(scores: Sequence[VariantScores] | None = None) -> str:
+    """Mean left-out log score of each variant, their best mixture, and how sure temperature is better than heat flow.
+
+    The standard error is that of a sum over experiments, whose rows share laboratory and people.
+    """
+    names, logs = ("temperature", "heat flow", "impulses after Ring & de Dear"), variant_log_scores(scores)
+    weights = variant_weights(scores).values()
     parts = [
         f"{name} {signed(mean, 2)} (weight {weight:.2f})"
-        for name, mean, weight in zip(names, means.tolist(), weights, strict=True)
+        for name, mean, weight in zip(names, logs.mean(axis=1).tolist(), weights, strict=True)
     ]
-    return f"Mean log score a row: {', '.join(parts)}."
+    gains: dict[str, float] = {}
+    for row, gain in zip(load_rows(), (logs[0] - logs[1]).tolist(), strict=True):
+        gains[row.experiment] = gains.get(row.experiment, 0.0) + gain
+    each = np.array(list(gains.values()))
+    error = float(each.std(ddof=1)) * math.sqrt(each.size)
+    better = int((each > 0.0).sum())
+    return (
+        f"Mean log score a row: {', '.join(parts)}. All rows together, temperature is ahead of heat flow by "
+        f"{signed(float(each.sum()), 1)} ± {error:.1f} (standard error over {each.size} experiments), and predicts "
+        f"{better} of them better."
+    )
 
 
 TABLES: Mapping[str, Callable[[], str]] = {

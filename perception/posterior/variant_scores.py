@@ -1,20 +1,22 @@
 """Which variant predicts experiments that it never saw best: left-out log scores and stacking weights.
 
-`python -m thermicon.perception.posterior.variant_scores` writes the table, in tens of minutes; each variant is refitted
-at its own maximum without each experiment, and predicts by the normal approximation there.
+Each variant is refitted at its own maximum without each experiment, in tens of minutes, and predicts by the normal
+approximation there.
 """
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from multiprocessing import get_context
+from pathlib import Path
 
 import numpy as np
 
 from ..arrays import Array
-from ..inference.evidence import DATA
 from ..inference.leave_out import leave_each_out
 from ..inference.maximum import maximise
 from ..inference.posterior import Posterior
@@ -50,19 +52,19 @@ def load_variant_scores() -> tuple[VariantScores, ...]:
     return tuple(read_rows(SCORES, VariantScores))
 
 
-def variant_log_scores() -> Array:
-    """Log scores (variants, rows) of the shipped table."""
-    rows = load_variant_scores()
+def variant_log_scores(rows: Sequence[VariantScores] | None = None) -> Array:
+    """Log scores (variants, rows) of a table (None: the shipped one)."""
+    rows = load_variant_scores() if rows is None else rows
     return np.array([[getattr(row, name) for row in rows] for name in ("temperature", "heat_flow", "ring_de_dear")])
 
 
-def variant_weights() -> dict[tuple[Variable, Model], float]:
+def variant_weights(rows: Sequence[VariantScores] | None = None) -> dict[tuple[Variable, Model], float]:
     """Weights of the variants that predict the left-out rows best as a mixture.
 
     >>> round(sum(variant_weights().values()), 6)
     1.0
     """
-    return dict(zip(VARIANTS, stacking_weights(variant_log_scores()).tolist(), strict=True))
+    return dict(zip(VARIANTS, stacking_weights(variant_log_scores(rows)).tolist(), strict=True))
 
 
 def log_scores_of(variant: tuple[Variable, Model]) -> list[float]:
@@ -73,14 +75,21 @@ def log_scores_of(variant: tuple[Variable, Model]) -> list[float]:
         return [out.log_score for out in leave_each_out(whole)]
 
 
-def main() -> None:
-    """Write the table of the package."""
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
-        scores = list(pool.map(log_scores_of, VARIANTS))
-    rows = [VariantScores(*row.key, *(each[k] for each in scores)) for k, row in enumerate(load_rows())]
-    head = f"# written by python -m thermicon.perception.posterior.variant_scores from inputs {inputs_digest()}\n"
-    (DATA / SCORES).write_text(head + to_csv(rows), encoding="utf-8")
+def score_variants(keep: Path, workers: int = 1) -> tuple[VariantScores, ...]:
+    """Log scores of every row by every variant; those of a variant that is done are read from the folder."""
+    todo = [variant for variant in VARIANTS if not _part(keep, variant).exists()]
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        for variant, scores in zip(todo, pool.map(log_scores_of, todo), strict=True):
+            _part(keep, variant).write_text(json.dumps(scores), encoding="utf-8")
+    each = [json.loads(_part(keep, variant).read_text(encoding="utf-8")) for variant in VARIANTS]
+    return tuple(VariantScores(*row.key, *(scores[k] for scores in each)) for k, row in enumerate(load_rows()))
 
 
-if __name__ == "__main__":
-    main()
+def write(rows: Sequence[VariantScores], path: Path) -> None:
+    """Write the table with the digest of its inputs."""
+    head = f"# written by thermicon validate --leave-out from inputs {inputs_digest()}\n"
+    path.write_text(head + to_csv(rows), encoding="utf-8")
+
+
+def _part(keep: Path, variant: tuple[Variable, Model]) -> Path:
+    return keep / f"scores-{'-'.join(variant).replace(' ', '-')}.json"
