@@ -1,4 +1,4 @@
-"""Arrays of any shape seen as rows of time, which is how every kernel takes them."""
+"""Arrays that objects hold, and arrays of any shape seen as rows of time, which is how every kernel takes them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+
+
+def own_arrays(holder: object, *names: str) -> None:
+    """Replace fields of a frozen object by read-only copies of their own, as float64; for `__post_init__`."""
+    for name in names:
+        own = np.array(getattr(holder, name), dtype=np.float64)
+        own.setflags(write=False)
+        object.__setattr__(holder, name, own)
 
 
 def as_rows(values: ArrayLike) -> tuple[Array, tuple[int, ...]]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["COOL", "STAY", "WARM", "plot_family", "plot_icon", "plot_icons", "plot_set"]
 
 MOST_DRAWN, MOST_NAMED = 24, 8
-# Eight colours for icons by name, safe for common kinds of colour vision; dashes tell them apart in grey.
+# Eight colours for icons by name, safe for common kinds of colour vision; dashes distinguish them in grey.
 _HUES = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f")
 _DASHES: tuple[Literal["-"] | tuple[int, tuple[float, ...]], ...] = (
     "-",

@@ -80,7 +80,7 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Bloc
     yield Text(f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon", "lead")
     yield Text(rules_caveat(result) if ranking.by == "rules" else rank_text.caveat(result), "note")
     if ranking.by == "rules":
-        apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
+        apart = sum(pair["distinguishable_by_rules"] for pair in result["pairs"])
         if result["pairs"]:
             yield Cards(((f"{apart} of {len(result['pairs'])}", "pairs distinguishable by the rules"),))
         return
@@ -143,7 +143,7 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[Block]:
         cells = [
             [
                 *(str(place), row["icon"], percent(row["rules_score"])),
-                *(f"{row['rules_passed']} of {row['rules']}", str(row["pairs_apart_by_rules"])),
+                *(f"{row['rules_passed']} of {row['rules']}", str(row["pairs_distinguishable_by_rules"])),
             ]
             for place, row in enumerate(rows, 1)
         ]
@@ -237,7 +237,7 @@ def _rules(result: dict[str, Any]) -> Iterator[Block]:
     rules = [(icon["name"], rule) for icon in result["icons"] for rule in icon["rules"]]
     rules += [("the rig", rule) for rule in result["set"]["rules"]]
     failed = [[name, rule["text"], rule["source"]] for name, rule in rules if not rule["pass"]]
-    apart = sum(pair["told_apart_by_rules"] for pair in result["pairs"])
+    apart = sum(pair["distinguishable_by_rules"] for pair in result["pairs"])
     pairs = f" The rules alone distinguish {apart} of {len(result['pairs'])} pairs." if result["pairs"] else ""
     yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} The following fail:")
     yield grid(("icon", "rule", "source"), failed) if failed else Text("none.")

@@ -108,7 +108,7 @@ def rules_table(icons: Sequence[dict[str, Any]], pairs: Sequence[dict[str, Any]]
     for icon in icons:
         rules = [rule for rule in icon["rules"] if not rule["from_model"]]
         own_pairs = [pair for pair in pairs if icon["name"] in (pair["a"], pair["b"])]
-        distinct = sum(pair["told_apart_by_rules"] for pair in own_pairs)
+        distinct = sum(pair["distinguishable_by_rules"] for pair in own_pairs)
         fails = [rule["rule"] for rule in rules if not rule["pass"]]
         made.add_row(
             icon["name"],
@@ -135,7 +135,7 @@ def rules_lines(result: Mapping[str, Any]) -> list[str]:
     pairs, whole = result["pairs"], result["set"]
     lines = []
     if pairs:
-        apart = sum(pair["told_apart_by_rules"] for pair in pairs)
+        apart = sum(pair["distinguishable_by_rules"] for pair in pairs)
         lines.append(
             f"Set: {apart} of {'1 pair' if len(pairs) == 1 else f'{len(pairs)} pairs'} distinguishable by the rules"
         )
@@ -160,6 +160,6 @@ def rules_caveat(result: Mapping[str, Any]) -> str:
 def _worst(pairs: Sequence[dict[str, Any]], names: Sequence[str]) -> Iterator[str]:
     for pair in pairs:
         if {pair["a"], pair["b"]} == set(names):
-            word = "distinguishable" if pair["told_apart_by_rules"] else "not distinguishable"
+            word = "distinguishable" if pair["distinguishable_by_rules"] else "not distinguishable"
             yield f"Worst pair by rules: {pair['a']} and {pair['b']}, {word}"
             yield from (f"  - {rule['text']}" for rule in pair["rules"])

@@ -95,7 +95,7 @@ def mended(text: str, line: int) -> str | None:
     body = old.rstrip("\r\n")
     indent = body[: len(body) - len(body.lstrip())]
     instead = indent + trouble.suggestion + old[len(body) :]
-    # A missing version line is put above the line that it is told of, all others replace theirs.
+    # A missing version line is put above the line that it is reported for, all others replace theirs.
     above = trouble.suggestion + "\n" + old
     tried = ["".join([*rows[: line - 1], new, *rows[line:]]) for new in (instead, above)]
     counts = [len(reading.troubles) + reading.more for reading in map(read_text, tried)]

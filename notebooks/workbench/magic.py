@@ -52,7 +52,7 @@ def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet 
 
     A cell may leave out the version line: it is then read as version 1 of the language. A file always needs the line,
     and ``str(cues)``, the text to save, has it. Lines in messages are counted as the notebook counts them, from
-    ``%%cue``. When something is wrong with the cell, all of it is told, the cell fails so that "Run all" stops, and
+    ``%%cue``. When something is wrong with the cell, all of it is reported, the cell fails so that "Run all" stops, and
     NAME keeps what it held before.
 
         %cue NAME

@@ -10,7 +10,7 @@ from ..observer.observer import Norm, Observer
 from .distance_components import most_different
 
 ALIKE_DPRIME = 0.3
-"""Below this no feature is named: two icons are then told apart in less than 56 % of trials."""
+"""Below this no feature is named: two icons are then distinguished in less than 56 % of trials."""
 FEATURES = {
     "intensity": ("how strong they are", "times threshold"),
     "rate": ("how fast they start", "times threshold per second"),

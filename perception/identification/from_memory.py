@@ -47,7 +47,7 @@ def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None,
     Returns
     -------
     float
-        Distance over noise; two icons are told apart in Φ(d′/2) of trials.
+        Distance over noise; two icons are distinguished correctly in Φ(d′/2) of trials.
 
     Raises
     ------

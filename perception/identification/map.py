@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -266,10 +266,7 @@ class PersonSpread:
     d_prime: Array
 
     def __post_init__(self) -> None:
-        for name in ("place_probability", "d_prime"):
-            own = np.array(getattr(self, name), dtype=np.float64)
-            own.setflags(write=False)
-            object.__setattr__(self, name, own)
+        own_arrays(self, "place_probability", "d_prime")
 
 
 def spread_over_people(d_prime: Array, correct: Array) -> PersonSpread:

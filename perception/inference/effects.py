@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer
 from ..observer.transducer import Transducer
@@ -42,10 +42,7 @@ class Curve:
     y: Array
 
     def __post_init__(self) -> None:
-        for name in ("x", "y"):
-            column = np.array(getattr(self, name), dtype=np.float64)
-            column.setflags(write=False)
-            object.__setattr__(self, name, column)
+        own_arrays(self, "x", "y")
         if self.x.shape != self.y.shape or self.x.ndim != 1:
             raise ValueError(f"{self.label}: a curve needs as many x as y, not {self.x.shape} and {self.y.shape}")
 

@@ -1,7 +1,7 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
 The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
-where two of them cannot be told apart by the evidence, they trade off from draw to draw. Noise of memory is no part of
+where the evidence does not separate two of them, they trade off from draw to draw. Noise of memory is no part of
 the inference and stays that of the shipped observer.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from .channels import CHANNELS
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .from_draw import observer_with
@@ -49,13 +49,11 @@ class PosteriorDraws:
     draws: Array
 
     def __post_init__(self) -> None:
-        own = np.array(self.draws, dtype=np.float64)
-        if own.ndim != 2 or own.shape[1] != len(self.names) or not own.shape[0]:
-            raise ValueError(f"draws of {len(self.names)} constants need as many columns, not {own.shape}")
-        if not np.isfinite(own).all():
+        own_arrays(self, "draws")
+        if self.draws.ndim != 2 or self.draws.shape[1] != len(self.names) or not self.draws.shape[0]:
+            raise ValueError(f"draws of {len(self.names)} constants need as many columns, not {self.draws.shape}")
+        if not np.isfinite(self.draws).all():
             raise ValueError("every constant of every draw must be a finite number")
-        own.setflags(write=False)
-        object.__setattr__(self, "draws", own)
 
     @classmethod
     def load(

@@ -191,10 +191,15 @@ def method_of_limits(
     'K'
     """
     played, pressed = _half_answered(observer, bench, channel, rate_K_per_s, limit_K, people)
-    moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
-    inside = pressed <= limit_K / rate_K_per_s
-    each = np.where(inside, np.interp(np.where(inside, pressed, 0.0), played.time_s, moved), np.inf)
+    each = change_at(pressed, played, bench, limit_K / rate_K_per_s)
     return Measurement("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
+
+
+def change_at(pressed_s: Array, played: Stimulus, bench: Bench, end_s: float) -> Array:
+    """How far the bench's surface has moved at some times, K without sign; inf for a time after the end of the ramp."""
+    moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
+    inside = pressed_s <= end_s
+    return np.where(inside, np.interp(np.where(inside, pressed_s, 0.0), played.time_s, moved), np.inf)
 
 
 def choice_reaction_time(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
@@ -28,11 +28,9 @@ class Measurement:
     conditions: str
 
     def __post_init__(self) -> None:
-        own = np.array(self.each, dtype=np.float64)
-        if own.ndim != 1 or own.size == 0 or np.isnan(own).any():
-            raise ValueError(f"{self.procedure}: one number is needed for each person, not {own.shape}")
-        own.setflags(write=False)
-        object.__setattr__(self, "each", own)
+        own_arrays(self, "each")
+        if self.each.ndim != 1 or self.each.size == 0 or np.isnan(self.each).any():
+            raise ValueError(f"{self.procedure}: one number is needed for each person, not {self.each.shape}")
 
     @property
     def value(self) -> float | None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from thermicon.circuit.records import Table
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.bench import Bench
@@ -54,9 +54,7 @@ class CoolingAfterPulse:
     conditions: str
 
     def __post_init__(self) -> None:
-        shares = np.array(self.called_warm, dtype=np.float64)
-        shares.setflags(write=False)
-        object.__setattr__(self, "called_warm", shares)
+        own_arrays(self, "called_warm")
 
     @property
     def change_K(self) -> Array:

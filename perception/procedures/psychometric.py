@@ -13,7 +13,7 @@ import numpy as np
 
 from thermicon.circuit.records import Table
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
@@ -55,10 +55,7 @@ class PsychometricFunction:
     conditions: str
 
     def __post_init__(self) -> None:
-        for name in ("sizes_K", "reported"):
-            column = np.array(getattr(self, name), dtype=np.float64)
-            column.setflags(write=False)
-            object.__setattr__(self, name, column)
+        own_arrays(self, "sizes_K", "reported")
         if self.reported.shape[1:] != self.sizes_K.shape:
             raise ValueError(f"{PROCEDURE}: {self.reported.shape} reports of {self.sizes_K.size} sizes")
 

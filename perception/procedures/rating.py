@@ -14,7 +14,7 @@ import numpy as np
 
 from thermicon.circuit.records import Table
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
@@ -57,10 +57,7 @@ class Ratings:
     conditions: str
 
     def __post_init__(self) -> None:
-        for name in ("sizes_K", "mean", "sd"):
-            column = np.array(getattr(self, name), dtype=np.float64)
-            column.setflags(write=False)
-            object.__setattr__(self, name, column)
+        own_arrays(self, "sizes_K", "mean", "sd")
         if self.mean.shape != self.sd.shape or self.mean.shape[1:] != self.sizes_K.shape:
             raise ValueError(f"ratings: means {self.mean.shape} and SDs {self.sd.shape} of {self.sizes_K.size} sizes")
 

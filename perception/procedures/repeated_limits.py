@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.bench import Bench
-from .classical import ramp_responses
+from .classical import change_at, ramp_responses
 
 PROCEDURE = "repeated limits"
 LN10 = math.log(10.0)
@@ -42,11 +42,9 @@ class RepeatedLimits:
     conditions: str
 
     def __post_init__(self) -> None:
-        presses = np.array(self.each_K, dtype=np.float64)
-        if presses.ndim != 2 or not presses.size:
-            raise ValueError(f"{PROCEDURE}: presses must have people and trials, not shape {presses.shape}")
-        presses.setflags(write=False)
-        object.__setattr__(self, "each_K", presses)
+        own_arrays(self, "each_K")
+        if self.each_K.ndim != 2 or not self.each_K.size:
+            raise ValueError(f"{PROCEDURE}: presses must have people and trials, not shape {self.each_K.shape}")
 
     @property
     def anticipated(self) -> float:
@@ -173,9 +171,7 @@ def repeated_limits(
     played, answered = ramp_responses(observer, bench, channel, rate_K_per_s, limit_K, people)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 5]))
     times = np.stack([_drawn(given, answered.time_s, rng.random(trials)) for given in answered.probability])
-    moved = np.abs(played.surface_C(bench.surface)[0] - bench.baseline_C)
-    inside = times <= limit_K / rate_K_per_s
-    pressed = np.where(inside, np.interp(np.where(inside, times, 0.0), played.time_s, moved), np.inf)
+    pressed = change_at(times, played, bench, limit_K / rate_K_per_s)
     pressed = np.where(pressed > anticipation_K, pressed, np.nan)
     said = f"{rate_K_per_s:g} K/s at the {bench.surface} from {bench.baseline_C:g} °C up to {limit_K:g} K"
     return RepeatedLimits(channel, pressed, f"{said}, {bench.rig.name}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..comparison.distance_components import DistanceComponent
 from ..comparison.rule_score import counted
 from ..comparison.rules import DISTINGUISHABLE, RuleResult
@@ -245,11 +245,10 @@ class Ranking:
     persons: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        own = np.array(self.confusion, dtype=np.float64)
-        if own.shape != (len(self.icons),) * 2 or not np.allclose(own.sum(axis=1), 1.0, rtol=0, atol=1e-12):
+        own_arrays(self, "confusion")
+        square = self.confusion.shape == (len(self.icons),) * 2
+        if not square or not np.allclose(self.confusion.sum(axis=1), 1.0, rtol=0, atol=1e-12):
             raise ValueError("the confusion matrix must have one row and one column per icon, and rows that sum to 1")
-        own.setflags(write=False)
-        object.__setattr__(self, "confusion", own)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -316,7 +315,7 @@ class Ranking:
                 "rules_margin": icon.rules_margin,
                 "rules_passed": sum(r.passed for r in counted(icon.rules)),
                 "rules": len(counted(icon.rules)),
-                "pairs_apart_by_rules": self._pairs_apart(icon.name),
+                "pairs_distinguishable_by_rules": self._pairs_apart(icon.name),
                 "reachable": icon.reachable,
                 "safe": icon.safe,
                 "reason": icon.reason,

@@ -15,7 +15,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, as_rows
+from ..arrays import Array, as_rows, own_arrays
 from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
 
@@ -46,10 +46,7 @@ class ResponseTimes:
     cold_share: Array
 
     def __post_init__(self) -> None:
-        for name in ("time_s", "probability", "cold_share"):
-            own = np.array(getattr(self, name), dtype=np.float64)
-            own.setflags(write=False)
-            object.__setattr__(self, name, own)
+        own_arrays(self, "time_s", "probability", "cold_share")
         if self.probability.shape != (self.cold_share.size, self.time_s.size):
             raise ValueError(f"response times: {self.probability.shape} probabilities for {self.time_s.size} times")
 

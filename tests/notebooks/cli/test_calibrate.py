@@ -51,7 +51,8 @@ def test_what_did_not_converge_is_refused_and_marked_with_force(
     assert "was not written: cold conduction velocity has not converged (R-hat 1.070, limit 1.01" in said.stderr
     assert not out.exists()
     assert cli("calibrate", "-o", out, "--force").exit_code == 0
-    draws = PosteriorDraws.load(out)
+    with pytest.warns(UserWarning, match="NOT CONVERGED"):
+        draws = PosteriorDraws.load(out)
     assert not draws.header.converged
     assert "NOT CONVERGED" in repr(draws)
 

@@ -20,7 +20,7 @@ ICON = {
     *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
     *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "outside_data"),
 }
-PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit", "told_apart_by_rules"}
+PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit", "distinguishable_by_rules"}
 SET = {
     *(
         "proportion_correct",

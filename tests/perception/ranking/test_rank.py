@@ -18,8 +18,8 @@ ICON = (
     "onset_interval_new_laboratory_s carry_over"
 )
 PAIR = (
-    "a b d_prime d_prime_interval_new_laboratory confused_probability why rules edit told_apart_by_rules rules_margin "
-    "no_edit parts"
+    "a b d_prime d_prime_interval_new_laboratory confused_probability why rules edit distinguishable_by_rules "
+    "rules_margin no_edit parts"
 )
 SET = (
     "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
@@ -222,7 +222,7 @@ def test_ranking_by_rules_orders_by_rules(rig: Rig) -> None:
     keys = [(row["rules_score"], row["rules_margin"]) for row in rows]
     assert keys == sorted(keys, reverse=True)
     for row in rows:
-        assert row["rules_score"] == (row["rules_passed"] + row["pairs_apart_by_rules"]) / (
+        assert row["rules_score"] == (row["rules_passed"] + row["pairs_distinguishable_by_rules"]) / (
             row["rules"] + len(rows) - 1
         )
 
@@ -247,7 +247,7 @@ def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> 
     for pair in held["pairs"]:
         assert (pair["d_prime"], pair["confused_probability"]) == (None, None)
         assert pair["why"] == [rule["text"] for rule in pair["rules"]]
-        assert pair["told_apart_by_rules"] == pair["rules"][-1]["pass"]
+        assert pair["distinguishable_by_rules"] == pair["rules"][-1]["pass"]
     whole = held["set"]
     for key in ("proportion_correct", "proportion_correct_interval", "information_bits", "information_bits_interval"):
         assert whole[key] is None
