@@ -19,6 +19,7 @@ from .procedures.rating import Ratings, magnitude_rating
 from .procedures.repeated_limits import RepeatedLimits, repeated_limits
 from .procedures.thermode_lag import ThermodeLag, thermode_lag
 from .comparison.distance_components import DistanceComponent, distance_components
+from .selection.goal import Goal
 from .selection.request import ChoiceError, Selection
 from .selection.choose import Choice, choose
 from .selection.edit import cheapest_edit
@@ -35,6 +36,7 @@ from .identification.delivered import PerceivedChange, judge_delivered
 
 # In the order of the flow.
 __all__ = [
+    "Goal",
     "Observer",
     "CHANNELS",
     "NORMS",

@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 
 from ..startup import is_command, warn_if_hidden
-from ..text.choices import ChooseCount, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
+from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
 from . import hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
 from .app import Commands
@@ -211,6 +211,7 @@ def rank_command(
     must: Must = None,
     most_time: MostTime = None,
     most_energy: MostEnergy = None,
+    goal: GoalText = None,
     edits: Annotated[
         bool,
         typer.Option("--edits", help="Find the cheapest edit for every indistinguishable pair, not only the worst."),
@@ -272,6 +273,7 @@ def rank_command(
         by=by,
         parameters=parameters,
         choosing=picked,
+        goal=goal,
         edits="all" if edits else ("worst" if picked is None else "none"),
         context=context,
         gap=gap,

@@ -34,6 +34,7 @@ PLAIN_OPTIONS = (
     "gap",
     "bias",
     "observer",
+    "goal",
 )
 PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
@@ -58,6 +59,7 @@ class Request:
     by: str = "model"
     parameters: int = 128
     choosing: Selection | None = None
+    goal: str | None = None
     edits: str = "worst"
     context: float = 0.0
     gap: float | None = None
@@ -79,6 +81,7 @@ def rank_files(
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, Task, rank
     from thermicon.perception.ranking.rank_file import ranking_file
+    from thermicon.perception.selection.goal import Goal
 
     if request.norm not in NORMS:
         raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
@@ -101,6 +104,7 @@ def rank_files(
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     warn_of_frames(files, icons, rig)
+    wanted = None if request.goal is None else Goal.parse(request.goal)
     model = load_observer(request.observer)
     check_draws(model, request.parameters, "--parameters")
     what = f"{icons}\0{rig.document}\0{request}"
@@ -116,6 +120,7 @@ def rank_files(
             by=request.by,
             parameters=request.parameters,
             choosing=request.choosing,
+            goal=wanted,
             edits=request.edits if request.by == "model" else "none",
             task=Task(request.context, request.gap, request.bias),
             observer=model,

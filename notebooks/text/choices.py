@@ -28,6 +28,14 @@ ObjectiveName = Annotated[
         help="Criterion of the choice: worst (pair), correct, bits or bits-per-s.  [default: worst]",
     ),
 ]
+GoalText = Annotated[
+    str | None,
+    typer.Option(
+        "--goal",
+        metavar="TEXT",
+        help='What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".',
+    ),
+]
 Must = Annotated[
     list[str] | None,
     typer.Option("--must", metavar="ICON", help="An icon that must be chosen; may be given several times."),
@@ -61,6 +69,33 @@ def chosen_as(
     from thermicon.perception.selection.request import Selection
 
     return Selection(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
+
+
+def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:
+    """Report whether a goal is met: every part with what was predicted, and what is in the way."""
+    if goal is None:
+        return
+    yield "Goal: met" if goal["met"] else "Goal: NOT met"
+    for part in goal["parts"]:
+        yield f"  {'✓' if part['met'] else '✗'} {part['text']}: {_goal_value(part)}"
+    if goal["binding"]:
+        yield f"  In the way: {'; '.join(goal['binding'])}"
+
+
+def _goal_value(part: dict[str, Any]) -> str:
+    """What was predicted of a part, in its unit, and how far that is from what is wanted."""
+    value, wanted = part["value"], part["wanted"]
+    if value is None or isinstance(value, str):
+        return value or "none"
+    unit = part["text"].split(" for ")[0].split()[-1]
+    share = unit == "%"
+    shown, gap = (100.0 * value, 100.0 * abs(value - wanted)) if share else (value, abs(value - wanted))
+    words = "" if unit[0].isdigit() else f" {unit}"
+    text = f"{shown:.1f}{words}" if share else f"{number(shown, 2)}{words}"
+    if part["met"]:
+        return text
+    short = f"{gap:.1f} points" if share else f"{number(gap, 2)}{words}"
+    return f"{text}, missed by {short}"
 
 
 def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
-from .choices import choice_lines
+from .choices import choice_lines, goal_lines
 from .rank_notes import (
     carried_lines,
     norm_lines,
@@ -62,7 +62,9 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
             rival(result["confusion"], labels.index(icon["name"])),
         )
     best = ["", *choice_lines(result["chosen"])] if result["chosen"] else []
-    show(*heading, made, "", *troubles, *space, *set_lines(result), *best, *_disagreements(result), "", caveat(result))
+    goal = ["", *goal_lines(result["goal"])] if result["goal"] else []
+    lines = [*set_lines(result), *best, *goal, *_disagreements(result)]
+    show(*heading, made, "", *troubles, *space, *lines, "", caveat(result))
 
 
 def _disagreements(result: dict[str, Any]) -> list[str]:

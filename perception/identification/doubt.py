@@ -41,7 +41,7 @@ def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
     >>> import numpy as np
     >>> x = np.random.default_rng(0).standard_normal((200, 2))
     >>> none = np.zeros((200, 1))
-    >>> drawn = LaboratoryDraws(("a", "b"), x, 0.8 + 0.05 * x[:, 0], none[:, 0], none, none[:, :, None])
+    >>> drawn = LaboratoryDraws(("a", "b"), x, 0.8 + 0.05 * x[:, 0], *[none] * 7)
     >>> [(doubt.name, round(doubt.share, 2)) for doubt in doubts(drawn)]
     [('a', 0.99)]
     """

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +50,15 @@ class NewLaboratory:
     def pair(self, i: int, j: int) -> Interval:
         """Interval of the d′ of one pair."""
         return float(self.d_prime[0][i, j]), float(self.d_prime[1][i, j])
+
+    @property
+    def persons(self) -> dict[str, Array]:
+        """Proportion correct, bits and least detection (n,) of single people, of all draws together."""
+        return {
+            "correct": self.each.persons_correct.reshape(-1),
+            "bits": self.each.persons_bits.reshape(-1),
+            "detected": self.each.persons_detected.reshape(-1),
+        }
 
     def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
         """The intervals of every icon, by the keys of `rank --json`."""
@@ -140,7 +149,7 @@ def new_laboratory(
     raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s)
     correct, bits, detected, apart, onset = (
         np.clip(values + (nominal - own_values), 0.0, top)
-        for values, nominal, own_values, top in zip(raw, about, centre, most, strict=True)
+        for values, nominal, own_values, top in zip(raw, about, centre[:5], most, strict=True)
     )
     low, high = np.percentile(apart, COVER, axis=0)
     return NewLaboratory(
@@ -152,7 +161,16 @@ def new_laboratory(
         detected=tuple(_ends(detected[:, icon]) for icon in range(icons)),
         onset_s=tuple(_ends_of_felt(onset[:, icon]) for icon in range(icons)),
         d_prime=(low, high),
-        each=LaboratoryDraws(each.names, each.values, correct, bits, detected, apart, onset),
+        each=replace(
+            each,
+            proportion_correct=correct,
+            information_bits=bits,
+            detected=detected,
+            d_prime=apart,
+            onset_s=onset,
+            persons_correct=np.clip(each.persons_correct + (predicted.proportion_correct - centre[0]), 0.0, 1.0),
+            persons_bits=np.clip(each.persons_bits + (predicted.information_bits - centre[1]), 0.0, most[1]),
+        ),
     )
 
 

@@ -42,7 +42,8 @@ class LaboratoryDraws:
 
     `values` (draws, constants) belong to `names`; `proportion_correct` and `information_bits` (draws,) are means over
     the people of a draw, `detected` and `onset_s` (draws, icons; NaN where an icon is not felt), `d_prime` (draws,
-    icons, icons) their medians.
+    icons, icons) their medians. `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
+    people), of the icon that a person detects least, are those of the people of a draw one by one.
     """
 
     names: tuple[str, ...]
@@ -52,6 +53,9 @@ class LaboratoryDraws:
     detected: Array
     d_prime: Array
     onset_s: Array
+    persons_correct: Array
+    persons_bits: Array
+    persons_detected: Array
 
     def __len__(self) -> int:
         return int(self.proportion_correct.size)
@@ -120,7 +124,7 @@ def laboratory_draws(
     names = (*held.names, *(parameter.name for parameter in memory), "laboratory, cold", "laboratory, warm")
     moved = np.array([[p.at(float(s)) for p, s in zip(memory, row, strict=True)] for row in shares]).reshape(draws, -1)
     values = np.hstack([held.draws[chosen], moved, offsets[chosen]])
-    return LaboratoryDraws(names, values, *(np.stack([scores[k] for scores in found]) for k in range(5)))
+    return LaboratoryDraws(names, values, *(np.stack([scores[k] for scores in found]) for k in range(8)))
 
 
 def scored(
@@ -132,7 +136,10 @@ def scored(
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Proportion correct, bits, detected (icons,), d′ (icons, icons) and onset (icons,) of those who are invited."""
+    """Proportion correct, bits, detected (icons,), d′ (icons, icons), onset (icons,) of those who are invited; and
+
+    correct, bits and least detection (people,) of each of them.
+    """
     samples = min(SAMPLES, max(LEAST, NAMED // few.cold_C.shape[1]))
     felt = respond(few, people, observer, [norm], times=True)
     d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
@@ -146,6 +153,9 @@ def scored(
         reports.probability,
         np.median(d_prime[invited], axis=0),
         reports.onset_s,
+        correct[invited],
+        bits[invited],
+        felt.probability[invited].min(axis=1),
     )
 
 

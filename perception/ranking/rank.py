@@ -5,8 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from itertools import combinations
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,31 +14,29 @@ import numpy as np
 from thermicon.circuit.program import own_version
 
 from ..arrays import Array
-from ..comparison.distance_components import components_of
-from ..comparison.reasons import pair_reasons
-from ..comparison.rule_score import disagreements, icon_score, pair_margin, worst_by_rules
-from ..comparison.rules import icon_rules, pair_rules, rig_rules
+from ..comparison.rule_score import disagreements, worst_by_rules
+from ..comparison.rules import rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
-from ..identification.episodes import remembered
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer, check_norm
+from ..observer.observer import Norm, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..selection.choose import Choice, choose
+from ..selection.goal import Goal, GoalError
 from ..selection.pair_edits import with_edits
-from ..selection.request import Selection, check_selection, objection
-from ..sensation.coverage import outside_data
-from ..sensation.detection import channel_name
-from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
-from ..sensation.percept import Percept, perceive
+from ..selection.request import Selection, check_selection, energy_J, objection
+from ..sensation.percept import perceive
+from .assemble import assemble, playable_pairs, worst_of
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
-from .ranking import IconScore, PairScore, Ranking
+from .goal_result import NEEDS_DRAWS, judge_goal
+from .outcome import outcome_of_choice, outcome_of_set
+from .ranking import Ranking
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
 TAIL_S = 10.0
@@ -61,6 +58,7 @@ def rank(
     by: str = "model",
     parameters: int = DRAWS,
     choosing: Selection | None = None,
+    goal: Goal | str | None = None,
     edits: str = "none",
     task: Task = USUAL,
     observer: ObserverModel | Path | str | None = None,
@@ -95,6 +93,8 @@ def rank(
         Draws from the posterior of the constants, for the intervals that a new laboratory will find (0: none).
     choosing
         Request for the best subset; the intervals are then those of the chosen icons.
+    goal
+        What is wanted of the set, or of what is chosen, as a `Goal` or its text; None: nothing in particular.
     edits
         Find the cheapest edit of the `worst` pair, of `all` pairs that are not distinguishable, or of `none`.
     task
@@ -142,13 +142,16 @@ def rank(
     if parameters < 0 or parameters == 1:
         raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
     draws = parameters if by == "model" else 0
-    execution = Execution(workers, cluster, keep)
+    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
     model = ObserverModel.of(observer)
-    nominal, crowd = model.nominal, model.people(people, seed)
     if model.posterior is None:
         draws = 0
     elif draws > len(model.posterior):
         raise ValueError(f"{draws} draws of the parameters were asked for; {model.name} has {len(model.posterior)}")
+    if wanted is not None and wanted.single_people and not draws:
+        raise GoalError(NEEDS_DRAWS)
+    execution = Execution(workers, cluster, keep)
+    nominal, crowd = model.nominal, model.people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
@@ -161,9 +164,9 @@ def rank(
     report()
 
     all_ = collect_batches(job, execution, report)
-    made = _assemble(members, traces, percepts, all_, chosen, nominal)
-    counted = _playable(made)
-    worst = _worst(counted) if by == "model" else worst_by_rules(counted)
+    made = assemble(members, traces, percepts, all_, chosen, nominal)
+    counted = playable_pairs(made)
+    worst = worst_of(counted) if by == "model" else worst_by_rules(counted)
     pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task, nominal)
     picked = None
     if choosing is not None:
@@ -194,6 +197,11 @@ def rank(
         picked = _with_interval(
             picked, [icon.name for icon in members], all_, crowd, chosen, model, draws, seed, (task, left), report
         )
+    energies = [energy_J(trace, lasting) for trace, lasting in zip(traces, durations, strict=True)]
+    reached = None
+    if wanted is not None:
+        outcome = outcome_of_set(made, all_, durations, energies, worst, elsewhere)
+        reached = judge_goal(wanted, outcome if picked is None else outcome_of_choice(outcome, picked))
     ranking = Ranking(
         version=own_version(),
         rig=rig.name,
@@ -207,6 +215,9 @@ def rank(
         observer=model.name,
         rig_text=rig.document,
         persons=tuple(all_.correct.tolist()),
+        total_s=math.fsum(durations),
+        total_J=math.fsum(energies),
+        goal=reached,
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,
@@ -232,78 +243,6 @@ def rank(
     )
     report()
     return ranking
-
-
-@dataclass(frozen=True, slots=True)
-class _Made:
-    icons: tuple[IconScore, ...]
-    pairs: tuple[PairScore, ...]
-
-
-def _assemble(
-    icons: Sequence[Icon],
-    traces: Sequence[Trace],
-    percepts: Sequence[Percept],
-    all_: PooledResult,
-    norm: Norm,
-    observer: Observer,
-) -> _Made:
-    middle, pooled, detected = all_.middle, all_.pooled, all_.detected
-    onsets, channels = all_.detection.onset_s, all_.detection.channel
-    pairs = []
-    episodes = remembered(percepts, observer)
-    for i, j in combinations(range(len(icons)), 2):
-        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
-        rules = pair_rules(traces[i], traces[j])
-        pairs.append(
-            PairScore(
-                a=icons[i].name,
-                b=icons[j].name,
-                d_prime=float(middle[i, j]),
-                confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
-                why=tuple(reason.text for reason in why),
-                rules=rules,
-                rules_margin=pair_margin(rules),
-                parts=components_of(episodes, i, j, observer),
-            )
-        )
-    scored = []
-    for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
-        safe, reason, cautions = _verdict(trace)
-        own = icon_rules(trace, percept)
-        objection = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
-        share, margin = icon_score(own, objection)
-        scored.append(
-            IconScore(
-                name=icon.name,
-                detected_probability=float(detected[k]),
-                onset_s=None if math.isnan(onsets[k]) else float(onsets[k]),
-                channel=channel_name(int(channels[k])),
-                peak_change_K=(peak_change_K(trace, "cold"), peak_change_K(trace, "warm")),
-                attack_K_per_s=(attack_K_per_s(trace, "cold"), attack_K_per_s(trace, "warm")),
-                delay_s=(delay_s(trace, "cold"), delay_s(trace, "warm")),
-                proportion_correct=float(pooled[k, k]),
-                reachable=bool(trace.reachable),
-                safe=safe,
-                reason=reason,
-                cautions=cautions,
-                rules=own,
-                rules_score=share,
-                rules_margin=margin,
-                outside_data=outside_data(trace),
-            )
-        )
-    return _Made(tuple(scored), tuple(pairs))
-
-
-def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
-    """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
-    from thermicon.circuit import judge_safety
-
-    safety = judge_safety(trace)
-    objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
-    amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
-    return bool(safety.safe), "; ".join(objection) or None, amber
 
 
 def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
@@ -343,20 +282,6 @@ def _with_interval(
         step=step,
     )
     return replace(picked, new_laboratory=found)
-
-
-def _playable(made: _Made) -> tuple[PairScore, ...]:
-    """The pairs of icons that can be played; all pairs where there is none of them."""
-    fine = {icon.name for icon in made.icons if icon.playable}
-    return tuple(pair for pair in made.pairs if pair.a in fine and pair.b in fine) or made.pairs
-
-
-def _worst(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
-    """The pair most often confused; equal ones by name."""
-    if not pairs:
-        return None
-    first = min(pairs, key=lambda p: (-p.confused_probability, p.a, p.b))
-    return first.a, first.b
 
 
 def _interval(values: Array) -> tuple[float, float]:

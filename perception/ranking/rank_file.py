@@ -57,6 +57,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             },
             "set": _set(ranking, model, asked),
             "persons": {"proportion_correct": list(ranking.persons) if model else None},
+            "goal": None if ranking.goal is None else ranking.goal.to_dict(),
             "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
             "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
         }
@@ -119,6 +120,8 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
         "bits_per_s": ranking.bits_per_s if many else None,
         "information_bits_plugin": ranking.information_bits_plugin if many else None,
         "trials": ranking.trials,
+        "total_s": ranking.total_s,
+        "total_J": ranking.total_J,
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
         "rules_disagree": list(ranking.rules_disagree),
         "norm_sensitivity": ranking.norm_sensitivity if model else {},

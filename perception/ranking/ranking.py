@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
@@ -18,6 +19,7 @@ from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer import Channel
 from ..observer.observer_model import SHIPPED
+from .goal_result import GoalResult
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -198,6 +200,10 @@ class Ranking:
         The whole rig file as used.
     persons
         Proportion correct of every virtual person, 0–1.
+    total_s, total_J
+        Time in s and energy in J of all icons together; on a thermode, which states no energy, NaN.
+    goal
+        Whether the set, or what was chosen of it, meets the goal; None: no goal.
 
     Raises
     ------
@@ -243,6 +249,9 @@ class Ranking:
     observer: str = SHIPPED
     rig_text: str = ""
     persons: tuple[float, ...] = ()
+    total_s: float = math.nan
+    total_J: float = math.nan
+    goal: GoalResult | None = None
 
     def __post_init__(self) -> None:
         own_arrays(self, "confusion")

@@ -312,3 +312,20 @@ def test_what_is_outside_is_said_once_with_its_icons() -> None:
     icons = [{"name": n, "outside_data": ["too fast"] if n != "b" else []} for n in "abc"]
     assert outside_lines(icons) == ["Outside the data: a, c: too fast"]
     assert outside_lines(icons[:1]) == ["Outside the data: a: too fast"]
+
+
+def test_a_goal_is_reported_and_a_bad_one_stops_before_work(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "goal.json"
+    said = cli("rank", two, "--people", 4, "--parameters", 8, "--goal", "correct >= 10 %, time <= 1 s", "--json", out)
+    assert said.exit_code == 0, said.stderr
+    assert "Goal: NOT met" in said.stdout
+    assert "✓ correct >= 10 %: " in said.stdout
+    assert "✗ time <= 1 s: " in said.stdout
+    held = json.loads(out.read_text(encoding="utf-8"))["goal"]
+    assert [part["met"] for part in held["parts"]] == [True, False]
+    said = cli("rank", two, "--goal", "correct > 90")
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "correct lies in 0 to 100 %: write it as 90 %" in said.stderr
+    said = cli("rank", two, "--people", 4, "--parameters", 0, "--goal", "correct >= 9 % for 95 % of people")
+    assert said.exit_code == 1
+    assert "needs draws of the posterior" in said.stderr

@@ -10,7 +10,7 @@ from thermicon.perception import Ranking, perceive, rank
 
 TOP = (
     "thermicon rig rig_changes rig_text observer seed people tracking by norm content_hash task icons pairs confusion "
-    "set persons chosen map"
+    "set persons goal chosen map"
 )
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
@@ -23,7 +23,7 @@ PAIR = (
 )
 SET = (
     "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
-    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity norm_changes "
+    "information_bits_plugin trials total_s total_J worst_pair rules_disagree norm_sensitivity norm_changes "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
     "new_laboratory_people doubt rules_score rules"
 )

@@ -1,0 +1,229 @@
+"""Goals for a set of icons: what is wanted of it, in a few words.
+
+A goal has one or more parts, joined by commas: ``correct >= 90 % for 95 % of people, time <= 10 s, safety green``.
+Rankings are judged by it in `thermicon.perception.ranking.goal_result`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from thermicon.icons.near_words import did_you_mean
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+GRAMMAR = r"""
+start: part ("," part)*
+part: WORD COMPARISON NUMBER [UNIT] [people]  -> number
+    | WORD NUMBER                             -> exactly
+    | WORD WORD                               -> verdict
+people: "for" NUMBER "%" "of" "people"
+COMPARISON: ">=" | "<=" | "≥" | "≤" | "=" | ">" | "<"
+NUMBER: /[0-9]+(\.[0-9]+)?/
+UNIT: "%" | "ms" | "min" | "s" | "mJ" | "kJ" | "J" | "bits" | "bit"
+WORD: /(?!for\b)[a-z_][a-z_'′-]*/
+%ignore /\s+/
+"""
+EXAMPLE = "correct >= 90 % for 95 % of people, time <= 10 s, safety green"
+
+
+class GoalError(ValueError):
+    """A goal cannot be read, or its parts contradict each other; the text says where, and what would be right.
+
+    Examples
+    --------
+    >>> Goal.parse("corect >= 90 %")
+    Traceback (most recent call last):
+    ...
+    thermicon.perception.selection.goal.GoalError: goal, part 1 'corect >= 90 %': there is no quantity 'corect'...
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What a part may be about: its comparison, units as factors to the unit of its value, and its bounds."""
+
+    comparison: str
+    units: Mapping[str, float]
+    least: float
+    most: float
+    people: bool
+    meaning: str
+
+
+SHARE = {"%": 0.01, "": 1.0}
+SECONDS = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+QUANTITIES: Mapping[str, Quantity] = {
+    "correct": Quantity(">=", SHARE, 0.0, 1.0, True, "share of icons that are named correctly"),
+    "detected": Quantity(">=", SHARE, 0.0, 1.0, True, "detection of the icon that is detected least"),
+    "bits": Quantity(">=", {"bits": 1.0, "bit": 1.0, "": 1.0}, 0.0, 20.0, True, "information of the set"),
+    "d_prime": Quantity(">=", {"": 1.0}, 0.0, 20.0, False, "median d′ of the worst pair"),
+    "time": Quantity("<=", SECONDS, 0.0, math.inf, False, "duration of all icons together"),
+    "energy": Quantity("<=", {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}, 0.0, math.inf, False, "energy of all icons together"),
+    "onset": Quantity("<=", SECONDS, 0.0, math.inf, False, "onset of the icon that is felt last"),
+    "count": Quantity(">=", {"": 1.0}, 2.0, 10_000.0, False, "number of icons that can be played"),
+}
+SAFETY = "safety"
+VERDICTS = ("green", "amber")
+"""Green: no finding at all; amber: no hard limit is passed."""
+
+
+@dataclass(frozen=True, slots=True)
+class GoalPart:
+    """One part: a quantity with its limit in SI units or as a share, for a share of people (None: for their mean).
+
+    For `safety`, `limit` is the place in `VERDICTS`.
+    """
+
+    quantity: str
+    limit: float
+    people: float | None = None
+
+    @property
+    def text(self) -> str:
+        """The part in canonical form.
+
+        >>> Goal.parse("correct>=0.9 for 95% of people, onset <= 800 ms, count 6").text
+        'correct >= 90 % for 95 % of people, onset <= 0.8 s, count >= 6'
+        """
+        if self.quantity == SAFETY:
+            return f"{SAFETY} {VERDICTS[int(self.limit)]}"
+        known = QUANTITIES[self.quantity]
+        unit = next(iter(known.units))
+        value = f"{self.limit / known.units[unit]:g} {unit}".rstrip()
+        people = "" if self.people is None else f" for {100.0 * self.people:g} % of people"
+        return f"{self.quantity} {known.comparison} {value}{people}"
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """What is wanted of a set; parts of different quantities, in the order in which they were given.
+
+    Examples
+    --------
+    >>> goal = Goal.parse("correct >= 90 % for 95 % of people, safety green")
+    >>> goal.parts[0].limit, goal.parts[0].people
+    (0.9, 0.95)
+    """
+
+    parts: tuple[GoalPart, ...]
+
+    def __post_init__(self) -> None:
+        seen: dict[tuple[str, float | None], GoalPart] = {}
+        for part in self.parts:
+            other = seen.setdefault((part.quantity, part.people), part)
+            if other is not part:
+                raise GoalError(f"goal: {other.text!r} and {part.text!r} are about the same: keep one of them")
+
+    @classmethod
+    def parse(cls, text: str) -> Goal:
+        """Read a goal.
+
+        Parameters
+        ----------
+        text
+            Parts joined by commas: a quantity (`correct`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`,
+            `count`), its comparison, a number with its unit, and for the first three `for N % of people`; or
+            `safety green`, `safety amber`.
+
+        Raises
+        ------
+        GoalError
+            For what cannot be read, units that do not fit, and parts about the same.
+
+        """
+        from lark.exceptions import UnexpectedInput
+
+        try:
+            tree = _parser().parse(text)
+        except UnexpectedInput as problem:
+            raise GoalError(_where(text, problem)) from None
+        return cls(tuple(_part(k, text, part) for k, part in enumerate(tree.children, 1)))
+
+    def of(self, quantity: str) -> float | None:
+        """Limit of a quantity, where the goal has one; the strictest of several."""
+        limits = [part.limit for part in self.parts if part.quantity == quantity]
+        if not limits:
+            return None
+        return max(limits) if quantity in QUANTITIES and QUANTITIES[quantity].comparison == ">=" else min(limits)
+
+    @property
+    def single_people(self) -> bool:
+        """Whether a part is about a share of people, which takes draws of the posterior to judge."""
+        return any(part.people is not None for part in self.parts)
+
+    @property
+    def text(self) -> str:
+        """The goal in canonical form."""
+        return ", ".join(part.text for part in self.parts)
+
+    def __repr__(self) -> str:
+        return f"Goal({self.text})"
+
+
+@lru_cache(maxsize=1)
+def _parser() -> Lark:
+    from lark import Lark
+
+    return Lark(GRAMMAR, parser="lalr", propagate_positions=True)
+
+
+def _part(number: int, text: str, tree: Any) -> GoalPart:
+    where = f"goal, part {number} {text[tree.meta.start_pos : tree.meta.end_pos]!r}"
+    name = str(tree.children[0]).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+    if name == SAFETY:
+        wanted = str(tree.children[1]) if tree.data == "verdict" else ""
+        if wanted not in VERDICTS:
+            raise GoalError(f"{where}: safety is {' or '.join(VERDICTS)}, such as 'safety green'")
+        return GoalPart(SAFETY, float(VERDICTS.index(wanted)))
+    if name not in QUANTITIES:
+        raise GoalError(f"{where}: there is no quantity {name!r}: {did_you_mean(name, {*QUANTITIES, SAFETY})}")
+    known = QUANTITIES[name]
+    if tree.data == "verdict" or (tree.data == "exactly" and name != "count"):
+        unit = next(iter(known.units))
+        raise GoalError(
+            f"{where}: {name} needs a comparison and a number, such as '{name} {known.comparison} 1 {unit}'"
+        )
+    comparison, value, unit, people = _pieces(tree)
+    if comparison is not None and comparison != known.comparison:
+        raise GoalError(f"{where}: {name} ({known.meaning}) is wanted {known.comparison} a number, not {comparison}")
+    if unit not in known.units:
+        units = " or ".join(each or "no unit" for each in known.units)
+        raise GoalError(f"{where}: {name} is given in {units}, not {unit or 'without a unit'}")
+    limit = round(value * known.units[unit], 12)
+    if not known.least <= limit <= known.most or not limit > 0.0:
+        first = next(iter(known.units))
+        span = f"{known.least / known.units[first]:g} to {known.most / known.units[first]:g} {first}".rstrip()
+        cure = f": write it as {value:g} %" if unit == "" and "%" in known.units and value <= 100.0 else ""
+        raise GoalError(f"{where}: {name} lies in {span}{cure}")
+    if people is not None and not known.people:
+        raise GoalError(f"{where}: {name} is the same for all people: leave out 'for ... of people'")
+    if people is not None and not 0.5 <= people < 1.0:
+        raise GoalError(f"{where}: a goal is set for 50 % of people or more, and less than 100 %")
+    return GoalPart(name, limit, people)
+
+
+def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
+    if tree.data == "exactly":
+        return None, float(tree.children[1]), "", None
+    _, comparison, number, unit, people = tree.children
+    sign = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">="}.get(str(comparison), str(comparison))
+    if str(comparison) == "=" and str(tree.children[0]) != "count":
+        sign = "="
+    share = None if people is None else float(people.children[0]) / 100.0
+    return sign, float(number), "" if unit is None else str(unit), share
+
+
+def _where(text: str, problem: Any) -> str:
+    place = getattr(problem, "pos_in_stream", None)
+    token = getattr(problem, "token", None)
+    if token is not None and token.type == "$END":
+        place = None
+    if place is None or place < 0 or place >= len(text):
+        return f"goal {text!r}: it ends too early: write it such as {EXAMPLE!r}"
+    return f"goal {text!r}: {text[place:][:12]!r} at character {place + 1} cannot be read: write it such as {EXAMPLE!r}"
