@@ -7,7 +7,7 @@ few people. The result is evaluated for all people, together with the starting s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ from ..observer.observer_model import ObserverModel
 from .appraise import Appraisal, appraise
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
+from .found_icons import found_set, names_of
 from .max_min_subset import max_min_subset, nearest_pair
 from .request import ChoiceError
 from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
@@ -169,12 +170,14 @@ def search(
         for one in finalists
     )
     if after.value(objective) < before.value(objective):
-        finalists[1], after = finalists[0], before
+        best, after = start, before
+    names = dict(zip((gene.icon.name for gene in best), names_of(best), strict=True))
+    a, b = after.worst_pair
     return SearchResult(
-        found=_as_set(icons, finalists[1], len(fixed), seed),
+        found=found_set(icons, best, seed),
         start=tuple(finalists[0]),
         before=before,
-        after=_renamed(after, finalists[1], len(fixed)),
+        after=replace(after, worst_pair=(names[a], names[b])),
         objective=objective,
         seed=seed,
         evaluations=screened,
@@ -289,34 +292,3 @@ def climbed(
         if not found[place, other] > score + 1e-9:
             return chosen
         score, chosen[place] = float(found[place, other]), other
-
-
-def _names(icons: Sequence[Icon], fixed: int) -> list[str]:
-    """Names of plain icons: that of the family and a number, where it is free."""
-    taken = [icon.name for icon in icons[:fixed]]
-    for icon in icons[fixed:]:
-        head, n = icon.name.partition("_")[0], 1
-        while f"{head}-{n}" in taken:
-            n += 1
-        taken.append(f"{head}-{n}")
-    return taken
-
-
-def _renamed(appraisal: Appraisal, icons: Sequence[Icon], fixed: int) -> Appraisal:
-    new = dict(zip((icon.name for icon in icons), _names(icons, fixed), strict=True))
-    a, b = appraisal.worst_pair
-    return replace(appraisal, worst_pair=(new[a], new[b]))
-
-
-def _as_set(icons: IconSet, found: Sequence[Icon], fixed: int, seed: int) -> IconSet:
-    """The found icons as a set of plain icons that say where they come from."""
-    from thermicon.icons import Icon, IconSet
-
-    entries = list(found[:fixed])
-    for icon, name in zip(found[fixed:], _names(found, fixed)[fixed:], strict=True):
-        origin = f"from {icon.name.replace('_', ' ')}"
-        tags = (*icon.metadata.tags, "found by search", f"seed {seed}", origin)
-        entries.append(Icon(name, icon.statements, icon.context, replace(icon.metadata, tags=tags)))
-    name = f"{icons.name}-found" if icons.name else ""
-    title = f"{icons.title}, found by search" if icons.title else "Found by search"
-    return IconSet(name, title, icons.context, icons.metadata, tuple(entries))
