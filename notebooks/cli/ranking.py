@@ -87,16 +87,9 @@ def rank_files(
         raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if json_out is not None:
         check_output(json_out, (), "JSON")
-    if report_out is not None:
-        check_output(report_out, (".html", ".htm"), "a report")
-        if report_out == STDOUT:
-            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+    check_report(report_out)
     check_separate(files, [json_out, report_out])
-    if figures is not None:
-        if not figures.is_dir() and (figures.exists() or figures.suffix.lower() in PICTURES):
-            hint = figures.with_suffix("") if figures.suffix else "figures"
-            raise usage(f"{figures} is the name of a file; give a folder, such as {hint}, for all figures", "--figure")
-        check_folder(figures)
+    check_figures(figures)
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
         what = (
@@ -149,6 +142,24 @@ def rank_files(
         typer.echo(ranking.to_json())
     else:
         show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+
+
+def check_report(out: Path | None) -> None:
+    """Fail for a report that is not the name of a page."""
+    if out is not None:
+        check_output(out, (".html", ".htm"), "a report")
+        if out == STDOUT:
+            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+
+
+def check_figures(folder: Path | None) -> None:
+    """Fail for figures that are not to go to a folder."""
+    if folder is None:
+        return
+    if not folder.is_dir() and (folder.exists() or folder.suffix.lower() in PICTURES):
+        hint = folder.with_suffix("") if folder.suffix else "figures"
+        raise usage(f"{folder} is the name of a file; give a folder, such as {hint}, for all figures", "--figure")
+    check_folder(folder)
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:

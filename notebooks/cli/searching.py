@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
-from ..text.choices import OBJECTIVES
-from ..text.messages import check_changes, load_observer, load_rig, note, usage
-from .options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
+from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
+from ..text.messages import check_changes, check_draws, load_observer, load_rig, note, progress_bar, usage
+from .options import Changes, NormName, ObserverFile, OneFile, ReportPage, RigName, Tracking, check_tracking
+from .ranking import check_figures, check_report
+from .search_result import FoundSet, Ranked
 
 if TYPE_CHECKING:
-    from thermicon.perception import SearchResult
+    from thermicon.circuit import Rig
+    from thermicon.perception import Goal
 
 
 def search_command(
@@ -25,9 +29,13 @@ def search_command(
         ),
     ] = None,
     objective: Annotated[
-        str,
-        typer.Option("--objective", metavar="NAME", help="What to improve: worst (pair), correct, bits or bits-per-s."),
-    ] = "worst",
+        str | None,
+        typer.Option(
+            "--objective",
+            metavar="NAME",
+            help="What to improve: worst (pair), correct, bits or bits-per-s.  [default: that of the goal, or worst]",
+        ),
+    ] = None,
     evaluations: Annotated[
         int,
         typer.Option(
@@ -41,6 +49,14 @@ def search_command(
     tracking: Tracking = None,
     norm: NormName = "episodes",
     observer: ObserverFile = None,
+    goal: GoalText = None,
+    must: Must = None,
+    most_time: MostTime = None,
+    most_energy: MostEnergy = None,
+    parameters: Annotated[
+        int,
+        typer.Option("--parameters", metavar="N", help="Draws of the posterior for intervals and goals; 0 for none."),
+    ] = 128,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -51,12 +67,18 @@ def search_command(
             help="Write the improved set to a cue file, or - for stdout.",
         ),
     ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures of the found set to DIR."),
+    ] = None,
+    report: ReportPage = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
     """Improve a set of icons over the continuous parameters of its families; all other icons stay as they are.
 
-    The result is the best set for the model, with which it was searched: test it with people before you use it.
+    With --goal, totals, the number of icons and what single icons must do are kept; where the goal is not met, changes
+    of the rig are tried. The result is the best set for the model, with which it was searched: test it with people.
     """
     check_changes(changes or [])
     bounds = (
@@ -64,11 +86,15 @@ def search_command(
         ("--evaluations", evaluations, 10, 1_000_000),
         ("--people", people, 1, 100_000),
         ("--seed", seed, 0, 2**32 - 1),
+        ("--parameters", parameters, 0, 10_000),
     )
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
-    if objective not in OBJECTIVES:
+    if parameters == 1:
+        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
+    check_totals(most_time, most_energy)
+    if objective is not None and objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     check_tracking(tracking)
     from thermicon.perception.observer.channels import NORMS
@@ -77,13 +103,17 @@ def search_command(
         raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
-        check_separate([file], [output])
-    from thermicon.perception import search
+    check_report(report)
+    check_figures(figure)
+    check_separate([file], [output, report])
+    from thermicon.perception import Goal, search
 
-    from ..text.messages import progress_bar
     from .cues import read_set, warn_of_frames
 
+    wanted = None if goal is None else Goal.parse(goal)
+    objective = objective or _objective(wanted)
     icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
+    check_draws(model, parameters, "--parameters")
     warn_of_frames([file], icons, where)
     with progress_bar("searching") as progress:
         found = search(
@@ -96,6 +126,10 @@ def search_command(
             seed=seed,
             tracking=tracking,
             norm=norm,
+            must=must,
+            most_s=most_time,
+            most_J=most_energy,
+            goal=wanted,
             observer=model,
             progress=progress,
         )
@@ -106,40 +140,22 @@ def search_command(
         with complete_or_absent(output) as draft:
             draft.write_text(str(found.found), encoding="utf-8")
         note(f"wrote {output}")
-    show_search(found, icons.title, people, where.name)
+    made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, parameters), wanted)
+    if report is not None or figure is not None:
+        made.write(where, report, figure, _command([file], where, choose, objective, goal))
+    made.show(icons.title, where.name)
 
 
-def show_search(found: SearchResult, title: str, people: int, rig: str) -> None:
-    """Print the improved set, its scores next to those of the initial set, and the caveat."""
-    from thermicon.icons.number_text import number, percent
+def _objective(goal: Goal | None) -> str:
+    """What a goal wants most of: the worst pair, unless it is about the proportion correct or bits."""
+    wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
+    return wanted[0] if wanted else "worst"
 
-    from ..text.tables import show, table
 
-    made = table("", "before", "after", numbers=("before", "after"))
-    for what, before, after in (
-        ("worst pair, d′", number(found.before.d_prime), number(found.after.d_prime)),
-        ("proportion correct", percent(found.before.proportion_correct), percent(found.after.proportion_correct)),
-        ("information, bits", f"{found.before.information_bits:.2f}", f"{found.after.information_bits:.2f}"),
-        ("information rate, bits/s", f"{found.before.bits_per_s:.2f}", f"{found.after.bits_per_s:.2f}"),
-    ):
-        made.add_row(what, before, after)
-    crowd = "1 virtual person" if people == 1 else f"{people} virtual people"
-    began = f"Before: {', '.join(icon.name for icon in found.start)}"
-    icons = [
-        f"  - {icon.name}: {icon.metadata.tags[-1]}" for icon in found.found if "found by search" in icon.metadata.tags
-    ]
-    show(
-        *([title, ""] if title else []),
-        "Found:",
-        *icons,
-        "",
-        made,
-        "",
-        f"After: worst pair {' and '.join(found.after.worst_pair)}",
-        began,
-        "",
-        f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the "
-        f"objective {found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
-        "These are predictions of a model, not measurements, and the set was optimised for that same model: "
-        "expect lower scores from people.",
-    )
+def _command(files: list[str], rig: Rig, choose: int | None, objective: str, goal: str | None) -> str:
+    """The command in short, for the report."""
+    words = ["thermicon", "search", *(Path(file).name for file in files)]
+    words += [] if rig.name == "thenar" else ["--rig", rig.name]
+    words += [] if choose is None else ["--choose", str(choose)]
+    words += ["--objective", objective] + ([] if goal is None else ["--goal", goal])
+    return shlex.join(words)

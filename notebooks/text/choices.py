@@ -63,12 +63,17 @@ def chosen_as(
         raise usage(f"a choice of {count} has no pair to compare; choose 2 icons or more", "--choose")
     if objective is not None and objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
-    for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
-        if most is not None and not (math.isfinite(most) and most > 0):
-            raise usage(f"{most:g} {unit} is not above 0", option)
+    check_totals(most_s, most_J)
     from thermicon.perception.selection.request import Selection
 
     return Selection(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
+
+
+def check_totals(most_s: float | None, most_J: float | None) -> None:
+    """Fail with a usage error for a total time or energy that is not above 0."""
+    for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
+        if most is not None and not (math.isfinite(most) and most > 0):
+            raise usage(f"{most:g} {unit} is not above 0", option)
 
 
 def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:

@@ -7,7 +7,7 @@ few people. The result is evaluated for all people, together with the starting s
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,8 +22,10 @@ from .appraise import Appraisal, appraise
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
 from .found_icons import found_set, names_of
-from .max_min_subset import max_min_subset, nearest_pair
+from .goal import Goal
+from .max_min_subset import Limits, max_min_subset, nearest_pair
 from .request import ChoiceError
+from .search_request import SearchRequest, split_icons
 from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
 
 if TYPE_CHECKING:
@@ -93,6 +95,10 @@ def search(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = USUAL_NORM,
+    must: Sequence[str] | None = None,
+    most_s: float | None = None,
+    most_J: float | None = None,
+    goal: Goal | str | None = None,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> SearchResult:
@@ -119,6 +125,13 @@ def search(
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
         What is remembered, as in `rank`.
+    must
+        Names of the icons of the file that are not families and must stay; None: all of them stay.
+    most_s, most_J
+        Most time in s and energy in J of all icons together; None: any.
+    goal
+        What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
+        `safety`, or for the nominal person its `detected` or `onset`. `rank` tells whether the result meets it.
     observer
         An observer or its file, as in `rank`; None: the shipped one.
     progress
@@ -145,12 +158,17 @@ def search(
     >>> result.after.d_prime >= result.before.d_prime
     True
     """
-    fixed, free = _asked(icons, count, objective)
-    run, named = _Run(fixed, icons.families, free, count is None), check_norm(norm)
-    model = ObserverModel.of(observer)
+    if objective not in OBJECTIVES:
+        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
+    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
+    if count is None and wanted is not None and wanted.of("count") is not None:
+        count = int(wanted.of("count") or 0)
+    fixed, optional, free = split_icons(icons, count, must)
+    run, named = _Run(fixed, optional, icons.families, free, count is None), check_norm(norm)
+    model, request = ObserverModel.of(observer), SearchRequest(most_s, most_J, wanted)
     nominal, few = (
-        NominalEvaluator(rig, objective, named, seed, model),
-        PopulationEvaluator(rig, objective, named, seed, model, tracking),
+        NominalEvaluator(rig, objective, named, seed, model, request),
+        PopulationEvaluator(rig, objective, named, seed, model, tracking, request),
     )
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
@@ -185,44 +203,27 @@ def search(
     )
 
 
-def _asked(icons: IconSet, count: int | None, objective: str) -> tuple[tuple[Icon, ...], int]:
-    from thermicon.icons import Icon
-    from thermicon.icons.model.icon import played_icons
-
-    if objective not in OBJECTIVES:
-        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
-    families = icons.families
-    if not families:
-        raise ChoiceError("nothing to search: the file has no family, such as icon dip(depth in 1..6 step 1 °C) { … }")
-    for family in families:
-        if next(iter(played_icons(family.template)), None) is not None:
-            raise ChoiceError(f"family {family.name} plays another icon, which a search cannot carry along")
-    fixed = tuple(entry for entry in icons.entries if isinstance(entry, Icon))
-    wanted = len(fixed) + len(families) if count is None else count
-    if wanted < 2:
-        raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
-    if wanted <= len(fixed):
-        raise ChoiceError(f"{wanted} icons leave nothing to search: the file has {len(fixed)} that are not families")
-    return fixed, wanted - len(fixed)
-
-
 class _Run:
     """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
 
-    def __init__(self, fixed: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool) -> None:
-        self.fixed = [Candidate(icon) for icon in fixed]
+    def __init__(
+        self, fixed: tuple[Icon, ...], optional: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool
+    ) -> None:
+        self.fixed, self.optional = [Candidate(icon) for icon in fixed], [Candidate(icon) for icon in optional]
         self.families, self.free, self.each = families, free, each
         self.tried = 0
 
     def start(self, judge: NominalEvaluator | PopulationEvaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
+        pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
         found = self.best(pool, judge, None)
         if found is None:
             bad = [reason for reason in judge.objections if reason is not None]
+            good = [place for place, reason in enumerate(judge.objections) if reason is None]
             raise ChoiceError(
-                f"no {self.free + len(self.fixed)} icons can be played together: {len(bad)} of {len(pool)} that were "
-                f"tried cannot be played at all{', the first of which ' + bad[0] if bad else ''}"
+                f"no {self.free + len(self.fixed)} icons can be chosen within the limits: {len(bad)} of {len(pool)} "
+                f"that were tried cannot be chosen at all{', the first of which ' + bad[0] if bad else ''}"
+                + judge.request.least_totals(judge.limits, good, self.free + len(self.fixed))
             )
         return found
 
@@ -240,7 +241,8 @@ class _Run:
         for _ in range(rounds):
             about = held[len(self.fixed) :]
             near = [gene.moved(rng, step * float(rng.exponential())) for gene in about for _ in range(batch)]
-            pool = [*held, *(gene for gene in near if gene is not None)]
+            others = [gene for gene in self.optional if gene not in held]
+            pool = [*held, *others, *(gene for gene in near if gene is not None)]
             better = self.best(pool, judge, held)
             moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
             held = better if better is not None else held
@@ -263,13 +265,16 @@ class _Run:
         if self.each:
             own = np.array([self._place(gene) for gene in pool])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        first = max_min_subset(middle, must + self.free, tuple(range(must)))
+        limits = None if judge.limits is None else Limits(judge.limits.costs[:, good], judge.limits.most)
+        first = max_min_subset(middle, must + self.free, tuple(range(must)), limits)
         if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
             return None
         chosen = list(first.chosen)
         if judge.objective != "worst":
             begin = list(range(must + self.free)) if held is not None else chosen
-            chosen = climbed(judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must)
+            chosen = climbed(
+                judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must, limits
+            )
         return [pool[k] for k in sorted(chosen, key=lambda k: (k >= must, self._place(pool[k]), k))]
 
     def _place(self, gene: Candidate) -> int:
@@ -277,7 +282,12 @@ class _Run:
 
 
 def climbed(
-    namings: SubsetIdentification, chosen: list[int], objective: Objective, middle: Array, must: int
+    namings: SubsetIdentification,
+    chosen: list[int],
+    objective: Objective,
+    middle: Array,
+    must: int,
+    limits: Limits | None = None,
 ) -> list[int]:
     """Single swaps that improve an objective until none does; the first `must` stay, and no two alike come in."""
     score = namings.score(chosen, objective)
@@ -287,6 +297,9 @@ def climbed(
         for place, thing in enumerate(chosen):
             rest = [k for k in chosen if k != thing]
             allowed[place] &= (middle[rest] > ALIKE).all(axis=0) & (thing >= must)
+            if limits is not None:
+                for k in np.flatnonzero(allowed[place]).tolist():
+                    allowed[place, k] = limits.kept([*rest, k])
         found = namings.swapped(chosen, objective, allowed)
         place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
         if not found[place, other] > score + 1e-9:

@@ -134,3 +134,43 @@ def test_bad_searches(cli: Cli, options: tuple[object, ...], code: int, told: st
     said = cli("search", *options)
     assert said.exit_code == code
     assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_search_says_what_a_goal_lacks_and_what_would_help(
+    cli: Cli, families: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from thermicon.perception.ranking import reach
+
+    monkeypatch.setattr(reach, "EVALUATIONS", 10)
+    monkeypatch.setattr(reach, "PEOPLE", 4)
+    monkeypatch.setattr(reach, "FACTORS", reach.FACTORS[:1])
+    report = tmp_path / "found.html"
+    options = ("--evaluations", 20, "--people", 6, "--parameters", 8, "--report", report)
+    said = cli("search", families, *options, "--goal", "correct >= 99.9 % for 95 % of people, time <= 60 s")
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert "a new laboratory (95 %)" in words
+    assert "✗ correct >= 99.9 % for 95 % of people: " in words
+    assert "✓ time <= 60 s: " in words
+    assert "Not reachable on this rig by this search" in words
+    assert "objective correct" in words
+    assert "correct" in report.read_text(encoding="utf-8")
+    said = cli("search", families, *options[:-2], "--goal", "count 2, time <= 60 s")
+    assert "Goal: met" in said.stdout
+    assert "Not reachable" not in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "told"),
+    [
+        (("--goal", "speed >= 5"), 1, "there is no quantity 'speed'"),
+        (("--most-time", 0), 2, "0 s is not above 0"),
+        (("--parameters", 1), 2, "1 draw has no interval"),
+        (("--report", "-"), 2, "- is not a file"),
+        (("--goal", "time <= 0.1 s"), 1, "the 2 with the least time take"),
+    ],
+)
+def test_bad_limits_of_a_search(cli: Cli, families: Path, options: tuple[object, ...], code: int, told: str) -> None:
+    said = cli("search", families, *options)
+    assert said.exit_code == code
+    assert told in " ".join(said.stderr.replace("│", " ").split())

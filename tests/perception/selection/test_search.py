@@ -106,6 +106,34 @@ def test_what_cannot_be_searched(small: IconSet, rig: Rig) -> None:
         search(parse(plays), rig)
     hot = "cue 1\nset { baseline 32 °C }\nicon a(x in [20, 21] K) { warm by x at 2 K/s; hold for 9 s; return at 2 K/s }"
     with pytest.raises(
-        ChoiceError, match=r"^no 2 icons can be played together: 2 of 2 .* the first of which is not safe"
+        ChoiceError, match=r"^no 2 icons can be chosen within the limits: 2 of 2 .* the first of which is not safe"
     ):
         search(parse(hot), rig, count=2)
+
+
+def test_totals_and_a_goal_are_kept(small: IconSet, rig: Rig) -> None:
+    from thermicon.circuit import duration_s
+
+    free = search(small, rig, count=3, evaluations=60, people=6)
+    most = 0.7 * sum(duration_s(icon, rig) for icon in free.found)
+    kept = search(small, rig, count=3, evaluations=60, people=6, most_s=most)
+    assert sum(duration_s(icon, rig) for icon in kept.found) <= most + 1e-9
+    goal = f"time <= {most:g} s, count 3, detected >= 50 %, onset <= 3 s, safety green"
+    asked = search(small, rig, evaluations=60, people=6, goal=goal)
+    assert len(asked.found) == 3
+    assert sum(duration_s(icon, rig) for icon in asked.found) <= most + 1e-6
+    with pytest.raises(ChoiceError, match="cannot be chosen at all, the first of which is felt at"):
+        search(small, rig, evaluations=20, people=4, goal="onset <= 0.01 s", must=[], count=2)
+
+
+def test_only_icons_that_must_stay_do(small: IconSet, rig: Rig) -> None:
+    stays = search(small, rig, count=2, evaluations=40, people=6, must=["plain"])
+    assert "plain" in [icon.name for icon in stays.found]
+    free = search(small, rig, count=2, evaluations=40, people=6, must=[])
+    assert free.after.d_prime >= stays.after.d_prime
+    with pytest.raises(
+        ChoiceError, match="no plain icon is called 'plane', which must be in the set: did you mean plain"
+    ):
+        search(small, rig, count=3, must=["plane"])
+    with pytest.raises(ChoiceError, match="give --choose K as well"):
+        search(small, rig, must=["plain"])
