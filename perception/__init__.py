@@ -29,6 +29,7 @@ from .selection.robust import SetComparison, compare_sets
 from .ranking.ranking import IconScore, PairScore, Ranking
 from .identification.task import Task
 from .ranking.rank import rank
+from .ranking.frontier import Frontier, frontier
 from .identification.map import PerceptualMap, map_of, perceptual_map
 from .sensitivity.sensitivity import Sensitivity, sensitivity
 from .validation.validate import ValidationReport, validate
@@ -63,6 +64,8 @@ __all__ = [
     "cheapest_edit",
     "Edit",
     "NoEdit",
+    "frontier",
+    "Frontier",
     "search",
     "SearchResult",
     "compare_sets",
