@@ -147,6 +147,11 @@ class Rig:
             raise RigError(f"{source}: no such rig; {did_you_mean(str(source), names)}")
         return _shipped(str(source))
 
+    @property
+    def toml(self) -> str:
+        """The rig as the text of a rig file."""
+        return toml_text(json.loads(self.document))
+
     def save(self, path: str | Path) -> None:
         """Write the rig as a rig file, which `Rig.load` reads as an equal rig; an existing file is replaced.
 
@@ -165,7 +170,7 @@ class Rig:
         where = Path(path)
         if where.suffix != ".toml":
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
-        text = toml_text(json.loads(self.document))
+        text = self.toml
         if _build(parse_toml(text, str(where)), str(where)) != self:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:

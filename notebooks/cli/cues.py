@@ -84,24 +84,30 @@ def read_set(files: Sequence[str]) -> IconSet:
     return cast("IconSet", Joined(tuple(sets), tuple(files)))
 
 
-def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> None:
-    """Warn on stderr of files for another site than the rig's, and of different baselines."""
+def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> tuple[str, ...]:
+    """Warn on stderr of files for another site than the rig's, and of different baselines; return the warnings."""
+    warnings: list[str] = []
     sets = icons.sets if isinstance(icons, Joined) else (icons,)
     levels: dict[float, list[str]] = {}
     for file, each in zip(files, sets, strict=True):
-        warn_of_site(file, each, rig)
+        warnings += warn_of_site(file, each, rig)
         own = each.context.baseline_C
         levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
     if len(levels) > 1:
         told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
-        note(f"warning: baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
+        warnings.append(f"baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
+        note(f"warning: {warnings[-1]}")
+    return tuple(warnings)
 
 
-def warn_of_site(file: str, icons: IconSet, rig: Rig) -> None:
-    """Warn on stderr when a set is for another site than the rig's."""
+def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:
+    """Warn on stderr when a set is for another site than the rig's; return the warning, if there is one."""
     site = icons.context.site
-    if site is not None and site != rig.site:
-        note(f"warning: {file} is for the site {site}, the rig {rig.name} is for {rig.site}")
+    if site is None or site == rig.site:
+        return ()
+    warning = f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}"
+    note(f"warning: {warning}")
+    return (warning,)
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:

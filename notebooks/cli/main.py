@@ -279,6 +279,7 @@ def rank_command(
         gap=gap,
         bias=bias,
         observer=observer,
+        rig=rig,
         workers=workers,
         cluster=cluster,
         keep=keep,

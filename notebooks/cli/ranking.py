@@ -46,7 +46,7 @@ class Request:
     ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory; 0 draws none.
     ``choosing`` selects the best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all``
     indistinguishable pairs.
-    ``observer`` is a file to predict with in place of the shipped observer.
+    ``rig`` is the rig as it was asked for, a name or a file; ``observer`` a file in place of the shipped observer.
     ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
     number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
     """
@@ -65,6 +65,7 @@ class Request:
     gap: float | None = None
     bias: float = 0.0
     observer: Path | None = None
+    rig: str | None = None
     workers: int | None = None
     cluster: str | None = None
     keep: Path | None = None
@@ -96,7 +97,7 @@ def rank_files(
             f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
-    warn_of_frames(files, icons, rig)
+    warnings = [*rig.warnings, *warn_of_frames(files, icons, rig)]
     wanted = None if request.goal is None else Goal.parse(request.goal)
     model = load_observer(request.observer)
     check_draws(model, request.parameters, "--parameters")
@@ -117,6 +118,7 @@ def rank_files(
             edits=request.edits if request.by == "model" else "none",
             task=Task(request.context, request.gap, request.bias),
             observer=model,
+            warnings=tuple(warnings),
             workers=request.workers,
             cluster=request.cluster,
             keep=keep,
@@ -181,10 +183,13 @@ def command_text(files: Sequence[str], rig: Rig, request: Request) -> str:
     """
     words = ["thermicon", "rank", *(Path(name).name for name in files)]
     defaults, values = Request(), {name: getattr(request, name) for name in PLAIN_OPTIONS}
-    words += [] if rig.name == "thenar" else ["--rig", rig.name]
+    # A rig from a file is named as a file, which its own name is not.
+    name = rig.name if request.rig is None else Path(request.rig).name
+    words += [] if name == "thenar" else ["--rig", name]
     words += [word for change in rig.changes for word in ("--set", change)]
     for name, value in values.items():
-        words += [] if value == getattr(defaults, name) else [f"--{name}", str(value)]
+        shown = value.name if isinstance(value, Path) else str(value)
+        words += [] if value == getattr(defaults, name) else [f"--{name}", shown]
     if (asked := request.choosing) is not None:
         words += ["--choose", str(asked.count), "--objective", asked.objective]
         words += [word for icon in asked.must for word in ("--must", icon)]

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
 from ..text import rank_notes, rank_text
-from ..text.choices import choice_lines
+from ..text.choices import choice_lines, goal_lines
 from ..text.rank_notes import rules_caveat, rules_lines
-from .blocks import Block, Bullets, Cards, Cell, Facts, Heading, Text, as_html, grid
+from .blocks import Block, Bullets, Cards, Cell, Code, Facts, Heading, Text, as_html, grid
 from .report_views import icon_parts, view_parts
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def report(
     parts: list[Block] = [
         *_head(result, ranking, title),
         *_settings(result, icons, rig, command, date),
+        *_goal(result),
         *_warnings(result, cures or {}),
         *_ranking(result, ranking),
         *_worst(result),
@@ -66,6 +67,7 @@ def report(
         *_pairs(result),
         *_rules(result),
         *icon_parts(result, icons, rig),
+        *_rig(result),
         Heading("Limits of the prediction"),
         Bullets(LIMITS),
         Heading("Safety"),
@@ -127,11 +129,27 @@ def _settings(result: dict[str, Any], icons: IconSet, rig: Rig, command: str, da
     yield Text("The hash covers the icons' text, the rig and the observer's parameters: equal hashes mean equal input.")
 
 
+def _goal(result: dict[str, Any]) -> Iterator[Block]:
+    if result["goal"]:
+        lines = list(goal_lines(result["goal"]))
+        yield Heading("Goal")
+        yield Text(lines[0])
+        yield Bullets(tuple(line.strip() for line in lines[1:]))
+
+
+def _rig(result: dict[str, Any]) -> Iterator[Block]:
+    yield Heading("Rig file")
+    yield Text("The whole rig as it was used, changes included.")
+    yield Code(result["rig_text"])
+
+
 def _warnings(result: dict[str, Any], cures: Mapping[str, str]) -> Iterator[Block]:
     lines = rank_notes.trouble_lines(result["icons"], cures)
     outside = rank_notes.outside_lines(result["icons"])
-    if lines or outside:
+    said = [f"warning: {line}" for line in result["warnings"]]
+    if lines or outside or said:
         yield Heading("Warnings")
+        yield from (Text(line, "warn") for line in said)
         yield from (Text(line, "warn") for line in lines)
         yield from (Text(line, "note") for line in outside)
 

@@ -62,6 +62,7 @@ def rank(
     edits: str = "none",
     task: Task = USUAL,
     observer: ObserverModel | Path | str | None = None,
+    warnings: tuple[str, ...] = (),
     workers: int | None = None,
     cluster: str | None = None,
     keep: Path | None = None,
@@ -102,6 +103,8 @@ def rank(
     observer
         Another posterior or observer in place of the shipped one: `ObserverModel`, or its file. One without draws
         gives no intervals for a new laboratory.
+    warnings
+        What was said of files and rig before, to be kept with the result.
     workers, cluster
         Threads (None: one per core), or the address of the scheduler of a dask cluster.
     keep
@@ -213,11 +216,12 @@ def rank(
         norm=chosen,
         content_hash=_hash(icons, rig, model),
         observer=model.name,
-        rig_text=rig.document,
+        rig_text=rig.toml,
         persons=tuple(all_.correct.tolist()),
         total_s=math.fsum(durations),
         total_J=math.fsum(energies),
         goal=reached,
+        warnings=warnings,
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,

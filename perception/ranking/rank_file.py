@@ -37,6 +37,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "rig_changes": list(ranking.rig_changes),
             "rig_text": ranking.rig_text,
             "observer": ranking.observer,
+            "warnings": list(ranking.warnings),
             "seed": ranking.seed,
             "people": ranking.people,
             "tracking": ranking.tracking,

@@ -204,6 +204,8 @@ class Ranking:
         Time in s and energy in J of all icons together; on a thermode, which states no energy, NaN.
     goal
         Whether the set, or what was chosen of it, meets the goal; None: no goal.
+    warnings
+        What was said of files and rig before.
 
     Raises
     ------
@@ -252,6 +254,7 @@ class Ranking:
     total_s: float = math.nan
     total_J: float = math.nan
     goal: GoalResult | None = None
+    warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         own_arrays(self, "confusion")

@@ -228,3 +228,26 @@ def test_the_command_can_be_given_again(rig: Rig) -> None:
 
 def test_a_page_escapes_its_title() -> None:
     assert "<title>a &lt;b&gt;</title>" in as_html([], "a <b>")
+
+
+def test_the_command_names_files_as_they_are_given() -> None:
+    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
+    asked = Request(rig="/home/x/watch.toml", observer=Path("/home/x/lab.csv"), goal="correct >= 90 %")
+    assert command_text(["six-icons"], rig, asked) == (
+        "thermicon rank six-icons --rig watch.toml --set contact.area_cm2=4.0 --observer lab.csv "
+        "--goal 'correct >= 90 %'"
+    )
+
+
+def test_a_page_holds_goal_warnings_and_the_whole_rig() -> None:
+    from thermicon.icons import load_library
+    from thermicon.perception import rank
+
+    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
+    six = load_library("six-icons")
+    ranking = rank(six, rig, people=4, parameters=0, goal="correct >= 99 %", warnings=("for another site",))
+    page = report(ranking, six, rig)
+    assert "Goal: NOT met" in page
+    assert "✗ correct &gt;= 99 %" in page
+    assert "warning: for another site" in page
+    assert "area_cm2 = 4.0" in page

@@ -9,8 +9,8 @@ from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, perceive, rank
 
 TOP = (
-    "thermicon rig rig_changes rig_text observer seed people tracking by norm content_hash task icons pairs confusion "
-    "set persons goal chosen map"
+    "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "
+    "confusion set persons goal chosen map"
 )
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
