@@ -34,6 +34,8 @@ from .packing.prepare import Prepared, prepare
 from .packing.refusal import Refusal
 from .packing.pack import pack
 from .packing.export import Export, ExportError, export
+from .fitting.fit import fit
+from .fitting.rig_fit import RigFit
 from .studies.depths import probe_depths, resembles
 from .studies.meshstudy import mesh_study
 from .studies.nearest import nearest_reachable
@@ -85,6 +87,8 @@ __all__ = [
     "export",
     "Export",
     "ExportError",
+    "fit",
+    "RigFit",
     "probe_depths",
     "resembles",
     "mesh_study",

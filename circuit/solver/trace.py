@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from ..fitting.log import Log
+
 COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
 
@@ -220,11 +222,18 @@ class Trace:
         """Write the columns of `to_frame` as a CSV file; numbers have nine digits, NaN is an empty cell."""
         self.to_frame().to_csv(path, index=False, float_format=CSV_FORMAT)
 
-    def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
-        """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes."""
-        from .draw import plot_temperatures
+    def plot(self, ax: Axes | None = None, probes: bool = False, measured: Log | None = None) -> Axes:
+        """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes.
 
-        return plot_temperatures(self, ax, probes)
+        `measured` is a log, drawn as points on the trace's clock, with rms and largest miss.
+        """
+        from .draw import plot_temperatures, tidy
+
+        ax = plot_temperatures(self, ax, probes)
+        if measured is not None:
+            measured.draw_beside(self, ax)
+            tidy(ax, self.time_s, "temperature (°C)")
+        return ax
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:

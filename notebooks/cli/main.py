@@ -17,7 +17,7 @@ import typer
 from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
-from . import frontier, hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
+from . import fit, frontier, hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
 from .app import Commands
 from .options import (
     Bias,
@@ -310,6 +310,7 @@ for _name, _command, _panel in (
     ("sweep", whatif_commands.sweep_command, SIMULATE),
     ("compare", whatif_commands.compare_command, SIMULATE),
     ("netlist", whatif_commands.netlist_command, SIMULATE),
+    ("fit", fit.fit_command, SIMULATE),
     ("search", searching.search_command, PREDICT),
     ("frontier", frontier.frontier_command, PREDICT),
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),

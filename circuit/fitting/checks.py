@@ -1,0 +1,188 @@
+"""Logs held against the simulation before and after a fit: stuck and unplugged sensors, signs, clocks that drift."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..arrays import Array
+from .alignment import best_shift_s
+from .log import LogError
+from .problem import Problem
+from .runs import Channel
+
+STUCK_S, STUCK_STEPS = 3.0, 20.0
+"""A sensor that reads one value for 3 s while it should move by 20 of its steps is stuck."""
+
+MOVES = {True: 0.5, False: 0.3}
+"""Change in K or V below which nothing can be said about a sensor."""
+
+FLAT_SHARE, REVERSED = 0.05, -0.5
+"""A sensor that moves by less than 5 % of what is expected is not on the display; a correlation below −0.5 is a sign."""
+
+MOST_DRIFT = 2e-3
+"""Clocks of loggers differ by some 100 ppm; 2 ms a second is a wrong sample rate."""
+
+MOST_UPDATES = 1.5
+"""Rows farther apart than 1.5 updates of the driver miss some of them."""
+
+EARLY_S, EARLY_TIMES = 3.0, 3.0
+"""A start that is not steady shows in the first seconds, where residuals are three times the usual."""
+
+OFFSET_SDS = 3.0
+LEAST_OVERLAP = 0.5
+
+
+def aligned(problem: Problem) -> Problem:
+    """Return the problem with a first guess of the shift of every further clock, by correlation with the simulation.
+
+    Raises LogError for a file whose rows hardly overlap with its run.
+    """
+    found = problem.predictions(problem.first)
+    if found is None:
+        return problem
+    first = problem.first.copy()
+    for place, item in enumerate(problem.nuisances, len(problem.keys)):
+        if item.kind != "shift":
+            continue
+        run = problem.runs[item.run]
+        channels = [channel for channel in run.channels if channel.clock == item.place]
+        best = (0.0, -1.0)
+        for channel in channels:
+            reference = found[item.run].at(channel.column, run.time_s)
+            shift, alike = best_shift_s(run.time_s, reference, channel.time_s - run.begin_s, channel.values)
+            best = max(best, (shift, alike), key=lambda pair: pair[1])
+        first[place] = best[0]
+        name = run.clocks[item.place - 1]
+        time = channels[0].time_s - run.begin_s + best[0] if channels else np.zeros(0)
+        inside = (time >= 0) & (time <= run.time_s[-1])
+        if not channels or best[1] <= 0 or inside.mean() < LEAST_OVERLAP:
+            raise LogError(
+                f"{name}: does not fit in time to {run.name}, which lasts {run.time_s[-1]:g} s: no shift makes the two "
+                f"alike; check that both are from the same run"
+            )
+    return replace_first(problem, first)
+
+
+def replace_first(problem: Problem, first: Array) -> Problem:
+    """The problem with another point to begin from."""
+    low, high = problem.low.copy(), problem.high.copy()
+    for place, item in enumerate(problem.nuisances, len(problem.keys)):
+        if item.kind == "shift":
+            low[place], high[place] = first[place] - 5.0, first[place] + 5.0
+    return replace(problem, first=first, low=low, high=high)
+
+
+def check_sensors(problem: Problem) -> None:
+    """Raise LogError for every sensor that is stuck, unplugged or of the wrong sign, as the rig to begin with says."""
+    found = problem.predictions(problem.first)
+    if found is None:
+        return
+    faults = [
+        f"{channel.file}: {fault}"
+        for r, c, channel in problem.channels()
+        if (fault := _sensor_fault(channel, problem.run_time_s(problem.first, r, channel),
+                                   problem.modelled(problem.first, r, c, found[r])))
+    ]  # fmt: skip
+    if faults:
+        raise LogError("\n".join(faults))
+
+
+def _sensor_fault(channel: Channel, time: Array, expected: Array) -> str | None:
+    unit = "K" if channel.temperature else "V"
+    ends = np.flatnonzero(np.diff(channel.values) != 0.0)
+    starts, stops = np.append(0, ends + 1), np.append(ends, len(time) - 1)
+    longest = int(np.argmax(time[stops] - time[starts]))
+    first, last = int(starts[longest]), int(stops[longest])
+    expected_range = float(np.ptp(expected[first : last + 1]))
+    if time[last] - time[first] >= STUCK_S and expected_range > max(
+        MOVES[channel.temperature], STUCK_STEPS * channel.resolution
+    ):
+        return (
+            f"{channel.column} reads {channel.values[first]:g} from {time[first]:.4g} to {time[last]:.4g} s without "
+            f"any change, while the rig changes by {expected_range:.2g} {unit}: the sensor is stuck or unplugged; "
+            f"empty these cells, or remove the column"
+        )
+    span = float(np.ptp(expected))
+    if span < MOVES[channel.temperature]:
+        return None
+    spread = float(np.subtract(*np.percentile(channel.values, [95, 5])))
+    expected_spread = float(np.subtract(*np.percentile(expected, [95, 5])))
+    if spread < FLAT_SHARE * expected_spread:
+        return (
+            f"{channel.column} changes by {spread:.2g} {unit} where the rig changes by {expected_spread:.2g} {unit}: "
+            f"the sensor is unplugged, or not where the column says"
+        )
+    if np.corrcoef(channel.values, expected)[0, 1] < REVERSED:
+        return (
+            f"{channel.column} goes the other way than the rig: positive current cools the display; turn the sign of "
+            f"the drive, or of the column"
+        )
+    return None
+
+
+def check_clocks(problem: Problem, theta: Array) -> None:
+    """Raise LogError for a clock that runs at another rate than that of the drive."""
+    for r, run in enumerate(problem.runs):
+        for clock, name in enumerate(run.clocks, 1):
+            drift = problem.nuisance(theta, "drift", r, clock)
+            if abs(drift) > MOST_DRIFT:
+                word = "slow" if drift > 0 else "fast"
+                raise LogError(
+                    f"{name}: its clock drifts, {abs(drift) * 100:.2g} % {word} against {run.name}; correct its "
+                    f"sample rate, or multiply time_s by {1 + drift:.5f}"
+                )
+
+
+def remarks(problem: Problem, theta: Array) -> tuple[str, ...]:
+    """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks."""
+    sentences = [*_slow_drives(problem), *_unsteady(problem, theta)]
+    for r, c, channel in problem.channels():
+        offset = problem.nuisance(theta, "offset", r, c)
+        if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0:
+            sentences.append(
+                f"{channel.file}: {channel.column} reads {offset:+.2f} K off, more than the "
+                f"{problem.offset_sd_K:g} K (SD) that sensors are assumed to be; calibrate it".replace("-", "−", 1)
+            )
+    for r, run in enumerate(problem.runs):
+        for clock, name in enumerate(run.clocks, 1):
+            shift = problem.nuisance(theta, "shift", r, clock)
+            drift = problem.nuisance(theta, "drift", r, clock)
+            sentences.append(
+                f"{name}: its clock was shifted by {shift:.3f} s against {run.name}, and drifts by "
+                f"{drift * 1e6:.0f} parts per million".replace("-", "−")
+            )
+    return tuple(sentences)
+
+
+def _slow_drives(problem: Problem) -> list[str]:
+    """Logs slower than the driver: what it did between the rows is not known."""
+    sentences = []
+    for run in problem.runs:
+        step, update = float(np.median(np.diff(run.time_s))), 1.0 / problem.rig.update_Hz
+        if run.driven_by != "display_C" and step > MOST_UPDATES * update:
+            sentences.append(
+                f"{run.name}: rows are {1e3 * step:.0f} ms apart, and the rig's driver may change every "
+                f"{1e3 * update:.0f} ms: what it did in between is not in the log; log the drive at its own rate"
+            )
+    return sentences
+
+
+def _unsteady(problem: Problem, theta: Array) -> list[str]:
+    """Runs whose first seconds fit much worse than the rest."""
+    found = problem.predictions(theta)
+    if found is None or problem.fit_start:
+        return []
+    names = []
+    for r, c, channel in problem.channels():
+        residual = np.abs(problem.modelled(theta, r, c, found[r]) - channel.values)
+        time = problem.run_time_s(theta, r, channel)
+        early = residual[(time >= 0) & (time < EARLY_S)]
+        if channel.temperature and early.size and np.median(early) > EARLY_TIMES * max(np.median(residual), 1e-3):
+            names.append(problem.runs[r].name)
+    return [
+        f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; use "
+        f"--fit-start (fit_start=True), or log a few seconds of rest first"
+        for name in dict.fromkeys(names)
+    ]

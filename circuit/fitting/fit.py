@@ -1,0 +1,182 @@
+"""Fit rig parameters to measured logs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.keyunits import unit_of
+from ..rig.modules import PARAMETERS
+from ..rig.rig import Rig
+from .checks import aligned, check_clocks, check_sensors, remarks
+from .identify import T95, Parameter, cures, is_identified
+from .keys import FitError, FitKey, free_keys, value_of
+from .log import Log
+from .log_files import read_log
+from .problem import Problem
+from .rig_file import reason_of, uncertainties
+from .rig_fit import ChannelFit, RigFit
+from .runs import runs_of
+from .solve import Solution, solve
+
+OFFSET_SD_K = 0.1
+"""Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
+
+BOUND = 1e-3
+"""A parameter within this share of its room from a bound is at the bound."""
+
+ALIKE = 3.0
+MOST_OFFSET_K = 10.0
+
+
+def fit(
+    logs: Log | str | Path | Sequence[Log | str | Path],
+    rig: Rig,
+    *,
+    free: Sequence[str],
+    held: bool = False,
+    fit_start: bool = False,
+    offset_K: float = OFFSET_SD_K,
+) -> RigFit:
+    """Fit named parameters of a rig to one or several measured logs.
+
+    Parameters
+    ----------
+    logs
+        Logs or names of files (see `read_log`). A log without a drive has a clock of its own and belongs to the log
+        before it.
+    rig
+        The rig to begin with; what is not free stays as it is.
+    free
+        Dotted keys to fit, such as `contact.resistance_m2K_per_W`.
+    held
+        Whether the drive of a row lasts until the next row; otherwise it is linear between rows.
+    fit_start
+        Fit the state at the first row as well; otherwise the rig is taken as steady under the first row's drive.
+    offset_K
+        Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
+
+    Returns
+    -------
+    RigFit
+        Values with 95 % intervals, correlations, what was not identified, residuals, and the fitted rig.
+
+    Raises
+    ------
+    FitError
+        For logs or keys that cannot be used, with file, row or column, and the cure.
+
+    Notes
+    -----
+    Robust least squares (Huber, beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The
+    noise of each channel comes from its residuals; where neighbouring residuals are alike, because the model leaves
+    something out, intervals are widened accordingly. Intervals hold if what is not free is right.
+
+    Examples
+    --------
+    >>> from thermicon.circuit.fitting.laboratory import synthetic_log
+    >>> rig = Rig.load("thenar")
+    >>> log = synthetic_log(rig.with_(**{"contact.resistance_m2K_per_W": 7e-4}), seed=1)
+    >>> fitted = fit(log, rig, free=["contact.resistance_m2K_per_W", "module.resistance_ohm"])
+    >>> fitted["contact.resistance_m2K_per_W"].identified
+    True
+    """
+    if not (math.isfinite(offset_K) and 0 <= offset_K <= MOST_OFFSET_K):
+        raise FitError(f"an offset of {offset_K:g} K is not possible for a sensor; give 0 to {MOST_OFFSET_K:g} K")
+    keys = free_keys(free, rig)
+    read = _logs(logs)
+    begin = _explicit(rig, keys)
+    problem = Problem.of(begin, keys, runs_of(read, begin, held), fit_start=fit_start, offset_sd_K=offset_K)
+    problem = aligned(problem)
+    check_sensors(problem)
+    solution = solve(problem)
+    check_clocks(problem, solution.theta)
+    sources = tuple((log.name, log.sha256) for log in read)
+    notes = [note for log in read for note in log.notes]
+    return _result(problem, solution, rig, keys, sources, notes)
+
+
+def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
+    several = [logs] if isinstance(logs, Log | str | Path) else list(logs)
+    return [log if isinstance(log, Log) else read_log(log) for log in several]
+
+
+def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
+    """The rig with its module given by parameters where one of them is free and it was given by data sheet or name."""
+    import json
+
+    table = json.loads(rig.document).get("module", {})
+    if not any(key.key.removeprefix("module.") in PARAMETERS for key in keys) or not {"datasheet", "name"} & set(table):
+        return rig
+    nothing: dict[str, object] = {f"module.{way}": None for way in ("datasheet", "name", "extraction") if way in table}
+    return rig.with_(**nothing, **{f"module.{name}": getattr(rig.module, name) for name in PARAMETERS})
+
+
+def _result(
+    problem: Problem, solution: Solution, start: Rig, keys: tuple[FitKey, ...], sources: tuple[tuple[str, str], ...],
+    notes: list[str],
+) -> RigFit:  # fmt: skip
+    count = len(keys)
+    deviation = np.sqrt(np.diag(solution.covariance)[:count])
+    correlation = solution.covariance[:count, :count] / np.outer(deviation, deviation)
+    sure = [
+        is_identified(key.log, float(sd), key.usual) and not _at_bound(problem, solution.theta, k)
+        for k, (key, sd) in enumerate(zip(keys, deviation, strict=True))
+    ]
+    advice = cures(problem, solution.theta, [k for k, known in enumerate(sure) if not known], correlation)
+    parameters = tuple(
+        _parameter(start, key, float(solution.theta[k]), float(deviation[k]), sure[k], advice.get(k, ""))
+        for k, key in enumerate(keys)
+    )
+    fitted = problem.rig_at(solution.theta)
+    if stated := uncertainties(keys, parameters):
+        changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
+        fitted = fitted.with_(**changes, **{"uncertainty.reason": reason_of(start, sources)})
+    alike = [
+        f"{channel.file}: {channel.column}: neighbouring residuals are alike, so that the rig leaves something out; "
+        f"intervals are {math.sqrt(factor):.1f} times as wide as its noise alone would make them"
+        for (_, _, channel), factor in zip(problem.channels(), solution.inflation, strict=True)
+        if factor > ALIKE
+    ]
+    stopped = () if solution.converged else ("the fit did not come to rest; free fewer keys",)
+    return RigFit(
+        fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
+        (*notes, *remarks(problem, solution.theta), *alike, *stopped), solution.converged,
+    )  # fmt: skip
+
+
+def _at_bound(problem: Problem, theta: Array, place: int) -> bool:
+    room = problem.high[place] - problem.low[place]
+    low = theta[place] - problem.low[place] < BOUND * room and not problem.keys[place].key.endswith("lag_s")
+    return bool(low or problem.high[place] - theta[place] < BOUND * room)
+
+
+def _parameter(rig: Rig, key: FitKey, place: float, sd: float, identified: bool, cure: str) -> Parameter:
+    ends = (place - T95 * sd, place, place + T95 * sd)
+    low, value, high = (math.exp(min(end, 500.0)) for end in ends) if key.log else ends
+    if key.key.endswith("lag_s"):
+        low = max(low, 0.0)
+    start = value_of(rig, key.key)
+    assert start is not None
+    return Parameter(key.key, key.words, unit_of(key.key), start, value, low, high, key.log, identified, cure)
+
+
+def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
+    """Return every channel beside the simulation at a point, on the clock of its run's drive."""
+    found = problem.predictions(theta)
+    assert found is not None
+    fits = []
+    for r, c, channel in problem.channels():
+        inside = problem.inside(theta, r, channel)
+        fits.append(
+            ChannelFit(
+                problem.runs[r].name, channel.file, channel.column, "K" if channel.temperature else "V",
+                problem.run_time_s(theta, r, channel)[inside], channel.values[inside],
+                problem.modelled(theta, r, c, found[r])[inside], problem.nuisance(theta, "offset", r, c),
+            )  # fmt: skip
+        )
+    return tuple(fits)

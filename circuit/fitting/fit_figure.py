@@ -1,0 +1,103 @@
+"""Pictures of a fit: residuals against time, and measured points on the curves of a trace."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .overlay import Overlay
+    from .rig_fit import ChannelFit, RigFit
+
+MEASURED_COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "#b35806"}
+"""Measured points on the grey and black curves of a trace."""
+
+COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
+MOST_POINTS = 1500
+"""More points than a page has dots to the inch show nothing more."""
+
+
+def plot_residuals(fit: RigFit, ax: Axes | None = None, column: str | None = None) -> Axes:
+    """Draw measured minus fitted of all columns or one; K and V share the axis only if both are there."""
+    ax = new_axes(ax, (7.0, 2.6))
+    shown = [each for each in fit.channels if column in (None, each.column)]
+    ax.axhline(0.0, color="#999999", lw=0.8)
+    for each in shown:
+        few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
+        ax.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=COLORS.get(each.column, PROBE),
+                label=_label(each))  # fmt: skip
+    units = " or ".join(sorted({each.unit for each in shown}))
+    return tidy(ax, shown[0].time_s, f"measured − fitted ({units})")
+
+
+def fit_figure(fit: RigFit) -> Figure:
+    """Return the figure of a fit: for every measured column, measured and fitted above, residuals below."""
+    from matplotlib.figure import Figure
+
+    panels = fit.channels
+    figure = Figure(figsize=(1.0 + 4.4 * min(2, len(panels)), 3.9 * -(-len(panels) // 2)), layout="constrained")
+    across = min(2, len(panels))
+    down = -(-len(panels) // across)
+    grid = figure.subplots(2 * down, across, squeeze=False, height_ratios=[2.2, 1.0] * down)
+    for place in range(down * across):
+        row, side = divmod(place, across)
+        above, below = grid[2 * row, side], grid[2 * row + 1, side]
+        if place >= len(panels):
+            above.remove()
+            below.remove()
+            continue
+        _pair(above, below, panels[place])
+    return figure
+
+
+def _pair(above: Axes, below: Axes, each: ChannelFit) -> None:
+    color = COLORS.get(each.column, PROBE)
+    few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
+    above.plot(each.time_s[few], each.measured[few], ".", ms=2.5, color="#b9bec4", label="measured")
+    above.plot(each.time_s, each.fitted, color=color, lw=1.3, label="fitted")
+    below.axhline(0.0, color="#999999", lw=0.8)
+    below.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=color)
+    most = max(4.5 * each.rms, 1e-4)
+    below.set_ylim(-most, most)
+    words = each.column.rpartition("_")[0].replace("_", " ")
+    above.set_title(f"{words}, {each.file}", fontsize=10)
+    above.set_ylabel("°C" if each.unit == "K" else "V", fontsize=9)
+    below.set_ylabel(f"residual ({each.unit})", fontsize=9)
+    below.set_xlabel("time (s)", fontsize=9)
+    above.legend(frameon=False, fontsize="small", markerscale=3)
+    above.sharex(below)
+    above.tick_params(labelbottom=False, labelsize=8)
+    below.tick_params(labelsize=8)
+    below.set_xlim(float(each.time_s[0]), float(each.time_s[-1]))
+    for ax in (above, below):
+        ax.grid(alpha=0.25, linewidth=0.6)
+        ax.spines[["top", "right"]].set_visible(False)
+
+
+def _label(each: ChannelFit) -> str:
+    words = each.column.rpartition("_")[0].replace("_", " ")
+    return f"{words}\nrms {_small(each.rms, each.unit)}\nlargest {_small(each.largest, each.unit)}"
+
+
+def _small(value: float, unit: str) -> str:
+    return f"{1e3 * value:.3g} m{unit}".replace("-", "−")
+
+
+def draw_measured(beside: Overlay, ax: Axes) -> None:
+    """Draw the measured temperatures of an overlay as points, each with its rms and largest miss in the legend."""
+    for each in beside.columns:
+        if not each.column.endswith("_C"):
+            continue
+        few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
+        words = each.column.rpartition("_")[0].replace("_", " ")
+        ax.plot(
+            each.time_s[few], each.measured[few], ".", ms=3.0, color=MEASURED_COLORS.get(each.column, PROBE),
+            label=f"{words}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K".replace("-", "−"),
+        )  # fmt: skip
+    ax.set_title(f"{beside.name}, shifted by {np.round(beside.shift_s, 3):g} s".replace("-", "−"), fontsize="medium")

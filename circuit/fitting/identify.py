@@ -1,0 +1,137 @@
+"""What a log identifies, what it does not, and which further measurement would."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array
+from .problem import Problem
+from .runs import Channel, Run
+from .solve import covariance_of
+
+T95 = 1.96
+NOISE_K, NOISE_V = 0.02, 0.005
+"""Noise of a further channel that is only considered: a thermistor and a 16-bit voltage input."""
+
+CANDIDATES = ("display_C", "voltage_V", "hot_plate_C", "skin_C")
+CLOSE = 0.9
+"""Correlation from which on two parameters are named as a pair that the log does not separate."""
+
+SHORT = {"display_C": "display", "voltage_V": "voltage", "hot_plate_C": "hot plate", "skin_C": "skin"}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One fitted parameter.
+
+    Attributes
+    ----------
+    key, words, unit
+        Its key in a rig file, what people call it, and its unit.
+    start, value
+        What the rig had, and what was fitted.
+    low, high
+        The 95 % interval.
+    log
+        Whether it is a scale, with a relative interval.
+    identified
+        Whether the interval is narrower than what is assumed anyway.
+    cure
+        Where it is not: which measurement would identify it.
+    """
+
+    key: str
+    words: str
+    unit: str
+    start: float
+    value: float
+    low: float
+    high: float
+    log: bool
+    identified: bool
+    cure: str = ""
+
+    @property
+    def half_width(self) -> float:
+        """Half of the interval: the larger side as a share for a scale, otherwise in the unit of the key."""
+        most = max(self.high - self.value, self.value - self.low)
+        return most / self.value if self.log else most
+
+    @property
+    def interval(self) -> str:
+        """The half width as people write it, ±3 % or ±0.4 °C."""
+        if not self.log:
+            return f"±{self.half_width:.2g} {'K' if self.unit == '°C' else self.unit}"
+        return f"±{100 * self.half_width:.2g} %" if self.half_width < 1.0 else "unknown"
+
+
+def half_width(log: bool, sd: float) -> float:
+    """Half of a 95 % interval from the standard deviation of a fitted number, as `Parameter.half_width`."""
+    return math.expm1(min(T95 * sd, 50.0)) if log else T95 * sd
+
+
+def is_identified(log: bool, sd: float, usual: float) -> bool:
+    """Whether an interval is narrower than what is assumed anyway.
+
+    >>> is_identified(True, 0.01, 0.3), is_identified(False, 5.0, 3.0)
+    (True, False)
+    """
+    return half_width(log, sd) < usual
+
+
+def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: bool = False) -> Problem:
+    """Return the problem with further channels in every run, read on the drive's clock; `only`: in place of its own."""
+    found = problem.predictions(theta)
+    assert found is not None
+    runs = []
+    for run, rows in zip(problem.runs, found, strict=True):
+        extra = tuple(
+            Channel(column, run.name, 0, run.time_s + run.begin_s, rows.at(column, run.time_s)) for column in columns
+        )
+        runs.append(replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks))
+    return Problem.of(
+        problem.rig, problem.keys, tuple[Run, ...](runs), fit_start=problem.fit_start, offset_sd_K=problem.offset_sd_K
+    )
+
+
+def expected_sd(problem: Problem, theta: Array, noise_K: float = NOISE_K, noise_V: float = NOISE_V) -> Array:
+    """Standard deviations of the keys to expect from a problem's channels with white noise."""
+    count = len(problem.keys)
+    point = problem.first.copy()
+    point[:count] = theta[:count]
+    sigma = [noise_K if channel.temperature else noise_V for _, _, channel in problem.channels()]
+    covariance = covariance_of(problem, problem.jacobian(point, sigma), [1.0] * len(sigma))
+    return np.sqrt(np.diag(covariance)[:count])
+
+
+def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: Array) -> dict[int, str]:
+    """Return for each parameter that is not identified which measurement would identify it."""
+    if not wanting:
+        return {}
+    logged = {channel.column for _, _, channel in problem.channels()}
+    driven = {run.driven_by for run in problem.runs}
+    thermode = problem.rig.thermode is not None
+    options = [name for name in CANDIDATES if name not in logged | driven and not (thermode and name != "skin_C")]
+    gains = {name: expected_sd(with_channels(problem, theta, [name]), theta) for name in options}
+    return {place: _cure(problem, place, gains, correlation) for place in wanting}
+
+
+def _cure(problem: Problem, place: int, gains: dict[str, Array], correlation: Array) -> str:
+    key = problem.keys[place]
+    good = {name: sd[place] for name, sd in gains.items() if is_identified(key.log, float(sd[place]), key.usual)}
+    with_what = [
+        problem.keys[other].words
+        for other in range(len(problem.keys))
+        if other != place and abs(correlation[place, other]) > CLOSE
+    ]
+    why = f"cannot be separated from {' and '.join(with_what)} here; " if with_what else ""
+    if good:
+        best = min(good, key=lambda name: good[name])
+        width = half_width(key.log, float(good[best]))
+        size = f"±{100 * width:.2g} %" if key.log else f"±{width:.2g}"
+        return f"{why}log {best} as well: it would then be known to about {size}"
+    return f"{why}measure it directly: {key.direct}"

@@ -1,0 +1,175 @@
+"""The keys of a rig that a log can be fitted for: scale, bounds, and how well each must be known to be of use."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from thermicon.icons.near_words import did_you_mean
+
+from ..inputs import InputError
+from ..rig.rig import Rig
+from ..rig.rigfile import rig_keys, unknown_key
+from ..rig.settings import flattened
+from ..rig.uncertainty import uncertainty_of
+
+
+class FitError(InputError):
+    """A log or a request that cannot be fitted: what, where, and what to change.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> try:
+    ...     free_keys(["contact.resistence_m2K_per_W"], Rig.load("thenar"))
+    ... except FitError as problem:
+    ...     print(problem)
+    contact.resistence_m2K_per_W: cannot be fitted; did you mean contact.resistance_m2K_per_W?
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class FitKey:
+    """One parameter to fit.
+
+    Attributes
+    ----------
+    key
+        Its dotted key in a rig file.
+    words
+        What people call it.
+    log
+        Whether it is a positive scale, fitted as its logarithm, with a relative interval.
+    room
+        How far the fit may move it: a factor either way where `log`, else in the key's unit.
+    usual
+        Half width of an interval that says no more than is assumed anyway: a share where `log`, else in the unit.
+    uncertainty
+        The key of [uncertainty] that its interval belongs to, or nothing.
+    direct
+        How it is measured without a fit.
+    """
+
+    key: str
+    words: str
+    log: bool
+    room: float
+    usual: float
+    uncertainty: str
+    direct: str
+
+
+_SHIPPED = uncertainty_of({})
+_LAG = "a step of temperature on the sensor alone, such as dipping it into warm water"
+
+_KEYS = {
+    item.key: item
+    for item in (
+        FitKey("contact.resistance_m2K_per_W", "contact resistance", True, 30.0,
+               _SHIPPED.contact_resistance_relative, "contact_resistance_relative", "a thin thermistor on the skin "
+               "under the display, logged as skin_C"),
+        FitKey("contact.area_cm2", "contact area", True, 5.0, 0.1, "", "the face of the display with a ruler"),
+        FitKey("module.seebeck_V_per_K", "Seebeck coefficient", True, 3.0, _SHIPPED.seebeck_relative,
+               "seebeck_relative", "the module's voltage, logged as voltage_V"),
+        FitKey("module.resistance_ohm", "module resistance", True, 3.0, 0.05, "",
+               "the module's voltage, logged as voltage_V, or an AC ohmmeter at 1 kHz"),
+        FitKey("module.thermal_resistance_K_per_W", "module thermal resistance", True, 5.0,
+               _SHIPPED.conductance_relative, "conductance_relative", "the hot plate, logged as hot_plate_C"),
+        FitKey("module.hot_plate_J_per_K", "hot plate", True, 10.0, _SHIPPED.plates_relative, "plates_relative",
+               "the hot plate, logged as hot_plate_C"),
+        FitKey("module.cold_plate_J_per_K", "cold plate", True, 10.0, _SHIPPED.plates_relative, "plates_relative",
+               "a fast thermistor on the display, logged at 20 Hz or more"),
+        FitKey("heat_sink.temperature_C", "heat sink temperature", False, 40.0, _SHIPPED.heat_sink_K, "heat_sink_K",
+               "a thermistor in the heat sink"),
+        FitKey("heat_sink.resistance_K_per_W", "heat sink resistance", True, 30.0, 0.3, "",
+               "the hot plate, logged as hot_plate_C"),
+        FitKey("heat_sink.capacity_J_per_K", "heat sink capacity", True, 30.0, 0.3, "",
+               "the mass of the heat sink times its specific heat"),
+        FitKey("driver.transconductance_A_per_V", "driver gain", True, 5.0, _SHIPPED.gain_relative, "gain_relative",
+               "the current through a shunt, logged as current_A"),
+        FitKey("ambient.temperature_C", "ambient temperature", False, 20.0, _SHIPPED.ambient_K, "ambient_K",
+               "a thermometer in the room"),
+        FitKey("skin.rest_C", "skin at rest", False, 8.0, 1.0, "", "an infrared thermometer on the bare skin"),
+        FitKey("controller.lag_s", "lag of the controller's thermistor", False, 30.0, 0.1, "", _LAG),
+        FitKey("thermode.lag_s", "lag of the thermode", False, 10.0, 0.1, "", "the set-points, logged as setpoint_C"),
+        FitKey("thermode.slew_K_per_s", "ramp rate of the thermode", True, 30.0, 0.3, "",
+               "a step of 10 K, logged as setpoint_C and display_C"),
+    )
+}  # fmt: skip
+_PROBE = re.compile(r"probe\.(?P<name>[\w-]+)\.lag_s")
+
+COMMON = ("contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm")
+"""What a log of display and voltage identifies on every rig with a module."""
+
+
+def fittable(rig: Rig) -> tuple[str, ...]:
+    """Return the keys that can be fitted on a rig, in the order of the circuit.
+
+    >>> fittable(Rig.load("tcs2"))[:2]
+    ('contact.resistance_m2K_per_W', 'contact.area_cm2')
+    """
+    stated = {"controller": rig.controller is not None, "thermode": rig.thermode is not None}
+    pumped = {"module", "heat_sink", "driver"}
+    known = []
+    for key in _KEYS:
+        table = key.partition(".")[0]
+        if (table in pumped and rig.pump is None) or not stated.get(table, True):
+            continue
+        if key == "heat_sink.capacity_J_per_K" and value_of(rig, key) is None:
+            continue
+        known.append(key)
+    return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
+
+
+def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
+    """Return the parameters to fit; raises FitError for none, one twice, and one that cannot be fitted."""
+    names = [key.strip() for key in keys if key.strip()]
+    if not names:
+        raise FitError(f"no key to fit; name one or several, such as {COMMON[0]}")
+    twice = [name for place, name in enumerate(names) if name in names[:place]]
+    if twice:
+        raise FitError(f"{twice[0]}: is given twice; name each key once")
+    known = fittable(rig)
+    faults = [_fault(name, rig, known) for name in names if name not in known]
+    if faults:
+        raise FitError("\n".join(faults))
+    return tuple(_KEYS.get(name) or _probe_key(name) for name in names)
+
+
+def _probe_key(name: str) -> FitKey:
+    return FitKey(name, f"lag of the thermistor {name.split('.')[1]}", False, 30.0, 0.1, "", _LAG)
+
+
+def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
+    """Why a key cannot be fitted, with the nearest one that can."""
+    if name in _KEYS:
+        table = name.partition(".")[0]
+        return f"{name}: rig {rig.name} has no {table.replace('_', ' ')} with this key; it has {', '.join(known)}"
+    if _PROBE.fullmatch(name):
+        sensor = '[{name="thermistor", place="display", lag_s=0.2}]'
+        return (
+            f"{name}: rig {rig.name} has no such probe; describe the sensor first, as with --set 'probe={sensor}', and "
+            f"fit probe.thermistor.lag_s"
+        )
+    hint = did_you_mean(name, known)
+    generic = re.sub(r"\.(layer|probe)\.[^.]+\.", r".\1.0.", name)
+    if generic in rig_keys():
+        return f"{name}: is a key of a rig, but no log of temperatures identifies it; {hint}"
+    if hint.startswith("did you"):
+        return f"{name}: cannot be fitted; {hint}"
+    return f"{unknown_key(name)}; keys that can be fitted: {', '.join(known)}"
+
+
+def value_of(rig: Rig, key: str) -> float | None:
+    """Return the value of a key that can be fitted, in the unit of the rig file; None where it is not given."""
+    import json
+
+    if key.startswith("module.") and rig.pump is not None:
+        return float(getattr(rig.module, key.partition(".")[2]))
+    if match := _PROBE.fullmatch(key):
+        return next((probe.lag_s for probe in rig.probes if probe.name == match["name"]), None)
+    value = flattened(json.loads(rig.document)).get(key, 0.0 if key.endswith(".lag_s") else None)
+    if key == "driver.transconductance_A_per_V" and value is None:
+        return rig.driver.transconductance_A_per_V
+    return None if value is None else float(str(value))

@@ -1,0 +1,101 @@
+"""The rig file of a fit: fitted values, their intervals as uncertainty, and which logs and program they come from."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from ..program import own_version
+from ..rig.rig import Rig
+from ..rig.rig_text import toml_text
+from ..rig.rigfile import UncertaintyTable
+from .identify import Parameter
+from .keys import FitKey
+
+DIGEST_DIGITS = 16
+MOST_LOGS_NAMED = 5
+PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
+LEAST = {"relative": 0.01, "K": 0.1}
+"""No less uncertainty is written: what is held fixed in a fit, skin above all, is not known better."""
+
+LARGEST = {
+    name: float(schema["anyOf"][0]["maximum"])
+    for name, schema in UncertaintyTable.model_json_schema()["properties"].items()
+    if name != "reason"
+}
+"""The largest uncertainty that a rig file may state."""
+
+
+def uncertainties(keys: Sequence[FitKey], parameters: Sequence[Parameter]) -> dict[str, float]:
+    """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
+
+    Both plates share one key: it is the wider of both, and nothing where only one was fitted.
+    """
+    stated: dict[str, float] = {}
+    identified = {item.key for item in parameters if item.identified}
+    for key, item in zip(keys, parameters, strict=True):
+        if not key.uncertainty or not item.identified or (key.key in PLATES and not set(PLATES) <= identified):
+            continue
+        least = LEAST[key.uncertainty.rpartition("_")[2]]
+        width = min(max(least, _rounded_up(item.half_width)), LARGEST[key.uncertainty])
+        stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
+    return stated
+
+
+def reason_of(rig: Rig, sources: Sequence[tuple[str, str]]) -> str:
+    """Return the reason why a fitted rig's uncertainty is smaller than the shipped one."""
+    before = f"{rig.uncertainty.reason}; " if rig.uncertainty.reason else ""
+    return f"{before}95 % intervals of a fit by thermicon {own_version()} to {named(sources)}"
+
+
+def named(sources: Sequence[tuple[str, str]]) -> str:
+    """Logs with the beginning of their digests.
+
+    >>> named([("rig.csv", "ab" * 32)])
+    'rig.csv (sha256 abababababababab)'
+    """
+    few = [f"{name} (sha256 {digest[:DIGEST_DIGITS] or 'not from a file'})" for name, digest in sources]
+    more = [f"{len(few) - MOST_LOGS_NAMED} more"] if len(few) > MOST_LOGS_NAMED else []
+    return ", ".join([*few[:MOST_LOGS_NAMED], *more])
+
+
+def fitted_text(rig: Rig, parameters: Sequence[Parameter], sources: Sequence[tuple[str, str]]) -> str:
+    """Return the TOML of a fitted rig; every fitted value has its interval and logs under [source]."""
+    document: dict[str, Any] = _without_nothing(json.loads(rig.document))
+    origin = document.setdefault("source", {})
+    for item in parameters:
+        doubt = "" if item.identified else "; not identified by these logs"
+        origin[item.key] = (
+            f"fitted by thermicon {own_version()}: {item.value:.6g} {item.unit}, 95 % {item.low:.6g} to "
+            f"{item.high:.6g}, before {item.start:.6g}{doubt}; log {named(sources)}"
+        )
+    free = ", ".join(item.key for item in parameters)
+    notes = [note for note in document.get("notes", []) if not note.startswith("fitted:")]
+    document["notes"] = [
+        *notes,
+        f"fitted: {free}; logs {'; '.join(f'{name} sha256 {digest}' for name, digest in sources)}; thermicon "
+        f"{own_version()}. The intervals hold for the person, the contact and the room of these logs.",
+    ]
+    return toml_text(document)
+
+
+def _without_nothing(document: dict[str, Any]) -> dict[str, Any]:
+    """A document without keys that are None, which TOML cannot write."""
+    return {
+        key: _without_nothing(value) if isinstance(value, dict) else value
+        for key, value in document.items()
+        if value is not None
+    }
+
+
+def _rounded_up(value: float) -> float:
+    """Two significant digits, never less than the value.
+
+    >>> _rounded_up(0.02313)
+    0.024
+    """
+    import math
+
+    digits = 1 - math.floor(math.log10(value)) if value > 0 else 2
+    return round(math.ceil(value * 10**digits - 1e-9) / 10**digits, digits)

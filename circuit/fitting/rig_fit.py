@@ -1,0 +1,167 @@
+"""The result of a fit: parameters with intervals, correlations, residuals, and the rig they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.rig import Rig
+from .identify import Parameter
+from .rig_file import fitted_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChannelFit:
+    """A measured column beside the fitted rig, on the clock of its run's drive.
+
+    Attributes
+    ----------
+    run, file, column, unit
+        Log with the drive, file of the column, its name, and the unit of a difference: K or V.
+    time_s, measured, fitted
+        Rows (rows,) within the run.
+    rms, largest, largest_s
+        Root mean square and largest of measured minus fitted, and where that is, in s.
+    offset_K
+        Offset of the sensor that was fitted along, contained in `fitted`.
+    """
+
+    run: str
+    file: str
+    column: str
+    unit: str
+    time_s: Array
+    measured: Array
+    fitted: Array
+    offset_K: float
+
+    @property
+    def residual(self) -> Array:
+        """Measured minus fitted (rows,)."""
+        return self.measured - self.fitted
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residuals."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def largest(self) -> float:
+        """The residual of largest size, with its sign."""
+        return float(self.residual[int(np.argmax(np.abs(self.residual)))])
+
+    @property
+    def largest_s(self) -> float:
+        """Time in s of the largest residual."""
+        return float(self.time_s[int(np.argmax(np.abs(self.residual)))])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigFit:
+    """A rig fitted to logs.
+
+    Attributes
+    ----------
+    rig
+        The fitted rig, with the intervals in its uncertainty.
+    parameters
+        The free keys in the order in which they were named.
+    correlation
+        Correlations (keys, keys) of the fitted numbers.
+    channels
+        Every measured column beside the simulation.
+    sources
+        Name and SHA-256 of every log.
+    notes
+        Sentences on columns, clocks, sensors and the fit itself.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig, fit
+    >>> from thermicon.circuit.fitting.laboratory import synthetic_log
+    >>> log = synthetic_log(Rig.load("thenar").with_(**{"contact.resistance_m2K_per_W": 7e-4}), seed=1)
+    >>> fit(log, Rig.load("thenar"), free=["contact.resistance_m2K_per_W"])
+    RigFit(thenar: contact.resistance_m2K_per_W = 0.0007... m²·K/W ±... %)
+    """
+
+    rig: Rig
+    parameters: tuple[Parameter, ...]
+    correlation: Array
+    channels: tuple[ChannelFit, ...]
+    sources: tuple[tuple[str, str], ...]
+    notes: tuple[str, ...]
+    converged: bool
+
+    def __repr__(self) -> str:
+        parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]
+        return f"RigFit({self.rig.name}: {', '.join(parts)})"
+
+    def __getitem__(self, key: str) -> Parameter:
+        """The parameter of a key; raises KeyError with the keys there are."""
+        for item in self.parameters:
+            if item.key == key:
+                return item
+        raise KeyError(f"{key} was not fitted; fitted were {', '.join(item.key for item in self.parameters)}")
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """Fitted values by key, in the units of the rig file."""
+        return {item.key: item.value for item in self.parameters}
+
+    @property
+    def unidentified(self) -> tuple[Parameter, ...]:
+        """Parameters that the logs do not identify, each with the measurement that would."""
+        return tuple(item for item in self.parameters if not item.identified)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per parameter: key, unit, start, value, low, high, identified, cure."""
+        import pandas as pd
+
+        names = ("key", "unit", "start", "value", "low", "high", "identified", "cure")
+        return pd.DataFrame([{name: getattr(item, name) for name in names} for item in self.parameters])
+
+    def correlations(self) -> pd.DataFrame:
+        """Return the correlations of the parameters, by key."""
+        import pandas as pd
+
+        keys = [item.key for item in self.parameters]
+        return pd.DataFrame(self.correlation, index=keys, columns=keys)
+
+    def plot(self, ax: Axes | None = None, column: str | None = None) -> Axes:
+        """Draw the residuals of every column, or of one, in K (voltages in V) against time; returns the Axes."""
+        from .fit_figure import plot_residuals
+
+        return plot_residuals(self, ax, column)
+
+    def rig_text(self) -> str:
+        """Return the rig file of the fitted rig, with where its numbers come from."""
+        return fitted_text(self.rig, self.parameters, self.sources)
+
+    def save(self, path: str | Path) -> None:
+        """Write the fitted rig as a rig file with its provenance.
+
+        Parameters
+        ----------
+        path
+            A file whose name ends in `.toml`; an existing file is replaced.
+
+        Raises
+        ------
+        FitError
+            For another ending.
+        """
+        from .keys import FitError
+
+        where = Path(path)
+        if where.suffix != ".toml":
+            raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
+        where.write_text(self.rig_text(), encoding="utf-8")

@@ -1,0 +1,142 @@
+"""The fit itself: robust least squares, whose standard deviations come from the residuals of each channel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from .keys import FitError
+from .problem import Problem
+
+ROUNDS = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
+"""Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
+
+SAME_NOISE = 0.02
+"""Noise that changes by less than 2 % from round to round is known."""
+
+OUTLIER = 3.0
+"""Residuals beyond three standard deviations pull with a constant force (Huber): a few wild rows do no harm."""
+
+LEAST_SD = {True: 1e-4, False: 1e-5}
+"""Least standard deviation of a temperature in K and of a voltage in V, below any instrument."""
+
+MOST_EVALUATIONS = 60
+FEWEST_INDEPENDENT = 8.0
+"""However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solution:
+    """Where the fit ended: the point, its covariance, and of each channel the SD and the spread of its residuals.
+
+    `inflation` is how many rows of a channel count as one, since neighbouring residuals are alike; `converged`:
+    whether the fit came to rest.
+    """
+
+    theta: Array
+    covariance: Array
+    sigma: tuple[float, ...]
+    inflation: tuple[float, ...]
+    converged: bool
+
+
+def solve(problem: Problem) -> Solution:
+    """Fit; raises FitError where the run cannot be simulated on the starting rig."""
+    from scipy.optimize import least_squares
+
+    theta = np.clip(problem.first, problem.low, problem.high)
+    if problem.predictions(theta) is None:
+        _explain(problem, theta)
+    scale = np.array([0.1 if key.log else 1.0 for key in problem.keys] + [item.sd for item in problem.nuisances])
+    sigma, converged = spreads(problem, theta), False
+    for close, loss in ROUNDS:
+
+        def residuals(point: Array, sigma: Sequence[float] = sigma) -> Array:
+            return problem.residuals(point, sigma)
+
+        def jacobian(point: Array, sigma: Sequence[float] = sigma) -> Array:
+            return problem.jacobian(point, sigma)
+
+        answer = least_squares(
+            residuals, theta, jac=jacobian, bounds=(problem.low, problem.high), x_scale=scale, loss=loss,
+            f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=MOST_EVALUATIONS,
+        )  # fmt: skip
+        theta, converged = np.asarray(answer.x, dtype=np.float64), bool(answer.success)
+        before, sigma = sigma, spreads(problem, theta)
+        if loss == "huber" and np.allclose(before, sigma, rtol=SAME_NOISE):
+            break
+    inflation = tuple(alike(part) for part in parts_of(problem, problem.residuals(theta, sigma)))
+    covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation)
+    return Solution(theta, covariance, sigma, inflation, converged)
+
+
+def _explain(problem: Problem, theta: Array) -> None:
+    """Raise the error that made the first simulation impossible."""
+    from ..rig.rigfile import RigError
+    from .forward import predict
+
+    rig = problem.rig_at(theta)
+    for k, run in enumerate(problem.runs):
+        try:
+            predict(rig, run, problem.start(theta, k))
+        except RigError as problem_of_rig:
+            raise FitError(f"{run.name}: cannot be played on the rig to begin with: {problem_of_rig}") from None
+
+
+def parts_of(problem: Problem, residuals: Array) -> list[Array]:
+    """Residuals of each channel."""
+    ends = np.cumsum([len(channel.values) for _, _, channel in problem.channels()])
+    return list(np.split(residuals, ends))[:-1]
+
+
+def spreads(problem: Problem, theta: Array) -> tuple[float, ...]:
+    """Robust standard deviation of each channel's residuals, at least that of its sensor's rounding."""
+    ones = [1.0] * len(problem.channels())
+    parts = parts_of(problem, problem.residuals(theta, ones))
+    return tuple(
+        max(
+            1.4826 * float(np.median(np.abs(part - np.median(part)))),
+            channel.resolution / np.sqrt(12.0),
+            LEAST_SD[channel.temperature],
+        )
+        for part, (_, _, channel) in zip(parts, problem.channels(), strict=True)
+    )
+
+
+def alike(residuals: Array) -> float:
+    """Return how many neighbouring residuals count as one, by their correlation; 1 for white noise.
+
+    >>> alike(np.random.default_rng(0).normal(size=500)), round(alike(np.sin(np.arange(500) / 30)), -1)
+    (1.0, 60.0)
+    """
+    count = len(residuals)
+    clipped = np.clip(residuals - np.median(residuals), -OUTLIER, OUTLIER)
+    power = float(clipped @ clipped)
+    if count < 3 or power == 0.0:
+        return 1.0
+    neighbour = float(clipped[1:] @ clipped[:-1]) / power
+    if neighbour < 3.0 / np.sqrt(count):
+        return 1.0
+    return float(min((1 + neighbour) / max(1 - neighbour, 1e-9), max(1.0, count / FEWEST_INDEPENDENT)))
+
+
+def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float]) -> Array:
+    """Covariance of all parameters; what no row and no prior fixes gets the width of its room.
+
+    The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once.
+    """
+    counts = [len(channel.values) for _, _, channel in problem.channels()]
+    rows = np.split(jacobian, np.cumsum(counts))
+    prior = rows[-1].T @ rows[-1]
+    information, middle = prior.copy(), prior.copy()
+    for part, factor in zip(rows[:-1], inflation, strict=True):
+        product = part.T @ part
+        information += product
+        middle += factor * product
+    count = len(problem.keys)
+    room = np.diag(np.concatenate([(0.5 * (problem.high - problem.low)[:count]) ** -2.0, np.zeros(len(jacobian.T) - count)]))
+    inverse = np.linalg.pinv(information + room, hermitian=True)
+    return np.asarray(inverse @ (middle + room) @ inverse)

@@ -1,0 +1,146 @@
+"""``thermicon fit``: rig parameters from measured logs, and what a log would identify before it is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..text.messages import check_changes, load_rig, note, usage
+from .options import Changes, RigName
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, RigFit
+
+OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
+"""As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""
+
+RIG_SUFFIXES = (".toml",)
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Options of a fit."""
+
+    free: tuple[str, ...]
+    hold: bool = False
+    fit_start: bool = False
+    offset_K: float = OFFSET_K
+    output: Path | None = None
+    figure: Path | None = None
+
+
+def fit_command(
+    logs: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="LOG",
+            help="Measured logs: .csv, .tsv or .tdms. A file without a drive has a clock of its own and belongs to the "
+            "file before it.",
+        ),
+    ] = None,
+    free: Annotated[
+        list[str] | None,
+        typer.Option("--free", metavar="KEY,KEY", help="Keys of the rig to fit, such as contact.resistance_m2K_per_W."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="NEW.toml", readable=False, help="Write the fitted rig as a rig file."),
+    ] = None,
+    figure: Annotated[
+        Path | None,
+        typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw measured, fitted and residuals."),
+    ] = None,
+    plan: Annotated[
+        bool, typer.Option("--plan", help="Without a log: how well each choice of sensors will identify these keys.")
+    ] = False,
+    hold: Annotated[
+        bool, typer.Option("--hold", help="Hold each row's drive until the next row instead of interpolating.")
+    ] = False,
+    fit_start: Annotated[
+        bool, typer.Option("--fit-start", help="Fit the start as well, where the rig was not steady at the first row.")
+    ] = False,
+    offset: Annotated[
+        float,
+        typer.Option("--offset", metavar="K", help="What a temperature sensor may read off (standard deviation)."),
+    ] = OFFSET_K,
+    rig: RigName = None,
+    changes: Changes = None,
+) -> None:
+    """Fit parameters of a rig to measured logs: values with 95 % intervals, and what the logs do not identify.
+
+    A log has time_s, a drive (current_A, voltage_V or command_V; setpoint_C on a thermode), and what was measured:
+    display_C, skin_C, hot_plate_C, and voltage_V beside a current. The rig to begin with is that of --rig and --set.
+    """
+    check_changes(changes or [])
+    keys = tuple(key for part in free or [] for key in part.split(","))
+    if not any(key.strip() for key in keys):
+        raise usage("name the keys to fit, such as --free contact.resistance_m2K_per_W", "--free")
+    if plan and logs:
+        raise usage("is for the time before there is a log; leave out LOG, or --plan", "--plan")
+    if plan and (output or figure):
+        raise usage("prints a table only; leave out -o and --figure", "--plan")
+    if not plan and not logs:
+        raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
+    if not 0 <= offset <= MOST_OFFSET_K:
+        raise usage(f"{offset:g} K is outside 0 to {MOST_OFFSET_K:g} K", "--offset")
+    request = Request(keys, hold, fit_start, offset, output, figure)
+    if plan:
+        show_plan(load_rig(rig, changes or []), request)
+    else:
+        fit_logs(logs or [], load_rig(rig, changes or []), request)
+
+
+def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
+    """Fit a rig to logs, write the rig and the figure, and print the parameters."""
+    from thermicon.circuit import fit
+
+    if request.output is not None:
+        check_output(request.output, RIG_SUFFIXES, "a rig")
+    if request.figure is not None:
+        check_output(request.figure, FIGURE_SUFFIXES, "a figure")
+    check_separate(logs, [request.output, request.figure])
+    fitted = fit(
+        list(logs), rig, free=request.free, held=request.hold, fit_start=request.fit_start, offset_K=request.offset_K
+    )
+    if request.output is not None:
+        with complete_or_absent(request.output) as draft:
+            draft.write_text(fitted.rig_text(), encoding="utf-8")
+    if request.figure is not None:
+        from thermicon.circuit.fitting.fit_figure import fit_figure
+
+        with complete_or_absent(request.figure) as draft:
+            fit_figure(fitted).savefig(draft, dpi=130, format=request.figure.suffix.lower().removeprefix("."))
+    show_fit(fitted, rig)
+    for path in (request.output, request.figure):
+        if path is not None:
+            note(f"wrote {path}")
+
+
+def show_fit(fitted: RigFit, before: Rig) -> None:
+    """Print parameters, residuals, what was not identified, and the uncertainty that the rig gets."""
+    from ..text.fit_text import doubts, parameter_table, residual_table, uncertainty_line
+    from ..text.tables import show
+
+    show(parameter_table(fitted), "", residual_table(fitted))
+    for line in doubts(fitted):
+        show("", line)
+    if line := uncertainty_line(fitted, before):
+        show("", line)
+    for sentence in fitted.notes:
+        note(f"note: {sentence}")
+
+
+def show_plan(rig: Rig, request: Request) -> None:
+    """Print how well each choice of sensors will identify the keys."""
+    from thermicon.circuit.fitting.plan import plan
+
+    from ..text.fit_text import PLAN_HEAD, plan_table
+    from ..text.tables import show
+
+    expected = plan(rig, request.free, offset_K=request.offset_K)
+    show(PLAN_HEAD, "", plan_table(expected))

@@ -1,0 +1,109 @@
+"""What ``thermicon fit`` prints: parameters, residuals, doubts, and the table of a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from .tables import table
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from thermicon.circuit import Rig, RigFit
+    from thermicon.circuit.fitting.plan import Expected
+
+PLAN_HEAD = (
+    "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive (10 rows per second, "
+    "noise 20 mK and 5 mV); in brackets what is no better than assumed anyway."
+)
+CLOSE = 0.9
+"""Correlations from here on are printed."""
+
+
+def parameter_table(fitted: RigFit) -> Table:
+    """Parameters with fitted value and interval; the unit ends the key."""
+    rows = table("key", "fitted", "95 % interval", "±", numbers=("fitted", "±"), names=("key",))
+    for item in fitted.parameters:
+        width = item.interval.removeprefix("±") if item.identified else "unknown"
+        rows.add_row(item.key, _short(item.value), f"{_short(item.low)} to {_short(item.high)}", width)
+    return rows
+
+
+def residual_table(fitted: RigFit) -> Table:
+    """Every measured column: rms, largest residual and its time, and the sensor's offset."""
+    rows = table("measured − fitted", "rms", "largest", "at", "offset", numbers=("rms", "largest", "at", "offset"))
+    for each in fitted.channels:
+        words = each.column.rpartition("_")[0].replace("_", " ")
+        offset = f"{_signed(each.offset_K, 3)} K" if each.unit == "K" else "–"
+        rows.add_row(
+            f"{words} ({each.file})", _milli(each.rms, each.unit), _milli(each.largest, each.unit),
+            f"{each.largest_s:.1f} s", offset,
+        )  # fmt: skip
+    return rows
+
+
+def doubts(fitted: RigFit) -> list[str]:
+    """What was not identified with the cure, and pairs that the logs hardly separate."""
+    lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
+    keys = [item.key for item in fitted.parameters]
+    pairs = [
+        f"{keys[a]} and {keys[b]} ({_signed(float(fitted.correlation[a, b]), 2)})"
+        for a in range(len(keys))
+        for b in range(a + 1, len(keys))
+        if abs(fitted.correlation[a, b]) > CLOSE
+    ]
+    return [*lines, *([f"strongly correlated: {', '.join(pairs)}"] if pairs else [])]
+
+
+def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
+    """What the safety gate and virtual people vary from now on, where it is less than before."""
+    from thermicon.circuit.rig.uncertainty import WORDS
+
+    changed = [
+        f"{words} ±{scale * getattr(fitted.rig.uncertainty, key):g} {unit} (was ±"
+        f"{scale * getattr(before.uncertainty, key):g} {unit})"
+        for key, (words, _, scale, unit) in WORDS.items()
+        if getattr(fitted.rig.uncertainty, key) != getattr(before.uncertainty, key)
+    ]
+    if not changed:
+        return None
+    return (
+        f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
+        f"it with --set uncertainty.KEY=VALUE for other people"
+    )
+
+
+def plan_table(expected: Sequence[Expected]) -> Table:
+    """A row per choice of sensors, a column per key."""
+    names = [key.words for key in expected[0].keys]
+    rows = table("sensors", *names, numbers=names)
+    for each in expected:
+        rows.add_row(
+            each.sensors,
+            *(
+                _width(width, key.log, known, key.key)
+                for width, key, known in zip(each.half_widths, each.keys, each.identified, strict=True)
+            ),
+        )
+    return rows
+
+
+def _width(width: float, log: bool, known: bool, key: str) -> str:
+    if log:
+        text = f"±{100 * width:.2g} %" if width < 1.0 else "unknown"
+    else:
+        text = f"±{width:.2g} {'s' if key.endswith('_s') else 'K'}"
+    return text if known else f"({text})"
+
+
+def _short(value: float) -> str:
+    return f"{value:.4g}".replace("-", "−")
+
+
+def _signed(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}".replace("-", "−")
+
+
+def _milli(value: float, unit: str) -> str:
+    return f"{1e3 * value:.3g} m{unit}".replace("-", "−")

@@ -1,0 +1,204 @@
+"""Fits of synthetic logs: the truth is found, and what a log cannot say is named."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig, RigFit, fit
+from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
+from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.icons import load_library
+
+from .conftest import TRUTH
+
+KEYS = list(TRUTH)
+
+
+@pytest.fixture(scope="module")
+def fitted(log: Log, thenar: Rig) -> RigFit:
+    return fit(log, thenar, free=KEYS)
+
+
+def holds(found: RigFit, truth: dict[str, float], slack: float = 1.5) -> None:
+    """Every truth lies within 1.5 half widths, which white noise leaves about once in 300."""
+    for key, value in truth.items():
+        item = found[key]
+        low, high = item.value - slack * (item.value - item.low), item.value + slack * (item.high - item.value)
+        assert low <= value <= high, found
+
+
+def test_contact_and_module_are_found_from_display_and_voltage(fitted: RigFit, log: Log) -> None:
+    holds(fitted, TRUTH)
+    assert fitted.converged and not fitted.unidentified
+    assert fitted["contact.resistance_m2K_per_W"].half_width < 0.03
+    assert all(fitted[key].half_width < 0.01 for key in KEYS[1:])
+    display, voltage = fitted.channels
+    assert display.rms == pytest.approx(0.02, rel=0.1)
+    assert voltage.rms == pytest.approx(0.005, rel=0.1)
+    assert abs(display.largest) > 2 * display.rms and display.run == log.name
+    assert fitted.notes == ()
+
+
+def test_the_fit_is_a_table(fitted: RigFit) -> None:
+    frame = fitted.to_frame()
+    assert list(frame["key"]) == KEYS
+    assert (frame["low"] < frame["value"]).all() and (frame["value"] < frame["high"]).all()
+    assert np.allclose(np.diag(fitted.correlations()), 1.0)
+    assert fitted.values == {item.key: item.value for item in fitted.parameters}
+    with pytest.raises(KeyError, match="colour was not fitted; fitted were contact.resistance_m2K_per_W, module"):
+        fitted["colour"]
+    assert len(fitted.plot().lines) == 3
+    assert fitted.plot(column="voltage_V").get_ylabel() == "measured − fitted (V)"
+
+
+def test_ambient_and_rest_cannot_be_separated_and_both_are_named(log: Log, thenar: Rig, true_rig: Rig) -> None:
+    found = fit(log, true_rig, free=["ambient.temperature_C", "skin.rest_C", KEYS[0]])
+    ambient, rest = found.unidentified
+    assert (ambient.key, rest.key) == ("ambient.temperature_C", "skin.rest_C")
+    assert ambient.cure == "cannot be separated from skin at rest here; measure it directly: a thermometer in the room"
+    assert found.correlation[0, 1] > 0.99
+    assert found.rig.uncertainty.ambient_K == thenar.uncertainty.ambient_K
+    holds(found, {KEYS[0]: TRUTH[KEYS[0]]})
+
+
+def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -> None:
+    log = synthetic_log(true_rig, seed=5, rate_Hz=20.0, columns=["display_C"])
+    hot = "module.hot_plate_J_per_K"
+    free = [*KEYS, "module.thermal_resistance_K_per_W", hot, "heat_sink.resistance_K_per_W"]
+    found = fit(log, true_rig, free=free)
+    assert hot in {item.key for item in found.unidentified}
+    assert "log hot_plate_C as well: it would then be known to about ±" in found[hot].cure
+    more = synthetic_log(true_rig, seed=5, rate_Hz=20.0, columns=["display_C", "hot_plate_C"])
+    better = fit(more, true_rig, free=free)
+    assert better[hot].identified
+    holds(better, {hot: 2.6})
+
+
+def test_two_clocks_one_shifted_and_one_that_drifts(true_rig: Rig, thenar: Rig, log: Log) -> None:
+    columns = dict(log.columns)
+    drive = Log.of("daq.csv", {"time_s": log.time_s, "current_A": columns["current_A"], "voltage_V": columns["voltage_V"]})
+    time = (log.time_s[40:] + 812.3) / (1 + 1e-4)
+    meter = Log.of("thermometer.csv", {"time_s": time, "display_C": columns["display_C"][40:]})
+    found = fit([drive, meter], thenar, free=KEYS)
+    holds(found, TRUTH)
+    assert found.notes[-1].startswith("thermometer.csv: its clock was shifted by −812.")
+    assert found.sources == (("daq.csv", ""), ("thermometer.csv", ""))
+    wrong = Log.of("thermometer.csv", {"time_s": log.time_s * 1.01, "display_C": columns["display_C"]})
+    with pytest.raises(LogError, match=r"thermometer.csv: its clock drifts, (0.99|1) % fast against daq.csv; correct"):
+        fit([drive, wrong], thenar, free=KEYS)
+    other = np.random.default_rng(1).normal(31.0, 0.5, 300)
+    foreign = Log.of("thermometer.csv", {"time_s": np.arange(300) / 1, "display_C": other})
+    with pytest.raises(LogError, match=r"thermometer.csv: (does not fit in time|display_C changes|display_C goes)"):
+        fit([drive, foreign], thenar, free=KEYS)
+
+
+def test_several_runs_share_the_rig(true_rig: Rig, thenar: Rig, log: Log) -> None:
+    again = synthetic_log(true_rig, seed=4, rate_Hz=20.0, name="second.csv")
+    both = fit([log, again], thenar, free=KEYS)
+    alone = fit(log, thenar, free=KEYS)
+    holds(both, TRUTH)
+    assert both[KEYS[0]].half_width < 0.85 * alone[KEYS[0]].half_width
+    assert {each.run for each in both.channels} == {"synthetic.csv", "second.csv"}
+
+
+def test_gaps_and_wild_rows_do_little_harm(log: Log, thenar: Rig) -> None:
+    display, random = np.array(log.column("display_C")), np.random.default_rng(2)
+    display[300:420] = np.nan
+    display[random.choice(len(display), 12, replace=False)] += 5.0
+    found = fit(Log.of("rig.csv", {"time_s": log.time_s, **dict(log.columns), "display_C": display}), thenar, free=KEYS)
+    holds(found, TRUTH, slack=2.0)
+
+
+def test_a_sensor_that_is_off_is_fitted_and_named(log: Log, thenar: Rig) -> None:
+    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": log.column("display_C") + 0.6}
+    found = fit(Log.of("rig.csv", columns), thenar, free=KEYS)
+    assert found.channels[0].offset_K == pytest.approx(0.6, abs=0.3)
+    assert found.notes[0].startswith("rig.csv: display_C reads +0.")
+    assert found.notes[0].endswith("sensors are assumed to be; calibrate it")
+
+
+def test_voltage_or_command_can_drive_in_place_of_the_current(true_rig: Rig, thenar: Rig, log: Log) -> None:
+    columns = {"time_s": log.time_s, **dict(log.columns)}
+    clean = synthetic_log(true_rig, seed=3, rate_Hz=20.0, noise_V=0.0)
+    by_volts = {key: value for key, value in columns.items() if key != "current_A"}
+    by_volts["voltage_V"] = clean.column("voltage_V")
+    start = thenar.with_(**{key: value for key, value in TRUTH.items() if key != KEYS[0]})
+    found = fit(Log.of("volts.csv", by_volts), start, free=[KEYS[0]])
+    holds(found, {KEYS[0]: TRUTH[KEYS[0]]}, slack=4.0)  # the jumps of the voltage fall between rows
+    command = {**columns, "command_V": columns["current_A"] / 0.15}
+    del command["current_A"]
+    gained = fit(
+        Log.of("command.csv", command),
+        true_rig.with_(**{"driver.transconductance_A_per_V": 0.14}),
+        free=["driver.transconductance_A_per_V"],
+    )
+    holds(gained, {"driver.transconductance_A_per_V": 0.15}, slack=3.0)
+    assert gained.rig.uncertainty.gain_relative == 0.01
+
+
+def test_a_start_that_is_not_steady(true_rig: Rig, thenar: Rig) -> None:
+    log = synthetic_log(true_rig, seed=6, rate_Hz=20.0)
+    late = log.time_s >= 8.0
+    cut = Log.of("late.csv", {"time_s": log.time_s[late], **{name: value[late] for name, value in log.columns}})
+    steady, free = fit(cut, thenar, free=KEYS), fit(cut, thenar, free=KEYS, fit_start=True)
+    assert any("--fit-start" in note for note in steady.notes)
+    worst = {key: abs(found[key].value / TRUTH[key] - 1) for found in (steady,) for key in KEYS}
+    assert abs(free[KEYS[0]].value / TRUTH[KEYS[0]] - 1) < 0.3 * worst[KEYS[0]]
+    assert free.channels[0].rms < 0.5 * steady.channels[0].rms
+
+
+def test_the_lag_of_a_thermistor(thenar: Rig) -> None:
+    sensor = [{"name": "thermistor", "place": "display", "lag_s": 0.05}]
+    rig = thenar.with_(probe=sensor)
+    slow = rig.with_(**{"probe.thermistor.lag_s": 0.3})
+    made = synthetic_log(slow, seed=7, rate_Hz=20.0, columns=["probe_thermistor_C"])
+    log = Log.of("slow.csv", {"time_s": made.time_s, "current_A": made.column("current_A"),
+                              "display_C": made.column("probe_thermistor_C")})  # fmt: skip
+    found = fit(log, rig, free=["probe.thermistor.lag_s"])
+    assert found["probe.thermistor.lag_s"].value == pytest.approx(0.3, abs=0.03)
+    loop = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.1, "lag_s": 0.1}
+    controlled = fit(log, thenar.with_(**{f"controller.{key}": value for key, value in loop.items()}),
+                     free=["controller.lag_s"])  # fmt: skip
+    assert controlled["controller.lag_s"].value == pytest.approx(0.3, abs=0.03)
+
+
+def test_a_thermode_follows_its_set_points(thenar: Rig) -> None:
+    rig = Rig.load("tcs2")
+    log = synthetic_log(rig.with_(**{"thermode.lag_s": 0.3}), seed=8, rate_Hz=20.0, columns=["display_C"],
+                        icon=load_library("six-icons")["cooling-step"], tail_s=4.0)  # fmt: skip
+    found = fit(log, rig, free=["thermode.lag_s"])
+    assert found["thermode.lag_s"].value == pytest.approx(0.3, abs=0.04)
+    touched = synthetic_log(rig.with_(**{KEYS[0]: 5e-4}), seed=8, rate_Hz=20.0, columns=["display_C", "skin_C"])
+    columns = {name: value for name, value in touched.columns if name != "setpoint_C"}
+    contact = fit(Log.of("skin.csv", {"time_s": touched.time_s, **columns}), rig, free=[KEYS[0]])
+    holds(contact, {KEYS[0]: 5e-4}, slack=3.0)
+
+
+def test_a_module_given_by_data_sheet_becomes_parameters(log: Log, thenar: Rig, tmp_path: object) -> None:
+    from pathlib import Path
+
+    named = thenar.with_(**{"module.name": "TEC1-12706", "driver.current_limit_A": 2.0})
+    begin = {"module.seebeck_V_per_K", "module.resistance_ohm", "module.thermal_resistance_K_per_W"}
+    made = synthetic_log(named, seed=9, rate_Hz=20.0)
+    found = fit(made, named, free=sorted(begin))
+    path = Path(str(tmp_path)) / "rig.toml"
+    found.save(path)
+    assert Rig.load(path).module.seebeck_V_per_K == pytest.approx(named.module.seebeck_V_per_K, rel=0.01)
+
+
+def test_residuals_that_are_alike_widen_the_intervals(true_rig: Rig, thenar: Rig, log: Log) -> None:
+    other_skin = true_rig.with_(**{"skin.layer.dermis.perfusion_per_s": 6e-3})
+    foreign = synthetic_log(other_skin, seed=3, rate_Hz=20.0)
+    found, plain = fit(foreign, thenar, free=KEYS), fit(log, thenar, free=KEYS)
+    assert found[KEYS[0]].half_width > 1.5 * plain[KEYS[0]].half_width
+    assert any("neighbouring residuals are alike" in note for note in found.notes)
+
+
+def test_the_same_seed_gives_the_same_log(true_rig: Rig) -> None:
+    first, second = (synthetic_log(true_rig, seed=1, rate_Hz=5.0) for _ in range(2))
+    assert all(np.array_equal(a[1], b[1]) for a, b in zip(first.columns, second.columns, strict=True))
+    assert calibration_icon().corners(32.0).duration_s == pytest.approx(60.0, abs=1e-3)
+    assert replace(first, name="b").name == "b"

@@ -1,0 +1,140 @@
+"""What no log may be: every message names the file, the place and the cure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.circuit.fitting.checks import check_sensors
+from thermicon.circuit.fitting.fit import fit
+from thermicon.circuit.fitting.keys import FitError, free_keys
+from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.problem import Problem
+from thermicon.circuit.fitting.runs import runs_of
+
+CONTACT = ["contact.resistance_m2K_per_W"]
+TIME = np.arange(100) / 10
+PLAIN = {"time_s": TIME, "current_A": 0.1 + 0.3 * (TIME > 2), "display_C": np.full(100, 32.0)}
+
+
+def changed(**columns: object) -> dict[str, object]:
+    return {**PLAIN, **columns}
+
+
+def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
+    values = np.array(PLAIN[column], dtype=float)
+    values[row] = value
+    return values
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"current_A": TIME}, r"the column time_s \(time in s\) is missing; found current_A"),
+        (changed(display_C=[32.0] * 99), "unequal lengths: time_s has 100 rows, display_C has 99; cut the longer"),
+        (changed(display_C=[*[32.0] * 60, *[np.nan] * 40]), "unequal lengths: display_C ends in row 60, the log in"),
+        (changed(display_C=[np.nan] * 100), "display_C holds no number at all; remove the column, or connect"),
+        (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s does not come after 4.9 s; times must increase"),
+        (changed(time_s=at(7, np.nan)), "row 8: time_s is empty; remove the row"),
+        (changed(time_s=TIME * 1000), "steps of 100 over 9900: these look like milliseconds; divide the column by"),
+        (changed(time_s=TIME * 100000), "steps of 10000 s; a fit needs rows at most 2 s apart: log faster"),
+        (changed(display_C=[305.2] * 100), "median of 305.2: these look like kelvin; subtract 273.15 to have °C"),
+        (changed(display_C=[89.6] * 100), "median of 89.6: these look like °F; convert the column to °C"),
+        (changed(display_C=[-273.0] * 100), "reads -273 °C in 100 % of its rows: a sensor that is unplugged"),
+        (changed(current_A=[400.0] * 100), "reaches 400 A, above 50 A: it looks like milliamperes; divide it by 1000"),
+        (changed(voltage_V=[4000.0] * 100), "reaches 4000 V, above 200 V: it looks like millivolts"),
+        ({"time_s": TIME, "pressure": TIME}, "no column of a log; needed is one of current_A, .*found time_s, pressure"),
+        ({"time_s": TIME[:5], "current_A": TIME[:5]}, "5 rows; a fit needs at least 20"),
+        ({"time_s": range(1_000_001), "current_A": range(1_000_001)}, "1,000,001 rows; the limit is 1,000,000"),
+    ],
+)  # fmt: skip
+def test_a_log_that_cannot_be_one_is_refused(columns: Mapping[str, Sequence[float]], message: str) -> None:
+    with pytest.raises(LogError, match=f"rig.csv(: |, ).*{message}"):
+        Log.of("rig.csv", columns)
+
+
+def test_columns_that_are_not_used_are_noted() -> None:
+    log = Log.of("rig.csv", {**PLAIN, "pressure_kPa": TIME})
+    assert log.notes == ("rig.csv: columns that are not used: pressure_kPa",)
+    assert (log.drive, log.measured) == ("current_A", ("display_C",))
+    with pytest.raises(KeyError, match="no column skin_C in rig.csv; there is current_A, display_C"):
+        log.column("skin_C")
+
+
+def drive(**columns: object) -> Log:
+    return Log.of("rig.csv", changed(**columns))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"current_A": at(0, np.nan, "current_A") + 0 * TIME}, None),
+        ({"current_A": np.where((TIME > 1.5) & (TIME < 4), np.nan, PLAIN["current_A"])},
+         r"current_A is not known from 1.5 to 4 s, and differs on both sides \(0.1 and 0.4\)"),
+        ({"current_A": np.where(TIME < 1, np.nan, PLAIN["current_A"])}, "current_A is empty until 1 s; cut the rows"),
+        ({"current_A": np.full(100, 0.2)}, "current_A is 0.2 in every row: nothing changes"),
+        ({"current_A": 45.0 * (TIME > 1)}, "reaches 45 A, the driver of rig thenar gives 1.5 A: .*milliamperes"),
+        ({"current_A": np.where(TIME > 3, np.nan, PLAIN["current_A"]), "display_C": np.full(100, 32.0)},
+         "unequal lengths: current_A ends in row 31"),
+    ],
+)  # fmt: skip
+def test_a_drive_must_be_known_throughout(columns: dict[str, object], message: str | None, thenar: Rig) -> None:
+    if message is None:
+        assert runs_of([drive(**columns)], thenar, False)[0].begin_s == 0.1
+        return
+    with pytest.raises(LogError, match=message):
+        runs_of([drive(**columns)], thenar, False)
+
+
+def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive(thenar: Rig) -> None:
+    current = np.where((TIME > 4) & (TIME < 8), np.nan, PLAIN["current_A"])
+    run = runs_of([drive(current_A=current)], thenar, False)[0]
+    assert len(run.time_s) == np.isfinite(current).sum()
+
+
+def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
+    sensor = Log.of("thermometer.csv", {"time_s": TIME, "display_C": PLAIN["display_C"]})
+    with pytest.raises(LogError, match=r"no log has a drive: one of current_A, .*thermometer.csv has display_C"):
+        runs_of([sensor], thenar, False)
+    alone = Log.of("drive.csv", {"time_s": TIME, "current_A": PLAIN["current_A"]})
+    with pytest.raises(LogError, match=r"drive.csv: nothing measured beside the drive; log display_C, and voltage_V"):
+        runs_of([alone], thenar, False)
+    with pytest.raises(LogError, match="no log; name one or several files"):
+        fit([], thenar, free=CONTACT)
+    run = runs_of([alone, sensor], thenar, False)[0]
+    assert (run.clocks, run.channels[0].clock) == (("thermometer.csv",), 1)
+
+
+def altered(log: Log, column: str, values: np.ndarray) -> Log:
+    return Log.of("rig.csv", {"time_s": log.time_s, **dict(log.columns), column: values})
+
+
+def problem_of(log: Log, rig: Rig) -> Problem:
+    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], rig, False))
+
+
+@pytest.mark.parametrize("part", [slice(None), slice(200, 700)])
+def test_a_sensor_that_is_stuck_is_named_with_its_times(part: slice, log: Log, thenar: Rig) -> None:
+    values = np.array(log.column("display_C"))
+    values[part] = 30.0
+    with pytest.raises(LogError, match=r"rig.csv: display_C reads 30 from .* s without any change, while the rig"):
+        check_sensors(problem_of(altered(log, "display_C", values), thenar))
+
+
+def test_a_sensor_in_the_room_is_named(log: Log, thenar: Rig) -> None:
+    room = 24.0 + np.random.default_rng(0).normal(0.0, 0.02, len(log.time_s))
+    with pytest.raises(LogError, match=r"display_C changes by 0.0\d+ K where the rig changes by \d.*unplugged, or not"):
+        check_sensors(problem_of(altered(log, "display_C", room), thenar))
+
+
+def test_the_wrong_sign_is_named(log: Log, thenar: Rig) -> None:
+    with pytest.raises(LogError, match="display_C goes the other way than the rig: positive current cools"):
+        check_sensors(problem_of(altered(log, "current_A", -log.column("current_A")), thenar))
+
+
+def test_an_impossible_offset_is_refused(log: Log, thenar: Rig) -> None:
+    with pytest.raises(FitError, match="an offset of -1 K is not possible for a sensor; give 0 to 10 K"):
+        fit(log, thenar, free=CONTACT, offset_K=-1.0)

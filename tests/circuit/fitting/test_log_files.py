@@ -1,0 +1,140 @@
+"""Logs from CSV, from the TSV of a thermode session and from TDMS."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from nptdms import ChannelObject, RootObject, TdmsWriter
+
+from thermicon.circuit.fitting.keys import FitError
+from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.log_files import read_log
+
+ROWS = [(k / 10, 0.1, 32.0 + k / 100) for k in range(40)]
+HEAD = ("time_s", "current_A", "display_C")
+
+
+def text_of(mark: str = ",", head: tuple[str, ...] = HEAD, comma: bool = False) -> str:
+    lines = [mark.join(head), *(mark.join(f"{value:g}" for value in row) for row in ROWS)]
+    text = "\n".join(lines) + "\n"
+    return text.replace(".", ",") if comma else text
+
+
+@pytest.fixture
+def saved(tmp_path: Path) -> Callable[[str | bytes, str], Path]:
+    def save(content: str | bytes, name: str = "rig.csv") -> Path:
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    return save
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        text_of(), text_of(";", comma=True), text_of("\t"), "\ufeff" + text_of(), text_of().replace("\n", "\r\n"),
+        "# logged on Monday\n" + text_of(), text_of() + "\n\n",
+    ],
+)  # fmt: skip
+def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable[..., Path]) -> None:
+    log = read_log(saved(text))
+    assert (len(log.time_s), log.time_s[-1], log.column("display_C")[3]) == (40, 3.9, 32.03)
+    assert len(log.sha256) == 64
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "the file is empty; a log was expected"),
+        ("time_s\0", "a binary file, not a table"),
+        ("0,0.1,32\n1,0.1,32\n", "1: this line holds numbers, not the names of columns; put time_s,current_A"),
+        (text_of(head=("time_s", "current_A", "current_A")), "the column current_A appears twice; remove one"),
+        (text_of(head=("time_ms", "current_A", "display_C")), "missing: time_s .*time_ms should be time_s: divide"),
+        (text_of(head=("time_s", "amps", "volts")), "missing: one of current_A, command_V.*found time_s, amps, volts"),
+        (text_of(head=("time_s", "curent_A", "display_K")), "display_K should be display_C: subtract 273.15; curent_A: "
+         "did you mean current_A"),
+        (text_of().replace("32.05", "warm"), ":7: display_C is 'warm', not a number; leave the cell empty"),
+        (text_of().replace("32.05", "32,05"), ":7: 4 cells, the first line names 3 columns; write decimal points"),
+        (text_of().replace("\n0.5,", "\n0.2,"), ":7: time_s 0.2 s does not come after 0.4 s"),
+    ],
+)  # fmt: skip
+def test_a_table_that_is_no_log_is_refused_with_its_line(
+    text: str, message: str, saved: Callable[..., Path]
+) -> None:
+    with pytest.raises(LogError, match=f"rig.csv.*{message}"):
+        read_log(saved(text))
+
+
+def test_gaps_are_empty_cells_or_nan_or_missing_cells(saved: Callable[..., Path]) -> None:
+    text = text_of().replace(",32.05", ",").replace("32.06", "NaN").replace(",32.07", "")
+    assert np.isnan(read_log(saved(text)).column("display_C")).sum() == 3
+
+
+def test_a_file_that_is_too_large_is_refused(saved: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("thermicon.circuit.fitting.log_files.MOST_MB", 1e-4)
+    with pytest.raises(LogError, match=r"0 MB is too large for a log; the limit is 0.0001 MB"):
+        read_log(saved(text_of()))
+    with pytest.raises(LogError, match=r"nothing.csv: no such log"):
+        read_log("nothing.csv")
+
+
+SESSION = [f"{k / 10:g}\t-1\tn/a\t32.0\t34.0\t{32 + k / 50:g}\t{33 + k / 50:g}" for k in range(40)]
+NAMES = ["onset", "volume", "delta", "z1_set", "z2_set", "z1_act", "z2_act"]
+
+
+def test_a_session_of_a_thermode_is_the_mean_of_its_zones(saved: Callable[..., Path]) -> None:
+    path = saved("\n".join(SESSION), "sub-01_thermode.tsv")
+    with pytest.raises(LogError, match=r"no line names the columns, and there is no sub-01_thermode.json with them"):
+        read_log(path)
+    beside = path.with_suffix(".json")
+    beside.write_text(json.dumps({"Columns": NAMES}))
+    log = read_log(path)
+    assert (log.column("setpoint_C")[0], log.column("display_C")[10]) == (33.0, 32.7)
+    assert "sub-01_thermode.tsv: display_C and setpoint_C are means over the zones" in log.notes
+    beside.write_text(json.dumps({"Columns": NAMES[:3]}))
+    with pytest.raises(LogError, match=r"json: names 3 columns; sub-01_thermode.tsv has 7"):
+        read_log(path)
+    beside.write_text("[]")
+    with pytest.raises(LogError, match='has no list "Columns" with the names of the columns; add it'):
+        read_log(path)
+    with_header = saved("\t".join(NAMES) + "\n" + "\n".join(SESSION), "named.tsv")
+    assert read_log(with_header).drive == "setpoint_C"
+
+
+def tdms(**channels: Any) -> bytes:
+    file = io.BytesIO()
+    clock = {"wf_increment": 0.1, "wf_start_offset": 2.0}
+    with TdmsWriter(file) as writer:
+        writer.write_segment(
+            [RootObject(), *(ChannelObject("log", name, np.asarray(values, dtype=float), {} if name == "bare" else clock)
+                             for name, values in channels.items())]
+        )  # fmt: skip
+    return file.getvalue()
+
+
+def test_waveforms_of_tdms_share_a_clock(saved: Callable[..., Path]) -> None:
+    current, display = np.full(40, 0.1), np.linspace(30, 32, 40)
+    log = read_log(saved(tdms(current_A=current, display_C=display), "rig.tdms"))
+    assert (round(float(log.time_s[0]), 9), round(float(log.time_s[-1]), 9)) == (2.0, 5.9)
+    for content, message in (
+        (tdms(current_A=current, display_C=display[:30]), r"unequal lengths \(current_A 40, display_C 30 samples\)"),
+        (tdms(bare=current), "channel bare has neither wf_increment nor a channel time_s beside it"),
+        (b"TDSm and then nothing that TDMS would have", "cannot be read as TDMS"),
+        (tdms(pressure=current), "no column of a log"),
+    ):
+        with pytest.raises(FitError, match=f"rig.tdms: .*{message}"):
+            read_log(saved(content, "rig.tdms"))
+
+
+def test_a_written_log_is_read_back(log: Log, tmp_path: Path) -> None:
+    from thermicon.circuit.fitting.laboratory import write_log
+
+    write_log(log, tmp_path / "a.csv")
+    assert np.allclose(read_log(tmp_path / "a.csv").column("display_C"), log.column("display_C"), atol=1e-6)
