@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from .problem import Problem
 from .rig_file import reason_of, uncertainties
 from .rig_fit import ChannelFit, RigFit
 from .runs import runs_of
-from .solve import Solution, solve
+from .solve import Solution, fits_better, solve
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -30,7 +31,10 @@ BOUND = 1e-3
 """A parameter within this share of its room from a bound is at the bound."""
 
 ALIKE = 3.0
+"""From so many alike neighbours on, a note says that the rig leaves something out."""
+
 MOST_OFFSET_K = 10.0
+"""A sensor that is off by more is broken."""
 
 
 def fit(
@@ -38,7 +42,7 @@ def fit(
     rig: Rig,
     *,
     free: Sequence[str],
-    held: bool = False,
+    held: bool | None = None,
     fit_start: bool = False,
     offset_K: float = OFFSET_SD_K,
 ) -> RigFit:
@@ -54,7 +58,8 @@ def fit(
     free
         Dotted keys to fit, such as `contact.resistance_m2K_per_W`.
     held
-        Whether the drive of a row lasts until the next row; otherwise it is linear between rows.
+        Whether the drive of a row lasts until the next row (True), or is linear between rows (False); None: whichever
+        fits the logs better.
     fit_start
         Fit the state at the first row as well; otherwise the rig is taken as steady under the first row's drive.
     offset_K
@@ -90,10 +95,14 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    problem = Problem.of(begin, keys, runs_of(read, begin, held), fit_start=fit_start, offset_sd_K=offset_K)
+    problem = Problem.of(begin, keys, runs_of(read, begin, held is not False), fit_start=fit_start, offset_sd_K=offset_K)
     problem = aligned(problem)
     check_sensors(problem)
     solution = solve(problem)
+    if held is None:
+        linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs), _kept={})
+        if fits_better(linear, problem, solution):
+            problem, solution = linear, solve(linear, solution.theta)
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     notes = [note for log in read for note in log.notes]

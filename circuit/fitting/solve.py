@@ -43,11 +43,11 @@ class Solution:
     converged: bool
 
 
-def solve(problem: Problem) -> Solution:
-    """Fit; raises FitError where the run cannot be simulated on the starting rig."""
+def solve(problem: Problem, begin: Array | None = None) -> Solution:
+    """Fit, from the problem's own first point or another; raises FitError where the run cannot be simulated on the starting rig."""
     from scipy.optimize import least_squares
 
-    theta = np.clip(problem.first, problem.low, problem.high)
+    theta = np.clip(problem.first if begin is None else begin, problem.low, problem.high)
     if problem.predictions(theta) is None:
         _explain(problem, theta)
     scale = np.array([0.1 if key.log else 1.0 for key in problem.keys] + [item.sd for item in problem.nuisances])
@@ -71,6 +71,22 @@ def solve(problem: Problem) -> Solution:
     inflation = tuple(alike(part) for part in parts_of(problem, problem.residuals(theta, sigma)))
     covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation)
     return Solution(theta, covariance, sigma, inflation, converged)
+
+
+def fits_better(other: Problem, problem: Problem, solution: Solution) -> bool:
+    """Whether a variant of a problem would fit better than its solution: judged after one step of Gauss and Newton."""
+    residuals = other.residuals(solution.theta, solution.sigma)
+    weight = np.minimum(1.0, OUTLIER / np.maximum(np.abs(residuals), 1e-12)) ** 0.5
+    jacobian = other.jacobian(solution.theta, solution.sigma)
+    step = np.linalg.lstsq(weight[:, np.newaxis] * jacobian, -weight * residuals)[0]
+    there = residuals + jacobian @ step
+    return _huber(there) < _huber(problem.residuals(solution.theta, solution.sigma))
+
+
+def _huber(residuals: Array) -> float:
+    """Huber's sum: squares, and beyond OUTLIER linear."""
+    size = np.abs(residuals)
+    return float(np.sum(np.where(size <= OUTLIER, size**2, 2 * OUTLIER * size - OUTLIER**2)))
 
 
 def _explain(problem: Problem, theta: Array) -> None:

@@ -27,7 +27,7 @@ class Request:
     """Options of a fit."""
 
     free: tuple[str, ...]
-    hold: bool = False
+    hold: bool | None = None
     fit_start: bool = False
     offset_K: float = OFFSET_K
     output: Path | None = None
@@ -59,8 +59,12 @@ def fit_command(
         bool, typer.Option("--plan", help="Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
     hold: Annotated[
-        bool, typer.Option("--hold", help="Hold each row's drive until the next row instead of interpolating.")
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--hold/--linear",
+            help="Hold each row's drive until the next, or interpolate it.  [default: whichever fits better]",
+        ),
+    ] = None,
     fit_start: Annotated[
         bool, typer.Option("--fit-start", help="Fit the start as well, where the rig was not steady at the first row.")
     ] = False,

@@ -67,7 +67,8 @@ def test_ambient_and_rest_cannot_be_separated_and_both_are_named(log: Log, thena
 def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -> None:
     log = synthetic_log(true_rig, seed=5, rate_Hz=20.0, columns=["display_C"])
     hot = "module.hot_plate_J_per_K"
-    free = [*KEYS, "module.thermal_resistance_K_per_W", hot, "heat_sink.resistance_K_per_W"]
+    plates = [hot, "module.cold_plate_J_per_K"]
+    free = [*KEYS, "module.thermal_resistance_K_per_W", *plates, "heat_sink.resistance_K_per_W", "heat_sink.temperature_C"]
     found = fit(log, true_rig, free=free)
     assert hot in {item.key for item in found.unidentified}
     assert "log hot_plate_C as well: it would then be known to about ±" in found[hot].cure
@@ -190,7 +191,7 @@ def test_a_module_given_by_data_sheet_becomes_parameters(log: Log, thenar: Rig, 
 
 
 def test_residuals_that_are_alike_widen_the_intervals(true_rig: Rig, thenar: Rig, log: Log) -> None:
-    other_skin = true_rig.with_(**{"skin.layer.dermis.perfusion_per_s": 6e-3})
+    other_skin = true_rig.with_(**{"skin.layer.dermis.thickness_mm": 0.6, "skin.layer.subcutis.thickness_mm": 6.0})
     foreign = synthetic_log(other_skin, seed=3, rate_Hz=20.0)
     found, plain = fit(foreign, thenar, free=KEYS), fit(log, thenar, free=KEYS)
     assert found[KEYS[0]].half_width > 1.5 * plain[KEYS[0]].half_width
