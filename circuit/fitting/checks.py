@@ -27,8 +27,8 @@ MOST_DRIFT = 2e-3
 MOST_UPDATES = 1.5
 """Rows farther apart than 1.5 updates of the driver miss some of them."""
 
-EARLY_S, EARLY_TIMES = 3.0, 3.0
-"""A start that is not steady shows in the first seconds, where residuals are three times the usual."""
+EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
+"""A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
 
 OFFSET_SDS = 3.0
 LEAST_OVERLAP = 0.5
@@ -179,7 +179,9 @@ def _unsteady(problem: Problem, theta: Array) -> list[str]:
         residual = np.abs(problem.modelled(theta, r, c, found[r]) - channel.values)
         time = problem.run_time_s(theta, r, channel)
         early = residual[(time >= 0) & (time < EARLY_S)]
-        if channel.temperature and early.size and np.median(early) > EARLY_TIMES * max(np.median(residual), 1e-3):
+        noise = float(np.median(np.abs(np.diff(channel.values)))) + channel.resolution
+        most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * noise, 1e-3)
+        if channel.temperature and early.size and np.median(early) > most:
             names.append(problem.runs[r].name)
     return [
         f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; use "

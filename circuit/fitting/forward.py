@@ -29,12 +29,12 @@ SETTLED_A, MOST_TURNS = 1e-8, 40
 STEADY_SPREAD = 6.0
 """Noise of a logged current, in its standard deviations, within which the first rows count as one level."""
 
-SKIN_DEPTH_M = 2e-3
-"""How deep a start that is not steady reaches into the skin: what heat diffuses in some 30 s."""
+SKIN_DEPTHS_M = (0.5e-3, 3e-3)
+"""How deep a start that is not steady reaches into the skin: what heat diffuses in some seconds, and in a minute."""
 
-Start = tuple[float, float, float, float]
+Start = tuple[float, float, float, float, float]
 """A start that is not steady under the first row's drive: how much more current in A it was steady under before, and
-how far display, hot plate and skin surface are from that state in K."""
+how far display, hot plate, and skin near the surface and deeper are from that state in K."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +105,8 @@ def _play(rig: Rig, drive: Drive, start: Start | None) -> Trace:
         state[COLD] += start[1]
         state[HOT] += start[2]
         depth = rig.column.depth_m
-        state[SKIN : SKIN + len(depth)] += start[3] * np.exp(-depth / SKIN_DEPTH_M)
+        for change_K, reach_m in zip(start[3:], SKIN_DEPTHS_M, strict=True):
+            state[SKIN : SKIN + len(depth)] += change_K * np.exp(-depth / reach_m)
     return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=state)
 
 

@@ -22,10 +22,10 @@ from .runs import Channel, Run
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
-START_SD = (0.5, 2.0, 2.0, 2.0)
+START_SD = (0.5, 2.0, 2.0, 2.0, 2.0)
 SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
-"""How far a start may be from steady (current in A, display, hot plate and skin in K), and clocks from each other, where the fit decides: standard
-deviations."""
+"""How far a start may be from steady (current in A, display, hot plate, near and deep skin in K), and
+clocks from each other, where the fit decides: standard deviations."""
 
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
@@ -117,8 +117,8 @@ class Problem:
         """How far a run's start is from steady in K; None where it is taken as steady."""
         if not self.fit_start:
             return None
-        current, display, hot, skin = (self.nuisance(theta, "start", run, place) for place in range(len(START_SD)))
-        return current, display, hot, skin
+        current, display, hot, near, deep = (self.nuisance(theta, "start", run, k) for k in range(len(START_SD)))
+        return current, display, hot, near, deep
 
     def run_time_s(self, theta: Array, run: int, channel: Channel) -> Array:
         """Times of a channel's rows on the clock of its run's drive, from the first row of the drive."""

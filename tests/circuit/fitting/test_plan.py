@@ -1,0 +1,74 @@
+"""What is said before measuring, and the drive that is measured with."""
+
+from __future__ import annotations
+
+import pytest
+
+from thermicon.circuit import Device, Gate, Rig, device_names, export, fit, rig_names, simulate
+from thermicon.circuit.delivery.formats import format_names, load_format
+from thermicon.circuit.fitting.drive_design import CANDIDATES, candidate, mean_deviation
+from thermicon.circuit.fitting.keys import COMMON
+from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
+from thermicon.circuit.fitting.plan import plan, plan_frame
+
+FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
+        "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
+
+ONE_RAMP = "tcs2-protocol-ini"
+"""A format of one ramp, one plateau and one return."""
+
+
+def test_display_and_voltage_identify_what_the_display_alone_does_not() -> None:
+    expected = {each.sensors: each for each in plan(Rig.load("thenar"), FREE)}
+    alone, both = expected["display"], expected["display + voltage"]
+    assert 0.01 < both.half_widths[0] < 0.04 and max(both.half_widths[1:3]) < 0.01
+    assert alone.half_widths[0] > 3 * both.half_widths[0]
+    assert not all(alone.identified) and all(both.identified)
+    frame = plan_frame(tuple(expected.values()))
+    assert list(frame.columns) == ["sensors", *FREE] and len(frame) == 5
+
+
+def test_a_plan_is_what_a_fit_then_finds() -> None:
+    rig = Rig.load("thenar").with_(**{"driver.update_Hz": 10})
+    planned = plan(rig, COMMON, offset_K=0.1)[1]
+    log = synthetic_log(rig, seed=2, rate_Hz=10.0)
+    found = fit(log, rig, free=COMMON)
+    for item, width in zip(found.parameters, planned.half_widths, strict=True):
+        assert item.half_width == pytest.approx(width, rel=0.25)
+
+
+def test_a_thermode_has_a_plan_of_its_own() -> None:
+    expected = plan(Rig.load("tcs2"), ["thermode.lag_s", "contact.resistance_m2K_per_W"])
+    assert [each.identified for each in expected] == [(True, False), (True, True)]
+
+
+def test_the_calibration_drive_is_reached_on_every_rig_with_a_module() -> None:
+    icon = calibration_icon()
+    assert icon.corners(32.0).duration_s == pytest.approx(60.0)
+    rigs = [Rig.load(name) for name in rig_names()]
+    assert all(simulate(icon, rig).reachable for rig in rigs)
+
+
+@pytest.mark.slow
+def test_the_calibration_drive_is_more_informative_than_what_people_would_try() -> None:
+    shipped = mean_deviation(calibration_icon())
+    others = {name: mean_deviation(candidate(name)) for name in CANDIDATES}
+    assert shipped < 0.8 * others["one step"]
+    assert shipped < 0.6 * others["slow ramps"]
+    assert shipped < 0.8 * others["sine"]
+    # Steps show more, but the gate refuses steps to warm.
+    assert others["square wave"] < shipped
+    refused = export(candidate("square wave"), Rig.load("thenar"), "dac-16")
+    assert refused.refused[0].kind == "unsafe" and "rate of skin temperature" in refused.refused[0].text
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("device", device_names())
+def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None:
+    rig = "tcs2" if Device.load(device).driven_by == "set-points" else "thenar"
+    special = [name for name in format_names() if load_format(name).device == device and name != ONE_RAMP]
+    form = (special or ["csv"])[0]
+    result = export(calibration_icon(), rig, device, form)
+    assert result.refused == () and len(result.files) >= 2
+    assert all(isinstance(each.verdict, Gate) or each.verdict is not None for each in result.prepared)
+
