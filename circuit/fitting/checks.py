@@ -19,7 +19,8 @@ MOVES = {True: 0.5, False: 0.3}
 """Change in K or V below which nothing can be said about a sensor."""
 
 FLAT_SHARE, REVERSED = 0.05, -0.5
-"""A sensor that moves by less than 5 % of what is expected is not on the display; a correlation below −0.5 is a sign."""
+"""A sensor that moves by less than 5 % of what is expected is not on the display; below a correlation of −0.5 a sign is
+wrong."""
 
 MOST_DRIFT = 2e-3
 """Clocks of loggers differ by some 100 ppm; 2 ms a second is a wrong sample rate."""

@@ -77,7 +77,9 @@ def mean_deviation(icon: Icon, rigs: Sequence[str | Rig] = RIGS, keys: Sequence[
     for name in rigs:
         rig = name if isinstance(name, Rig) else Rig.load(name)
         free = free_keys(keys, rig)
-        log = synthetic_log(rig, seed=0, icon=icon, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=RATE_HZ)
+        log = synthetic_log(
+            rig, seed=0, icon=icon, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=RATE_HZ
+        )
         problem = Problem.of(rig, free, runs_of([log], rig, False), offset_sd_K=OFFSET_SD_K)
         problem = with_channels(problem, problem.first, COLUMNS, only=True)
         sigma = [NOISE_K if channel.temperature else NOISE_V for _, _, channel in problem.channels()]

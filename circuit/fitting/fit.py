@@ -95,7 +95,9 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    problem = Problem.of(begin, keys, runs_of(read, begin, held is not False), fit_start=fit_start, offset_sd_K=offset_K)
+    problem = Problem.of(
+        begin, keys, runs_of(read, begin, held is not False), fit_start=fit_start, offset_sd_K=offset_K
+    )
     problem = aligned(problem)
     check_sensors(problem)
     solution = solve(problem)
@@ -181,11 +183,11 @@ def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
     fits = []
     for r, c, channel in problem.channels():
         inside = problem.inside(theta, r, channel)
+        measured = channel.values[inside]
+        fitted = problem.modelled(theta, r, c, found[r])[inside]
+        time, offset = problem.run_time_s(theta, r, channel)[inside], problem.nuisance(theta, "offset", r, c)
+        unit = "K" if channel.temperature else "V"
         fits.append(
-            ChannelFit(
-                problem.runs[r].name, channel.file, channel.column, "K" if channel.temperature else "V",
-                problem.run_time_s(theta, r, channel)[inside], channel.values[inside],
-                problem.modelled(theta, r, c, found[r])[inside], problem.nuisance(theta, "offset", r, c),
-            )  # fmt: skip
+            ChannelFit(problem.runs[r].name, channel.file, channel.column, unit, time, measured, fitted, offset)
         )
     return tuple(fits)

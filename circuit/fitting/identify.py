@@ -92,7 +92,9 @@ def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: 
         extra = tuple(
             Channel(column, run.name, 0, run.time_s + run.begin_s, rows.at(column, run.time_s)) for column in columns
         )
-        runs.append(replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks))
+        runs.append(
+            replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks)
+        )
     return Problem.of(
         problem.rig, problem.keys, tuple[Run, ...](runs), fit_start=problem.fit_start, offset_sd_K=problem.offset_sd_K
     )

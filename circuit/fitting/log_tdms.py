@@ -43,7 +43,9 @@ def read_tdms(data: bytes, name: str) -> dict[str, Array]:
         raise FitError(f"{name}: channels of unequal lengths ({listed} samples); save each clock as a file of its own")
     if "time_s" in columns:
         return columns
-    clocks = {key: (channels[key].properties.get(INCREMENT), channels[key].properties.get(OFFSET, 0.0)) for key in columns}
+    clocks = {
+        key: (channels[key].properties.get(INCREMENT), channels[key].properties.get(OFFSET, 0.0)) for key in columns
+    }
     missing = [key for key, (step, _) in clocks.items() if not step]
     if missing:
         raise FitError(f"{name}: channel {missing[0]} has neither {INCREMENT} nor a channel time_s beside it")

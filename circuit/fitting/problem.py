@@ -1,7 +1,8 @@
 """The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
 
 Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
-and drift of every further clock, and, on request, the state at the first row. Scales are fitted as logarithms, so that they stay positive and intervals are relative.
+and drift of every further clock, and, on request, the state at the first row. Scales are fitted as logarithms, so that
+they stay positive and intervals are relative.
 """
 
 from __future__ import annotations
@@ -154,9 +155,7 @@ class Problem:
             count = sum(len(channel.values) for _, _, channel in self.channels())
             return np.full(count + len(self.nuisances), IMPOSSIBLE)
         parts = [
-            np.where(
-                self.inside(theta, r, channel), (self.modelled(theta, r, c, found[r]) - channel.values) / sd, 0.0
-            )
+            np.where(self.inside(theta, r, channel), (self.modelled(theta, r, c, found[r]) - channel.values) / sd, 0.0)
             for (r, c, channel), sd in zip(self.channels(), sigma, strict=True)
         ]
         prior = [value / item.sd for item, value in zip(self.nuisances, theta[len(self.keys) :], strict=True)]

@@ -98,4 +98,5 @@ def _rounded_up(value: float) -> float:
     import math
 
     digits = 1 - math.floor(math.log10(value)) if value > 0 else 2
-    return round(math.ceil(value * 10**digits - 1e-9) / 10**digits, digits)
+    scale = 10.0**digits
+    return float(round(math.ceil(value * scale - 1e-9) / scale, digits))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from ..arrays import Array
 from .keys import FitError
 from .problem import Problem
 
-ROUNDS = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
+ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
 """Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
 
 SAME_NOISE = 0.02
@@ -44,7 +45,10 @@ class Solution:
 
 
 def solve(problem: Problem, begin: Array | None = None) -> Solution:
-    """Fit, from the problem's own first point or another; raises FitError where the run cannot be simulated on the starting rig."""
+    """Fit, from the problem's own first point or another.
+
+    Raises FitError where a run cannot be simulated on the rig to begin with.
+    """
     from scipy.optimize import least_squares
 
     theta = np.clip(problem.first if begin is None else begin, problem.low, problem.high)
@@ -153,6 +157,8 @@ def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float])
         information += product
         middle += factor * product
     count = len(problem.keys)
-    room = np.diag(np.concatenate([(0.5 * (problem.high - problem.low)[:count]) ** -2.0, np.zeros(len(jacobian.T) - count)]))
+    room = np.diag(
+        np.concatenate([(0.5 * (problem.high - problem.low)[:count]) ** -2.0, np.zeros(len(jacobian.T) - count)])
+    )
     inverse = np.linalg.pinv(information + room, hermitian=True)
     return np.asarray(inverse @ (middle + room) @ inverse)

@@ -139,7 +139,26 @@ def _tables(first: str, second: str, request: Request) -> list[Comparison]:
     for curves in read:
         if curves.ignored:
             note(f"{curves.name}: ignored columns that no trace has: {', '.join(curves.ignored)}")
-    return [Comparison("", align(read[0], read[1]))]
+    if not request.align:
+        return [Comparison("", align(read[0], read[1]))]
+    shifted, sentence = _shifted(read[0], read[1])
+    return [Comparison("", align(read[0], shifted), after=sentence)]
+
+
+def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
+    """Return B on the clock of A, by cross-correlation of the first column that both have, and a sentence on it."""
+    from thermicon.circuit.fitting.alignment import best_shift_s
+    from thermicon.circuit.fitting.overlay import SHIFTED_BY
+
+    common = [name for name in (*SHIFTED_BY, *first.columns) if name in first.columns and name in second.columns]
+    if not common:
+        raise LogError(f"no column in both {first.name} and {second.name} to align them by")
+    by = common[0]
+    shift, alike = best_shift_s(first.time_s, first.columns[by], second.time_s, second.columns[by])
+    if alike <= 0:
+        raise LogError(f"{second.name}: no shift makes its {by} like that of {first.name}; leave out --align")
+    sentence = f"B was shifted by {number(shift, 3)} s, by the correlation of {quantity(by)} ({number(alike, 3)})"
+    return replace(second, time_s=second.time_s + shift), sentence
 
 
 def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | None:

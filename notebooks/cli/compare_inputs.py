@@ -11,15 +11,18 @@ TABLES = (".csv", ".parquet")
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
 
+CLOCKS = "belongs to a trace and a log, which have clocks of their own"
+
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """Options of ``compare``: the file with icons for two rigs, one icon only, and the rig with its changes."""
+    """Options of ``compare``: the file with icons for two rigs, one icon only, the rig with its changes, alignment."""
 
     file: str | None = None
     icon: str | None = None
     rig: str | None = None
     changes: tuple[str, ...] = ()
+    align: bool = False
 
 
 def kind_of(text: str, option: str) -> str:
@@ -79,11 +82,12 @@ def check_request(kind: str, request: Request) -> None:
         "--icon": request.icon is not None,
         "--rig": request.rig is not None,
         "--set": bool(request.changes),
+        "--align": request.align,
     }
     misplaced = {
-        "rig": {"--rig": "the two rigs are A and B"},
-        "icon": {"--file": "belongs to two rigs", "--icon": "the two icons are A and B"},
-        "set": {"--file": "belongs to two rigs; the two sets are A and B"},
+        "rig": {"--rig": "the two rigs are A and B", "--align": CLOCKS},
+        "icon": {"--file": "belongs to two rigs", "--icon": "the two icons are A and B", "--align": CLOCKS},
+        "set": {"--file": "belongs to two rigs; the two sets are A and B", "--align": CLOCKS},
         "table": {
             "--file": "belongs to two rigs",
             "--rig": "traces and logs are compared as they are",

@@ -133,8 +133,8 @@ def show_fit(fitted: RigFit, before: Rig) -> None:
     show(parameter_table(fitted), "", residual_table(fitted))
     for line in doubts(fitted):
         show("", line)
-    if line := uncertainty_line(fitted, before):
-        show("", line)
+    if uncertain := uncertainty_line(fitted, before):
+        show("", uncertain)
     for sentence in fitted.notes:
         note(f"note: {sentence}")
 

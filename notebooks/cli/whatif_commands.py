@@ -132,6 +132,9 @@ def compare_command(
         ),
     ] = None,
     icon: IconName = None,
+    align: Annotated[
+        bool, typer.Option("--align", help="For a trace and a log: shift B in time to where it is most like A.")
+    ] = False,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
@@ -145,7 +148,7 @@ def compare_command(
     from .compare import compare
     from .compare_inputs import Request
 
-    compare(first, second, Request(file, icon, rig, tuple(changes or ())), figure)
+    compare(first, second, Request(file, icon, rig, tuple(changes or ()), align), figure)
 
 
 def sensitivity_command(

@@ -14,9 +14,11 @@ if TYPE_CHECKING:
     from thermicon.circuit.fitting.plan import Expected
 
 PLAN_HEAD = (
-    "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive (10 rows per second, "
-    "noise 20 mK and 5 mV); in brackets what is no better than assumed anyway."
+    "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive, with 10 independent "
+    "readings per second and noise of 20 mK and 5 mV. Logged are D the display, V the module's voltage, H the hot "
+    "plate, S the skin; in brackets what is no better than assumed anyway."
 )
+LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
 CLOSE = 0.9
 """Correlations from here on are printed."""
 
@@ -75,17 +77,12 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
 
 
 def plan_table(expected: Sequence[Expected]) -> Table:
-    """A row per choice of sensors, a column per key."""
-    names = [key.words for key in expected[0].keys]
-    rows = table("sensors", *names, numbers=names)
-    for each in expected:
-        rows.add_row(
-            each.sensors,
-            *(
-                _width(width, key.log, known, key.key)
-                for width, key, known in zip(each.half_widths, each.keys, each.identified, strict=True)
-            ),
-        )
+    """A row per key, a column per choice of sensors."""
+    choices = [" ".join(LETTERS[column] for column in each.columns) for each in expected]
+    rows = table("key", *choices, numbers=choices, names=("key",))
+    for place, key in enumerate(expected[0].keys):
+        widths = [_width(each.half_widths[place], key.log, each.identified[place], key.key) for each in expected]
+        rows.add_row(key.key, *widths)
     return rows
 
 

@@ -27,7 +27,7 @@ def test_a_key_that_cannot_be_fitted_is_named_with_a_cure(keys: list[str], messa
 
 
 def test_every_fault_is_named_at_once(thenar: Rig) -> None:
-    with pytest.raises(FitError, match="thermode.lag_s: .*\ncontroller.lag_s: "):
+    with pytest.raises(FitError, match=r"thermode.lag_s: .*\ncontroller.lag_s: "):
         free_keys(["thermode.lag_s", "controller.lag_s"], thenar)
 
 

@@ -65,9 +65,7 @@ def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable
         (text_of().replace("\n0.5,", "\n0.2,"), ":7: time_s 0.2 s does not come after 0.4 s"),
     ],
 )  # fmt: skip
-def test_a_table_that_is_no_log_is_refused_with_its_line(
-    text: str, message: str, saved: Callable[..., Path]
-) -> None:
+def test_a_table_that_is_no_log_is_refused_with_its_line(text: str, message: str, saved: Callable[..., Path]) -> None:
     with pytest.raises(LogError, match=f"rig.csv.*{message}"):
         read_log(saved(text))
 
@@ -111,11 +109,12 @@ def test_a_session_of_a_thermode_is_the_mean_of_its_zones(saved: Callable[..., P
 def tdms(**channels: Any) -> bytes:
     file = io.BytesIO()
     clock = {"wf_increment": 0.1, "wf_start_offset": 2.0}
+    objects = [
+        ChannelObject("log", name, np.asarray(values, dtype=float), {} if name == "bare" else clock)
+        for name, values in channels.items()
+    ]
     with TdmsWriter(file) as writer:
-        writer.write_segment(
-            [RootObject(), *(ChannelObject("log", name, np.asarray(values, dtype=float), {} if name == "bare" else clock)
-                             for name, values in channels.items())]
-        )  # fmt: skip
+        writer.write_segment([RootObject(), *objects])
     return file.getvalue()
 
 

@@ -23,7 +23,9 @@ def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> 
     found = overlay(trace, late)
     assert found.shift_s == pytest.approx(shift, abs=0.01)
     display = next(each for each in found.columns if each.column == "display_C")
-    assert display.rms == pytest.approx(float(np.std(display.difference) ** 2 + np.mean(display.difference) ** 2) ** 0.5)
+    assert display.rms == pytest.approx(
+        float(np.std(display.difference) ** 2 + np.mean(display.difference) ** 2) ** 0.5
+    )
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
     assert "late.csv" in repr(found) and list(found.to_frame()["column"]) == [each.column for each in found.columns]
 
@@ -33,7 +35,7 @@ def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:
     with pytest.raises(LogError, match="no row at a time of the trace, 0 to 60 s, with a shift of 500 s; check time_s"):
         overlay(trace, log, shift_s=500.0)
     setpoints = Log.of("a.csv", {"time_s": log.time_s, "setpoint_C": log.column("display_C")})
-    with pytest.raises(LogError, match=r"a.csv: no column in common with the trace of calibration; the log has setpoint"):
+    with pytest.raises(LogError, match=r"a.csv: no column in common with the trace of calibration; the log has set"):
         overlay(trace, setpoints)
 
 

@@ -71,4 +71,3 @@ def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None
     result = export(calibration_icon(), rig, device, form)
     assert result.refused == () and len(result.files) >= 2
     assert all(isinstance(each.verdict, Gate) or each.verdict is not None for each in result.prepared)
-

@@ -277,3 +277,21 @@ def test_the_figure_has_a_panel_of_differences_below_each_of_curves() -> None:
     assert figure.axes[5].get_lines()[-1].get_ydata()[-1] == pytest.approx(0.4)
     assert figure.axes[1].get_lines()[-1].get_color() == "#e08214"
     assert np.ptp(figure.axes[4].get_ylim()) >= 0.01  # equal curves do not fill the panel with rounding
+
+
+def test_a_log_with_a_clock_of_its_own_is_aligned(cli: Cli, tmp_path: Path) -> None:
+    trace, log = tmp_path / "trace.csv", tmp_path / "log.csv"
+    assert cli("simulate", "six-icons", "--icon", "double-dip", "--rate", "20", "-o", trace).exit_code == 0
+    frame = pd.read_csv(trace)[["time_s", "display_C"]]
+    frame["time_s"] += 3600.25
+    frame["display_C"] += 0.1
+    frame.to_csv(log, index=False)
+    assert "no two rows at a common time" in cli("compare", trace, log).stderr
+    said = cli("compare", trace, log, "--align")
+    assert said.exit_code == 0, said.stderr
+    assert "B was shifted by −3600.25 s, by the correlation of display (1)" in said.stdout
+    assert next(line for line in said.stdout.splitlines() if line.startswith("display ")).split()[1] == "0.1"
+    misplaced = cli("compare", "thenar", "shani2021", "--align")
+    assert misplaced.exit_code == 2 and "clocks of their own" in misplaced.stderr
+    frame.rename(columns={"display_C": "probe_a_C"}).to_csv(log, index=False)
+    assert "no column in both trace.csv and log.csv to align them by" in cli("compare", trace, log, "--align").stderr

@@ -1,0 +1,95 @@
+"""``thermicon fit``: what it prints, what it writes, and what it refuses."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
+
+Cli = Callable[..., Any]
+CONTACT, SEEBECK, OHM = "contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm"
+RATE = ("--set", "driver.update_Hz=20")
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("logs") / "rig.csv"
+    write_log(synthetic_log(Rig.load("thenar").with_(**{CONTACT: 7e-4}), seed=1, rate_Hz=20.0), path)
+    return path
+
+
+def test_a_fit_prints_parameters_and_writes_the_rig_and_the_figure(cli: Cli, log: Path, tmp_path: Path) -> None:
+    rig, figure = tmp_path / "mine.toml", tmp_path / "fit.png"
+    said = cli("fit", log, "--free", f"{CONTACT},{SEEBECK}", "--free", OHM, "-o", rig, "--figure", figure, *RATE)
+    assert said.exit_code == 0, said.stderr
+    lines = said.stdout.splitlines()
+    assert lines[0].split() == ["key", "fitted", "95", "%", "interval", "±"]
+    assert [line.split()[0] for line in lines[2:5]] == [CONTACT, SEEBECK, OHM]
+    assert float(lines[2].split()[1]) == pytest.approx(7e-4, rel=0.02)
+    assert any(line.startswith("display (rig.csv)") for line in lines)
+    assert "uncertainty of the fitted rig" in said.stdout and "(was ±30 %)" in said.stdout.replace("\n", " ")
+    assert max(map(len, lines)) <= 80
+    assert said.stderr == f"wrote {rig}\nwrote {figure}\n"
+    assert Rig.load(rig).contact.resistance_m2K_per_W == pytest.approx(7e-4, rel=0.02)
+    assert figure.stat().st_size > 20_000
+
+
+def test_what_is_not_identified_is_named_with_the_cure(cli: Cli, log: Path) -> None:
+    said = cli("fit", log, "--free", "ambient.temperature_C,skin.rest_C", *RATE, "--set", f"{CONTACT}=7e-4")
+    assert said.exit_code == 0, said.stderr
+    text = " ".join(said.stdout.split())
+    assert "not identified: ambient.temperature_C; cannot be separated from skin at rest here; measure it" in text
+    assert "strongly correlated: ambient.temperature_C and skin.rest_C (1.00)" in text
+
+
+def test_a_plan_says_before_measuring_what_helps(cli: Cli) -> None:
+    said = cli(
+        "fit", "--plan", "--free", f"{CONTACT},{SEEBECK},module.thermal_resistance_K_per_W,heat_sink.temperature_C"
+    )
+    assert said.exit_code == 0, said.stderr
+    assert "95 % intervals to expect" in " ".join(said.stdout.split())
+    lines = [line.replace("(", "").split() for line in said.stdout.splitlines()]
+    assert ["key", "D", "D", "V", "D", "V", "H", "D", "S", "D", "V", "H", "S"] in lines
+    contact = next(line for line in lines if line[:1] == [CONTACT])
+    alone, both = (float(contact[place].removeprefix("±")) for place in (1, 3))
+    assert alone > 1.5 * both
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((), "name the keys to fit"),
+        (("--free", CONTACT), "give a LOG, or --plan"),
+        (("a.csv", "--plan", "--free", CONTACT), "leave out LOG, or --plan"),
+        (("--plan", "--free", CONTACT, "-o", "a.toml"), "prints a table only"),
+        (("a.csv", "--free", CONTACT, "--offset", "-1"), "-1 K is outside 0 to 10 K"),
+    ],
+)
+def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...], message: str) -> None:
+    said = cli("fit", *arguments)
+    assert said.exit_code == 2
+    assert message in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_bad_input_is_one_sentence_and_leaves_nothing(cli: Cli, log: Path, tmp_path: Path) -> None:
+    out = tmp_path / "mine.toml"
+    for arguments, message in (
+        ((tmp_path / "none.csv", "--free", CONTACT), "none.csv: no such log"),
+        (
+            (log, "--free", "contact.resistence"),
+            "contact.resistence: cannot be fitted; did you mean contact.resist",
+        ),
+        ((log, "--free", f"{CONTACT},{CONTACT}"), f"{CONTACT}: is given twice"),
+        ((log, "--free", CONTACT, "--rig", "tcs2"), "no log has a drive"),
+    ):
+        said = cli("fit", *arguments, "-o", out)
+        assert said.exit_code == 1
+        assert message in said.stderr and "Traceback" not in said.stderr
+        assert not out.exists()
+    said = cli("fit", log, "--free", CONTACT, "-o", log)
+    assert said.exit_code == 1 and "a rig is written as .toml" in said.stderr
