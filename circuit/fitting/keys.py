@@ -152,7 +152,7 @@ def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
             f"{name}: rig {rig.name} has no such probe; describe the sensor first, as with --set 'probe={sensor}', and "
             f"fit probe.thermistor.lag_s"
         )
-    hint = did_you_mean(name, known)
+    hint = did_you_mean(name, known, 1)
     generic = re.sub(r"\.(layer|probe)\.[^.]+\.", r".\1.0.", name)
     if generic in rig_keys():
         return f"{name}: is a key of a rig, but no log of temperatures identifies it; {hint}"

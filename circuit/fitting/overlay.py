@@ -108,7 +108,7 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
     >>> from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
     >>> rig = Rig.load("thenar")
     >>> overlay(simulate(calibration_icon(), rig), synthetic_log(rig, seed=1, columns=["display_C"]))
-    Overlay('synthetic.csv', shifted by ... s: display_C rms ..., largest ...)
+    Overlay('synthetic.csv', shifted by ... s: current_A rms ..., largest ...; display_C rms ..., largest ...)
     """
     simulated = {name: getattr(trace, name) for name in SHIFTED_BY} | {f"probe_{n}_C": v for n, v in trace.probes}
     common = [name for name, _ in log.columns if name in simulated and np.isfinite(simulated[name]).any()]

@@ -83,6 +83,8 @@ class RigFit:
         Name and SHA-256 of every log.
     notes
         Sentences on columns, clocks, sensors and the fit itself.
+    converged
+        Whether the fit came to rest.
 
     Examples
     --------

@@ -23,8 +23,8 @@ def library_names() -> tuple[str, ...]:
 
     Examples
     --------
-    >>> library_names()[0]
-    'cooling-step-skin'
+    >>> library_names()[:2]
+    ('calibration-drive', 'cooling-step-skin')
     """
     return tuple(
         sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
