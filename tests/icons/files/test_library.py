@@ -9,6 +9,7 @@ from thermicon.icons import CueErrors, format_text, library_names, load_library,
 
 SIX = load_library("six-icons")
 NAMES = (
+    "calibration-drive",
     "cooling-step-skin",
     "pulse-sequences",
     "search-space",
