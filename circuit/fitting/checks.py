@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from .alignment import best_shift_s
 from .log import LogError
-from .problem import Problem
+from .problem import FREE_START, STEADY_BEFORE, Problem
 from .runs import Channel
 
 STUCK_S, STUCK_STEPS = 3.0, 20.0
@@ -138,7 +138,7 @@ def check_clocks(problem: Problem, theta: Array) -> None:
 
 def remarks(problem: Problem, theta: Array) -> tuple[str, ...]:
     """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks."""
-    sentences = [*_slow_drives(problem), *_unsteady(problem, theta)]
+    sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     for r, c, channel in problem.channels():
         offset = problem.nuisance(theta, "offset", r, c)
         if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0:
@@ -147,6 +147,11 @@ def remarks(problem: Problem, theta: Array) -> tuple[str, ...]:
                 f"{problem.offset_sd_K:g} K (SD) that sensors are assumed to be; calibrate it".replace("-", "−", 1)
             )
     for r, run in enumerate(problem.runs):
+        if problem.start_count == STEADY_BEFORE and (change := problem.nuisance(theta, "start", r, 0)):
+            sentences.append(
+                f"{run.name}: the first row's drive has just begun; the start is taken as steady under "
+                f"{abs(change):.2f} A {'less' if change < 0 else 'more'}"
+            )
         for clock, name in enumerate(run.clocks, 1):
             shift = problem.nuisance(theta, "shift", r, clock)
             drift = problem.nuisance(theta, "drift", r, clock)
@@ -170,10 +175,10 @@ def _slow_drives(problem: Problem) -> list[str]:
     return sentences
 
 
-def _unsteady(problem: Problem, theta: Array) -> list[str]:
+def unsteady(problem: Problem, theta: Array) -> list[str]:
     """Runs whose first seconds fit much worse than the rest."""
     found = problem.predictions(theta)
-    if found is None or problem.fit_start:
+    if found is None or problem.start_count == FREE_START:
         return []
     names = []
     for r, c, channel in problem.channels():

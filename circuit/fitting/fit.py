@@ -13,12 +13,12 @@ from ..arrays import Array
 from ..rig.keyunits import unit_of
 from ..rig.modules import PARAMETERS
 from ..rig.rig import Rig
-from .checks import aligned, check_clocks, check_sensors, remarks
+from .checks import aligned, check_clocks, check_sensors, remarks, unsteady
 from .identify import T95, Parameter, cures, is_identified
 from .keys import FitError, FitKey, free_keys, value_of
 from .log import Log
 from .log_files import read_log
-from .problem import Problem
+from .problem import FREE_START, STEADY, STEADY_BEFORE, Problem
 from .rig_file import reason_of, uncertainties
 from .rig_fit import ChannelFit, RigFit
 from .runs import runs_of
@@ -61,7 +61,8 @@ def fit(
         Whether the drive of a row lasts until the next row (True), or is linear between rows (False); None: whichever
         fits the logs better.
     fit_start
-        Fit the state at the first row as well; otherwise the rig is taken as steady under the first row's drive.
+        Fit the state at the first row as well; otherwise the rig is taken as steady there, under the first row's drive
+        or the one before it.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
 
@@ -95,20 +96,30 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    problem = Problem.of(
-        begin, keys, runs_of(read, begin, held is not False), fit_start=fit_start, offset_sd_K=offset_K
-    )
-    problem = aligned(problem)
+    runs, started = runs_of(read, begin, held is not False), FREE_START if fit_start else STEADY
+    problem = aligned(Problem.of(begin, keys, runs, start_count=started, offset_sd_K=offset_K))
     check_sensors(problem)
-    solution = solve(problem)
-    if held is None:
-        linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs), _kept={})
-        if fits_better(linear, problem, solution):
-            problem, solution = linear, solve(linear, solution.theta)
+    problem, solution = _solved(problem, held)
+    if not fit_start and unsteady(problem, solution.theta):
+        # As in a trace, whose first row has the drive from then on: steady it was under the drive before.
+        before = aligned(Problem.of(begin, keys, runs, start_count=STEADY_BEFORE, offset_sd_K=offset_K))
+        other, found = _solved(before, held)
+        if not unsteady(other, found.theta):
+            problem, solution = other, found
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     notes = [note for log in read for note in log.notes]
     return _result(problem, solution, rig, keys, sources, notes)
+
+
+def _solved(problem: Problem, held: bool | None) -> tuple[Problem, Solution]:
+    """The solution of a problem, and of its variant with a linear drive where that fits better and is open."""
+    solution = solve(problem)
+    if held is None:
+        linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs), _kept={})
+        if fits_better(linear, problem, solution):
+            return linear, solve(linear, solution.theta)
+    return problem, solution
 
 
 def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:

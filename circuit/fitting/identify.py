@@ -96,7 +96,11 @@ def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: 
             replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks)
         )
     return Problem.of(
-        problem.rig, problem.keys, tuple[Run, ...](runs), fit_start=problem.fit_start, offset_sd_K=problem.offset_sd_K
+        problem.rig,
+        problem.keys,
+        tuple[Run, ...](runs),
+        start_count=problem.start_count,
+        offset_sd_K=problem.offset_sd_K,
     )
 
 

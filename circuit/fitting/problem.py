@@ -28,6 +28,10 @@ SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
 """How far a start may be from steady (current in A, display, hot plate, near and deep skin in K), and
 clocks from each other, where the fit decides: standard deviations."""
 
+STEADY, STEADY_BEFORE, FREE_START = 0, 1, len(START_SD)
+"""How many of these are fitted: none where a run begins steady under its first row's drive, the current alone where it
+was steady under another, all where it was not steady."""
+
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
 held from its row on, lasted until it, or is a mean."""
@@ -53,7 +57,7 @@ class Problem:
     rig: Rig
     keys: tuple[FitKey, ...]
     runs: tuple[Run, ...]
-    fit_start: bool
+    start_count: int
     offset_sd_K: float
     first: Array
     low: Array
@@ -63,7 +67,12 @@ class Problem:
 
     @staticmethod
     def of(
-        rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...], *, fit_start: bool = False, offset_sd_K: float = 0.1
+        rig: Rig,
+        keys: tuple[FitKey, ...],
+        runs: tuple[Run, ...],
+        *,
+        start_count: int = STEADY,
+        offset_sd_K: float = 0.1,
     ) -> Problem:
         """Return the problem of fitting keys of a rig to runs, beginning at the rig's own values."""
         values = np.array([_begin(rig, key) for key in keys])
@@ -71,10 +80,10 @@ class Problem:
         room = np.array([math.log(key.room) if key.log else key.room for key in keys])
         low = values - room
         low[~log & np.array([key.key.endswith("_s") for key in keys])] = 0.0
-        extra = tuple(_nuisances(runs, fit_start, offset_sd_K))
+        extra = tuple(_nuisances(runs, start_count, offset_sd_K))
         limit = np.array([1e3 if item.kind != "drift" else 0.2 for item in extra])
         return Problem(
-            rig, keys, runs, fit_start, offset_sd_K, np.concatenate([values, np.zeros(len(extra))]),
+            rig, keys, runs, start_count, offset_sd_K, np.concatenate([values, np.zeros(len(extra))]),
             np.concatenate([low, -limit]), np.concatenate([values + room, limit]), extra,
         )  # fmt: skip
 
@@ -116,7 +125,7 @@ class Problem:
 
     def start(self, theta: Array, run: int) -> Start | None:
         """How far a run's start is from steady in K; None where it is taken as steady."""
-        if not self.fit_start:
+        if not self.start_count:
             return None
         current, display, hot, near, deep = (self.nuisance(theta, "start", run, k) for k in range(len(START_SD)))
         return current, display, hot, near, deep
@@ -188,11 +197,11 @@ def _begin(rig: Rig, key: FitKey) -> float:
     return math.log(value) if key.log else value
 
 
-def _nuisances(runs: Sequence[Run], fit_start: bool, offset_sd_K: float) -> list[Nuisance]:
+def _nuisances(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Nuisance]:
     extra = []
     for r, run in enumerate(runs):
-        if fit_start and run.driven_by not in ("setpoint_C", "display_C"):
-            extra += [Nuisance("start", r, place, sd) for place, sd in enumerate(START_SD)]
+        if start_count and run.driven_by not in ("setpoint_C", "display_C"):
+            extra += [Nuisance("start", r, place, sd) for place, sd in enumerate(START_SD[:start_count])]
         if any(not channel.clock for channel in run.channels):
             extra.append(Nuisance("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s)))))
         for clock in range(1, len(run.clocks) + 1):

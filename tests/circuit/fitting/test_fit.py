@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigFit, fit
+from thermicon.circuit import Rig, RigFit, fit, simulate
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.icons import load_library
@@ -158,6 +159,16 @@ def test_a_start_that_is_not_steady(true_rig: Rig, thenar: Rig) -> None:
     assert free.channels[0].rms < 0.1 * steady.channels[0].rms
 
 
+def test_a_trace_begins_with_the_drive_that_follows(thenar: Rig, tmp_path: Path) -> None:
+    rig = thenar.with_(**TRUTH)
+    trace = simulate(load_library("six-icons")["cooling-step"], rig, rate_Hz=20.0, tail_s=10.0)
+    trace.to_csv(tmp_path / "trace.csv")
+    found = fit(tmp_path / "trace.csv", thenar, free=KEYS)
+    for key, value in TRUTH.items():
+        assert found[key].value == pytest.approx(value, rel=0.005)
+    assert any("the first row's drive has just begun; the start is taken as steady under 0." in n for n in found.notes)
+
+
 def test_the_lag_of_a_thermistor(thenar: Rig) -> None:
     sensor = [{"name": "thermistor", "place": "display", "lag_s": 0.05}]
     rig = thenar.with_(probe=sensor)
@@ -185,14 +196,12 @@ def test_a_thermode_follows_its_set_points(thenar: Rig) -> None:
     holds(contact, {KEYS[0]: 5e-4}, slack=3.0)
 
 
-def test_a_module_given_by_data_sheet_becomes_parameters(log: Log, thenar: Rig, tmp_path: object) -> None:
-    from pathlib import Path
-
+def test_a_module_given_by_data_sheet_becomes_parameters(log: Log, thenar: Rig, tmp_path: Path) -> None:
     named = thenar.with_(**{"module.name": "TEC1-12706", "driver.current_limit_A": 2.0})
     begin = {"module.seebeck_V_per_K", "module.resistance_ohm", "module.thermal_resistance_K_per_W"}
     made = synthetic_log(named, seed=9, rate_Hz=20.0)
     found = fit(made, named, free=sorted(begin))
-    path = Path(str(tmp_path)) / "rig.toml"
+    path = tmp_path / "rig.toml"
     found.save(path)
     assert Rig.load(path).module.seebeck_V_per_K == pytest.approx(named.module.seebeck_V_per_K, rel=0.01)
 
