@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
+from thermicon.icons.number_text import number
 
 from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
 
@@ -19,7 +19,7 @@ MEASURED_COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "
 """Measured points on the grey and black curves of a trace."""
 
 COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
-MOST_POINTS = 1500
+MOST_POINTS = 4000
 """More points than a page has dots to the inch show nothing more."""
 
 
@@ -100,4 +100,4 @@ def draw_measured(beside: Overlay, ax: Axes) -> None:
             each.time_s[few], each.measured[few], ".", ms=3.0, color=MEASURED_COLORS.get(each.column, PROBE),
             label=f"{words}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K".replace("-", "−"),
         )  # fmt: skip
-    ax.set_title(f"{beside.name}, shifted by {np.round(beside.shift_s, 3):g} s".replace("-", "−"), fontsize="medium")
+    ax.set_title(f"{beside.name}, shifted by {number(beside.shift_s, 3)} s", fontsize="medium")

@@ -33,6 +33,9 @@ OTHER_UNIT = {
 """Columns in another unit than a log has, the name they should have, and how to convert them."""
 
 ZONE = re.compile(r"(?:z|zone)_?(?P<zone>[1-9])_?(?P<what>set|setpoint|command|commanded|act|actual|temp|temperature)")
+ASIDE = ("#", "sep=")
+"""Comments, and the line by which spreadsheets name the separator."""
+
 NOTHING = "n/a"
 """An empty cell of a TSV."""
 
@@ -88,7 +91,9 @@ def _text(data: bytes, where: Path) -> str:
 
 
 def _from_text(where: Path, text: str, digest: str) -> Log:
-    first = next(line for line in text.split("\n") if line.strip() and not line.startswith("#"))
+    first = next((line for line in text.split("\n") if line.strip() and not line.startswith(ASIDE)), None)
+    if first is None:
+        raise LogError(f"{where}: holds comments only; a log has a line with the names of its columns, and rows")
     mark = next((mark for mark in ("\t", ";", ",") if mark in first), ",")
     lines = csv.reader(io.StringIO(text), delimiter=mark)
     header: list[str] | None = _sidecar(where, first, mark)
@@ -96,7 +101,7 @@ def _from_text(where: Path, text: str, digest: str) -> Log:
     places: list[str] = []
     try:
         for row in lines:
-            if not any(cell.strip() for cell in row) or row[0].startswith("#"):
+            if not any(cell.strip() for cell in row) or row[0].startswith(ASIDE):
                 continue
             place = f"{where}:{lines.line_num}"
             if header is None:

@@ -40,7 +40,7 @@ def saved(tmp_path: Path) -> Callable[[str | bytes, str], Path]:
     "text",
     [
         text_of(), text_of(";", comma=True), text_of("\t"), "\ufeff" + text_of(), text_of().replace("\n", "\r\n"),
-        "# logged on Monday\n" + text_of(), text_of() + "\n\n",
+        "# logged on Monday\nsep=,\n" + text_of(), text_of() + "\n\n",
     ],
 )  # fmt: skip
 def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable[..., Path]) -> None:
@@ -53,6 +53,8 @@ def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable
     ("text", "message"),
     [
         ("", "the file is empty; a log was expected"),
+        ("# nothing\n# but this\n", "holds comments only; a log has a line with the names of its columns, and rows"),
+        ("time_s,current_A\n", "0 rows; a fit needs at least 20"),
         ("time_s\0", "a binary file, not a table"),
         ("0,0.1,32\n1,0.1,32\n", "1: this line holds numbers, not the names of columns; put time_s,current_A"),
         (text_of(head=("time_s", "current_A", "current_A")), "the column current_A appears twice; remove one"),
