@@ -59,7 +59,8 @@ def test_the_calibration_drive_is_more_informative_than_what_people_would_try() 
     # Steps show more, but the gate refuses steps to warm.
     assert others["square wave"] < shipped
     refused = export(candidate("square wave"), Rig.load("thenar"), "dac-16")
-    assert refused.refused[0].kind == "unsafe" and "rate of skin temperature" in refused.refused[0].text
+    _, refusal = refused.refused[0]
+    assert refusal.kind == "unsafe" and "rate of skin temperature" in refusal.text
 
 
 @pytest.mark.slow
