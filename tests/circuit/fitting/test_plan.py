@@ -2,13 +2,30 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Gate, Rig, device_names, export, fit, rig_names, simulate
+from thermicon.circuit import (
+    Device,
+    Drive,
+    Gate,
+    Rig,
+    deliver,
+    device_names,
+    export,
+    fit,
+    rig_names,
+    simulate,
+    simulate_current,
+)
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.fitting.drive_design import CANDIDATES, candidate, mean_deviation
 from thermicon.circuit.fitting.keys import COMMON
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
+from thermicon.circuit.fitting.log import Log
+from thermicon.circuit.fitting.log_files import read_log
 from thermicon.circuit.fitting.plan import plan, plan_frame
 
 FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
@@ -72,3 +89,19 @@ def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None
     result = export(calibration_icon(), rig, device, form)
     assert result.refused == () and len(result.files) >= 2
     assert all(isinstance(each.verdict, Gate) or each.verdict is not None for each in result.prepared)
+
+
+@pytest.mark.slow
+def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_path: Path) -> None:
+    rig, icon = Rig.load("thenar"), calibration_icon()
+    played = deliver(icon, rig, Device.load("ni-analogue-output"))
+    (tmp_path / "drive.tdms").write_bytes(load_format("tdms").write(played))
+    drive = read_log(tmp_path / "drive.tdms")
+    current = rig.driver.transconductance_A_per_V * drive.column("command_V")
+    bench = rig.with_(**{"contact.resistance_m2K_per_W": 7e-4})
+    trace = simulate_current(Drive(drive.time_s - drive.time_s[0], current, held=True), bench, rate_Hz=20)
+    noise = np.random.default_rng(0).normal(0.0, 0.02, len(trace.time_s))
+    meter = Log.of("meter.csv", {"time_s": trace.time_s + 100.0, "display_C": trace.display_C + noise})
+    found = fit([drive, meter], rig, free=["contact.resistance_m2K_per_W"])
+    assert found["contact.resistance_m2K_per_W"].value == pytest.approx(7e-4, rel=0.01)
+    assert found.notes[-1].startswith("meter.csv: its clock was shifted by −100.0")
