@@ -69,17 +69,17 @@ def report_lines(plan: Plan) -> list[str]:
     plays = plays_of(study, len(plan.materials.chosen))
     people = "1 participant" if len(labels) == 1 else f"{len(labels)} participants"
     kind = f"{study.trials.order} order" if study.trials else "QUEST+"
+    minutes = number(planned_s(plan) / 60.0)
     lines = [
-        f"{study.title or study.name}",
+        study.title or study.name,
         f"  trials    {people}, {plays} plays each, {kind}, seed {plan.materials.seed}",
-        f"  time      {number(planned_s(plan) / 60.0)} min each, landing and breaks included, if answers come in the gap",
+        f"  time      {minutes} min each, landing and breaks included, if answers come within the gap",
         f"  gap       {number(gap.gap_s)} s: {gap.reason}",
     ]
     if gap.carried_by is not None:
         before, after = gap.carried_by
-        lines.append(
-            f"            left of the icon before: d′ up to {number(gap.carry_over_d_prime, 2)} ({after} after {before})"
-        )
+        left = number(gap.carry_over_d_prime, 2)
+        lines.append(f"            the icon before still changes it by d′ = {left} at most ({after} after {before})")
     lines += [
         f"  landing   {number(landing.landing_s)} s{'' if landing.derived else ', given'}: skin that arrives "
         f"{number(landing.from_K)} K off is then {number(landing.left_K, 2)} K off "
@@ -95,7 +95,7 @@ def report_lines(plan: Plan) -> list[str]:
         lines.append("  session   judged by its drives alone, repeated in any order: a thermode has no current")
     elif len(judged.sessions) < len(judged.drift_K):
         lines.append(
-            f"            the most extreme of {len(judged.drift_K)} orders in all corners; all of them on the rig as given"
+            f"            these are the most extreme of {len(judged.drift_K)} orders, all run on the rig as given"
         )
     return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
 

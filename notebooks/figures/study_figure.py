@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from ..study.schedule import Course
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#999999")
-"""Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, icons have numbers too."""
+"""Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, hatches differ."""
 
+DARK = ("#0072b2", "#009e73", "#d55e00")
 HATCHES = ("", "//", "..", "xx")
 MOST_ROWS, MOST_NUMBERED = 40, 40
 """Participants that are drawn, and plays up to which every one has its number written in it."""
@@ -63,7 +64,8 @@ def threshold_figure(levels_K: Sequence[float], threshold: Threshold, session: S
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.0, 5.2 if session is not None else 2.4), layout="constrained")
-    axes = np.atleast_1d(figure.subplots(1 if session is None else 2, 1, height_ratios=[1.0, 2.0][: 1 + bool(session)]))
+    heights = [1.0] if session is None else [1.0, 2.0]
+    axes: list[Axes] = list(figure.subplots(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0])
     levels = axes[0]
     levels.vlines(levels_K, 0.0, 1.0, color=COLOURS[0], lw=2.0)
     levels.set_xscale("log")
@@ -97,6 +99,11 @@ def _colour(place: int) -> str:
     return COLOURS[place % len(COLOURS)]
 
 
+def _ink(place: int) -> str:
+    """White on the dark colours."""
+    return "white" if _colour(place) in DARK else INK
+
+
 def _hatch(place: int) -> str:
     return HATCHES[place // len(COLOURS) % len(HATCHES)]
 
@@ -112,7 +119,7 @@ def _orders(courses: Sequence[Course], names: Sequence[str], ax: Axes) -> None:
                 edgecolor="white", lw=0.6, alpha=pale,
             )  # fmt: skip
             if len(course.trials) <= MOST_NUMBERED:
-                ax.text(trial.place, row, str(place + 1), fontsize=7, ha="center", va="center", color=INK)
+                ax.text(trial.place, row, str(place + 1), fontsize=7, ha="center", va="center", color=_ink(place))
     starts = _block_starts(courses[0])
     for block, place in starts.items():
         ax.axvline(place - 0.5, color=INK, lw=1.2 if block else 0.0)
@@ -151,7 +158,7 @@ def _clock(course: Course, plays: Sequence[PlannedPlay], names: Sequence[str], p
             ax.barh(0.0, (end_s - begin_s) / 60.0, 0.8, begin_s / 60.0, label=shown, **style)  # type: ignore[arg-type]
 
     for trial, play in zip(course.trials, plays, strict=True):
-        if trial.block != last:
+        if trial.block != last and last != 0:
             landed = play.onset_s - pace.landing_s
             if last is not None:
                 bar(ended, landed, "break, hand off", color="0.85")

@@ -34,8 +34,10 @@ class PlannedPlay:
 def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) -> tuple[PlannedPlay, ...]:
     """Return the planned times of a participant's plays; a block begins with the landing of the hand.
 
+    Practice goes over into the first block, the hand on the display.
+
     >>> from .schedule import Trial
-    >>> course = Course("01", (Trial(1, 0, 0, "dip"), Trial(2, 1, 1, "dip")))
+    >>> course = Course("01", (Trial(1, 1, 1, "dip"), Trial(2, 2, 2, "dip")))
     >>> [play.onset_s for play in planned_plays(course, {"dip": 8.0}, Pace(60.0, 30.0, 100.0))]
     [60.0, 228.0]
     """
@@ -43,7 +45,7 @@ def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) 
     for trial in course.trials:
         if last is None:
             now = pace.landing_s
-        elif trial.block != last:
+        elif trial.block != last and last:
             now += pace.break_s + pace.landing_s
         else:
             now += pace.gap_s

@@ -60,7 +60,7 @@ class Plan:
 
 
 def read_materials(source: str | Path) -> Materials:
-    """Read a study file and what it names, beside it or shipped; raise with every fault before anything is simulated."""
+    """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
     from thermicon.circuit import Device, Rig
     from thermicon.icons import read_cue
 

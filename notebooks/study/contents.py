@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import string
@@ -36,7 +37,8 @@ PLAYERS = {"volts": "ni", "set-points": "tcs2"}
 
 CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")
 LEVELS = ("icon", "change_K", "drive_file", "sidecar_file", "duration_s", "marker")
-CATCH = "nothing"
+CATCH, MANIFEST = "nothing", "study.json"
+"""What is presented in a catch trial; and the file with everything known about a study, digests of its files too."""
 
 
 def files_of(plan: Plan) -> dict[str, bytes]:
@@ -64,7 +66,6 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         markers[CATCH] = len(names) + 1
     files = {
         "study.toml": materials.text.encode("utf-8"),
-        "study.json": json_bytes(facts),
         "icons.cue": _icons(plan).encode("utf-8"),
         "rig.toml": toml_text(_document(materials.rig.document)).encode("utf-8"),
         **drives,
@@ -89,7 +90,8 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         files[f"{stem}_conditions.csv"] = table(CONDITIONS, rows)
         plays = planned_plays(course, plan.durations_s, pace_of(plan))
         files[f"{stem}_desc-planned_events.tsv"] = planned_events(course, plays, stimuli, markers)
-    return files
+    manifest = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+    return {**files, MANIFEST: json_bytes({**facts, "study_files": manifest})}
 
 
 def pace_of(plan: Plan) -> Pace:

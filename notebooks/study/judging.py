@@ -106,8 +106,9 @@ def judge_sessions(
     """Judge whole sessions in the worst case, and return them with every participant's drift of the baseline.
 
     Every order is run on the rig as given. In all corners run those of up to four participants, or the orders with the
-    coldest and the warmest skin, the most dose and the most drift. `held`: the device corrects its display. Practice is part of a session; breaks, in which
-    skin only comes nearer to rest, are not. Raises Refused where one is red. Empty for a rig without a module.
+    coldest and the warmest skin, the most dose and the most drift. `held`: the device corrects its display. Practice
+    is part of a session; breaks, in which skin only comes nearer to rest, are not. Raises Refused where one is red.
+    Empty for a rig without a module.
     """
     from thermicon.circuit import SessionPlan, play_session
 

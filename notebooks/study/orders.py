@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from random import Random
 
 Block = tuple[int, ...]
@@ -92,7 +93,7 @@ def first_order_counts(blocks: Sequence[Block]) -> Counter[tuple[int, int]]:
     >>> first_order_counts([(0, 1, 0)])[0, 1]
     1
     """
-    return Counter(pair for block in blocks for pair in zip(block, block[1:], strict=False))
+    return Counter(pair for block in blocks for pair in pairwise(block))
 
 
 def _blocks(order: list[int], length: int) -> list[Block]:
