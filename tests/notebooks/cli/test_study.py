@@ -127,10 +127,13 @@ def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
 
 
 def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
-    """Within the short session of this rig no drive is too much, in the whole order of play they are."""
-    reason = "'safety.reason=\"the session of the test lasts two minutes\"', 'safety.session_min=1'"
-    text = HOT.replace("rig_changes = [", f"rig_changes = [{reason}, ").replace("repetitions = 2", "repetitions = 14")
-    text = text.replace("gap_s = 10", "gap_s = 45")
+    """In the short session of this rig no drive is too much by itself; in the whole order of play they are."""
+    rules = (
+        "'safety.reason=\"the session of the test lasts one minute\"', 'safety.session_min=1', "
+        "'safety.thermal_dose_min_CEM43=0.15', "
+    )
+    text = HOT.replace("rig_changes = [", f"rig_changes = [{rules}").replace("repetitions = 2", "repetitions = 5")
+    text = text.replace("gap_s = 10", "gap_s = 90")
     said = refused(cli, tmp_path, text)
     assert "refused: session of participant A: NOT SAFE: " in said
     assert "thermal dose" in said
@@ -140,8 +143,9 @@ def test_a_session_that_is_too_long_is_said(tmp_path: Path, cli: Cli) -> None:
     path = write_study(tmp_path, QUICK.replace("repetitions = 2", "repetitions = 300"))
     said = cli("study", path, "-o", tmp_path / "out")
     assert said.exit_code == 1
-    assert "1202 plays of 3 s with gaps of 10 s last 260 min for each participant; the limit of a session is 180 min" in (
-        said.stderr
+    assert (
+        "1202 plays of 3 s with gaps of 10 s last 260 min for each participant; the limit of a session is 180 min"
+        in (said.stderr)
     )
 
 

@@ -251,7 +251,9 @@ def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> No
 def test_other_devices_have_their_functions(plays: str, quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     bench = bench_of(quick, monkeypatch)
     if plays == "send":
-        with pytest.raises(SystemExit, match=r"needs --bench FILE\.py with the functions send\(display_C\) and off\(\)"):
+        with pytest.raises(
+            SystemExit, match=r"needs --bench FILE\.py with the functions send\(display_C\) and off\(\)"
+        ):
             bench.Display("send")
         off: list[str] = []
         own = types.SimpleNamespace(send=lambda _: None, off=lambda: off.append("off"))

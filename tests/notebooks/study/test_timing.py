@@ -47,7 +47,9 @@ def test_the_search_begins_at_the_longest_gap() -> None:
 
 def test_a_carry_over_that_never_ends_is_an_error() -> None:
     wanted = Timing(carry_over_d_prime=1e-9)
-    with pytest.raises(StudyError, match=r"carry_over_d_prime = 1e-09: after 600 s .* allow more, or give timing\.gap_s"):
+    with pytest.raises(
+        StudyError, match=r"carry_over_d_prime = 1e-09: after 600 s .* allow more, or give timing\.gap_s"
+    ):
         find_gap(ICONS, THENAR, wanted, held=True)
 
 
