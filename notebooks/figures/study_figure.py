@@ -119,7 +119,15 @@ def _orders(courses: Sequence[Course], names: Sequence[str], ax: Axes) -> None:
                 edgecolor="white", lw=0.6, alpha=pale,
             )  # fmt: skip
             if len(course.trials) <= MOST_NUMBERED:
-                ax.text(trial.place, row, str(place + 1), fontsize=7, ha="center", va="center", color=_ink(place))
+                ax.text(
+                    trial.place,
+                    row,
+                    str(place + 1),
+                    fontsize=7,
+                    ha="center",
+                    va="center",
+                    color=_ink(place) if trial.block else INK,
+                )
     starts = _block_starts(courses[0])
     for block, place in starts.items():
         ax.axvline(place - 0.5, color=INK, lw=1.2 if block else 0.0)

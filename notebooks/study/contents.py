@@ -37,6 +37,9 @@ PLAYERS = {"volts": "ni", "set-points": "tcs2"}
 
 CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")
 LEVELS = ("icon", "change_K", "drive_file", "sidecar_file", "duration_s", "marker")
+QUESTIONS = ("Which pattern was that?", "Did you feel a change?")
+"""What the screen asks, in a study of naming and in one of a threshold."""
+
 CATCH, MANIFEST = "nothing", "study.json"
 """What is presented in a catch trial; and the file with everything known about a study, digests of its files too."""
 
@@ -126,7 +129,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
         "plays": PLAYERS.get(materials.device.driven_by, "send") if not _volts_of_setpoints(plan) else "ni",
         "stimuli": list(stimuli.values()),
         "choices": _choices(plan),
-        "question": study.run.question,
+        "question": study.run.question or QUESTIONS[threshold is not None],
         "keys": {"start": study.run.start_key, "stop": study.run.stop_key, "abort": study.run.abort_key},
         "marker": study.run.marker,
         "gap_s": judged.gap.gap_s,

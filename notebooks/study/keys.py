@@ -115,7 +115,10 @@ class Timing(Table):
 class Run(Table):
     """What the script shows, and the keys and the line it uses."""
 
-    question: Annotated[Line, Field(min_length=1, description="question on the screen")] = "Which pattern was that?"
+    question: Annotated[
+        Line | None,
+        Field(min_length=1, description="question on the screen; that of the kind of study without this key"),
+    ] = None
     start_key: Annotated[Key, Field(description="key that starts a block")] = "space"
     stop_key: Annotated[Key, Field(description="key that ends the run after the trial")] = "q"
     abort_key: Annotated[Key, Field(description="key that switches the display off at once")] = "escape"
@@ -134,7 +137,7 @@ class Threshold(Table):
     direction: Annotated[Literal["cool", "warm"], Field(description="whether the skin is cooled or warmed")]
     least_K: Annotated[float, Field(ge=0.02, le=10, description="smallest change of the display")] = 0.1
     most_K: Annotated[float, Field(ge=0.05, le=15, description="greatest change of the display")] = 4.0
-    levels: Annotated[int, Field(ge=3, le=60, description="number of changes, equally spaced in logarithm")] = 16
+    levels: Annotated[int, Field(ge=3, le=30, description="number of changes, equally spaced in logarithm")] = 12
     rate_K_per_s: Annotated[float, Field(gt=0, le=20, description="rate of the change, there and back")] = 2.0
     hold_s: Annotated[float, Field(ge=0, le=30, description="time at the level")] = 3.0
     trials: Annotated[int, Field(ge=5, le=500, description="trials of a participant, catch trials included")] = 40
