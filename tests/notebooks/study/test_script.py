@@ -266,3 +266,83 @@ def test_other_devices_have_their_functions(plays: str, quick: Path, monkeypatch
         display.port = types.SimpleNamespace(write=sent.append)
         display.abort()
         assert sent == [b"A"]
+
+
+PSYCHOPY = {
+    "psychopy/__init__.py": "",
+    "psychopy/visual.py": """
+class Window:
+    def __init__(self, size=(800, 600), pos=None, color=(0, 0, 0), fullscr=None, units="norm"):
+        self.open = True
+    def flip(self):
+        import time
+        time.sleep(0.01)
+    def close(self):
+        self.open = False
+class TextStim:
+    def __init__(self, win, text="Hello", height=None, wrapWidth=None):
+        self.text = text
+    def draw(self):
+        print(self.text.replace("\\n", "|"), file=open(LOG, "a"))
+LOG = __file__ + ".log"
+""",
+    "psychopy/event.py": """
+import time
+begun = time.monotonic()
+def getKeys(keyList=None, modifiers=False, timeStamped=False):
+    pressed = ["space", "1"] if int((time.monotonic() - begun) * 100) % 10 == 0 else []
+    return pressed
+""",
+    "nidaqmx/__init__.py": """
+import time
+class Task:
+    def __enter__(self): return self
+    def __exit__(self, *_): return None
+    class ao_channels:
+        add_ao_voltage_chan = staticmethod(lambda *_, **__: None)
+    class timing:
+        cfg_samp_clk_timing = staticmethod(lambda *_, **__: None)
+    def write(self, volts, auto_start=False):
+        self.ends = time.monotonic() + 0.2
+        print("put", len(volts) if isinstance(volts, list) else volts, file=open(LOG, "a"))
+    def is_task_done(self): return time.monotonic() >= self.ends
+    def stop(self): pass
+LOG = __file__ + ".log"
+""",
+    "nidaqmx/constants.py": "class AcquisitionType:\n    FINITE = 1\n",
+}
+"""Stand-ins with the names and arguments of PsychoPy and nidaqmx that the script uses."""
+
+
+@pytest.mark.slow
+def test_with_psychopy_and_a_device_it_runs_in_real_time(quick: Path, tmp_path: Path) -> None:
+    import os
+    import shutil
+    import subprocess
+
+    for name, text in PSYCHOPY.items():
+        (tmp_path / "stubs" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "stubs" / name).write_text(text, encoding="utf-8")
+    folder = tmp_path / "study"
+    shutil.copytree(quick, folder)
+    facts = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    facts |= {"landing_s": 0.2, "gap_s": 0.3, "break_s": 0.2}
+    (folder / "study.json").write_text(json.dumps(facts), encoding="utf-8")
+    with (folder / "play_icons.py").open("a", encoding="utf-8") as file:
+        file.write("\nREST_S = PAUSE_S = 0.1\n")
+    conditions = folder / "sub-A_task-quick_conditions.csv"
+    lines = [line.replace(",3.01,", ",0.2,") for line in conditions.read_text(encoding="utf-8").splitlines()]
+    conditions.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, str(folder / "run_study.py"), "--participant", "A", "--window"],
+        capture_output=True, encoding="utf-8", timeout=100, check=False,
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "stubs")},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert len(answers(folder / "data")) == 8
+    put = (tmp_path / "stubs" / "nidaqmx" / "__init__.py.log").read_text(encoding="utf-8").split("\n")
+    assert sum(line.startswith("put 3") for line in put) == 10, "every drive of about 300 samples, practice included"
+    assert put[-2] == "put 0.0", "the output is off at the end"
+    shown = (tmp_path / "stubs" / "psychopy" / "visual.py.log").read_text(encoding="utf-8")
+    for words in ("Place the hand on the display", "Practice is over", "Which pattern was that?||1   a dip|2   a glow"):
+        assert words in shown
