@@ -184,3 +184,28 @@ def test_bad_input_exits_with_1_and_no_traceback(changes: tuple[str, str], tmp_p
     assert said.exit_code == 1
     assert "study.toml: " in said.stderr
     assert not (tmp_path / "out").exists()
+
+
+def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path, cli: Cli) -> None:
+    text = QUICK.replace("rig_changes", 'rig = "tcs2"\ndevice = "qst-tcs2"\nrig_changes', 1)
+    lines = [line for line in text.splitlines() if not line.startswith("rig_changes")]
+    text = "\n".join(lines).replace("gap_s = 10", "gap_s = 300").replace("repetitions = 2", "repetitions = 4")
+    said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert "judged by its drives alone, repeated in any order: a thermode has no current" in said.stdout
+    sidecar = json.loads((tmp_path / "out" / "dip.json").read_text(encoding="utf-8"))
+    assert sidecar["rig"]["changes"] == ["safety.session_min=86.0"], "18 plays of 3 s and 17 gaps of 300 s"
+    assert json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))["plays"] == "tcs2"
+
+
+def test_of_many_participants_the_extreme_sessions_are_judged(tmp_path: Path, cli: Cli) -> None:
+    text = QUICK.replace('labels = ["A", "B"]', "count = 9").replace("repetitions = 2", "repetitions = 1")
+    said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
+    assert "these are the most extreme of 9 orders, all run on the rig as given" in said.stdout
+    facts = json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))
+    assert len(facts["baseline_drift_K"]) == 9
+    assert 1 <= len(facts["sessions"]) <= 4
+    drifts = {label: abs(drift) for label, drift in facts["baseline_drift_K"].items()}
+    assert max(drifts, key=lambda label: drifts[label]) in facts["sessions"]
+    for label, session in facts["sessions"].items():
+        assert session["baseline_drift_K"] == pytest.approx(facts["baseline_drift_K"][label], abs=1e-9)
