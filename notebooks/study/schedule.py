@@ -93,7 +93,7 @@ def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Course,
 
     >>> from .study_file import parse_study, study_text
     >>> courses_of(parse_study(study_text("example"), "example"), ("dip", "glow"), 1)[0]
-    Course(01: 10 plays in 3 blocks)
+    Course(01: 6 plays in 3 blocks)
     """
     trials, labels = study.trials, labels_of(study)
     if trials is None:
