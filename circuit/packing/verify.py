@@ -13,6 +13,7 @@ from .readback import Figures, StatedFigures, differences, read_back
 from .sidecar import sealed, sidecar_text
 
 AGAIN = "export the icon again"
+STUDY, REMADE = "study.json", "put the file back as it was made, or make the study again"
 RESTORE = "put the file back as it was exported, or export the icon again"
 
 
@@ -196,7 +197,9 @@ def _figures(
 
 def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator[Finding]:
     """Files that no sidecar names: wrong where they look like a drive or a sidecar, since somebody might play them."""
-    known = {*claims, *(name for each in claims.values() for name in each.digests)}
+    studied = studied_files(files)
+    yield from _changed_of_study(studied, files)
+    known = {*claims, *studied, *(name for each in claims.values() for name in each.digests)}
     ends = _suffixes()
     for name in sorted(set(files) - known):
         if name.endswith(".json"):
@@ -210,6 +213,25 @@ def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator
             )
         else:
             yield Finding(name, "told", "does not belong to an export and was not checked")
+
+
+def studied_files(files: Mapping[str, bytes]) -> dict[str, str]:
+    """Digests of the files of a study by name, from its `study.json`, which names itself with none; empty without one.
+
+    >>> studied_files({"study.json": b'{"study_files": {"a.csv": "77"}}'})
+    {'a.csv': '77', 'study.json': ''}
+    """
+    stated = (table_of(files.get(STUDY, b"")) or {}).get("study_files")
+    return {**{str(name): str(known) for name, known in stated.items()}, STUDY: ""} if isinstance(stated, dict) else {}
+
+
+def _changed_of_study(studied: Mapping[str, str], files: Mapping[str, bytes]) -> Iterator[Finding]:
+    """Files of a study that are missing or not as they were made."""
+    for name, known in sorted(studied.items()):
+        if name not in files:
+            yield Finding(name, "wrong", f"is missing; {STUDY} names it", REMADE)
+        elif known and digest(files[name]) != known:
+            yield Finding(name, "wrong", "has changed since the study was made", REMADE)
 
 
 def _suffixes() -> tuple[str, ...]:

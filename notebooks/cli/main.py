@@ -17,7 +17,18 @@ import typer
 from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
-from . import fit, frontier, hardware_commands, lab, searching, session, text_commands, validation, whatif_commands
+from . import (
+    fit,
+    frontier,
+    hardware_commands,
+    lab,
+    searching,
+    session,
+    study,
+    text_commands,
+    validation,
+    whatif_commands,
+)
 from .app import Commands
 from .options import (
     Bias,
@@ -317,6 +328,7 @@ for _name, _command, _panel in (
     ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
     ("session", session.session_command, PLAY),
+    ("study", study.study_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),
     ("devices", hardware_commands.devices_command, PLAY),
     ("lab", lab.lab_command, NOTEBOOKS),

@@ -97,7 +97,7 @@ def prepare_icons(
     icons: Sequence[Icon],
     rest: Sequence[Icon],
     rig: Rig,
-    device: str | None = None,
+    device: Device | str | None = None,
     form: str = FORMAT,
     step: Callable[[int, int], None] | None = None,
     tail_s: float = 0.0,
@@ -113,7 +113,7 @@ def prepare_icons(
     from thermicon.circuit.packing.prepare import prepare_set
 
     made = load_format(form)
-    played = Device.load(device or made.device)
+    played = device if isinstance(device, Device) else Device.load(device or made.device)
     prepared = prepare_set(icons, rig, played, made, tail_s=tail_s, pause_s=pause_s, step=step)
     warned: list[str] = []
     felt = compare_felt(prepared, rest, rig, played, tail_s, warned.append)

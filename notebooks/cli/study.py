@@ -1,0 +1,107 @@
+"""``thermicon study``: the files of a whole experiment from one study file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from thermicon.icons.number_text import number
+
+from ..text.messages import REFUSED, note, progress_bar
+
+if TYPE_CHECKING:
+    from ..study.build import Plan
+
+KEPT = "give another folder with -o, such as -o study-2"
+CAUTION = (
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
+)
+
+
+def study_command(
+    file: Annotated[str, typer.Argument(metavar="STUDY.toml", help="A study file, or example for the shipped one.")],
+    folder: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Folder for the files of the study."),
+    ],
+) -> None:
+    """Prepare an experiment: orders, pauses, judged drives, a PsychoPy script, and tables of events.
+
+    Pauses are derived from simulated carry-over, orders from the content of the file. A study with a drive or a session
+    that is not safe is refused with the reason; then nothing is written, and the exit code is 3.
+    """
+    from ..files.export_folder import check_export_folder, publish
+    from ..study.build import make_plan, read_materials
+    from ..study.contents import files_of
+    from ..study.judging import Refused
+
+    materials = read_materials(file)
+    check_export_folder(folder)
+    for warning in materials.rig.warnings:
+        note(f"warning: {warning}")
+    try:
+        plan = make_plan(materials, progress_bar)
+        files = files_of(plan)
+    except Refused as refused:
+        for reason in refused.reasons:
+            note(f"refused: {reason}")
+        note(CAUTION)
+        note("nothing was written")
+        raise typer.Exit(REFUSED) from None
+    publish(files, folder, how=KEPT)
+    for line in report_lines(plan):
+        typer.echo(line)
+    note(f"wrote {len(files)} files into {folder}")
+    note(CAUTION)
+
+
+def report_lines(plan: Plan) -> list[str]:
+    """What was planned and judged, in lines for people."""
+    from ..study.build import plays_of
+    from ..study.contents import planned_s
+    from ..study.study_file import labels_of
+
+    study, judged, landing = plan.materials.study, plan.judged, plan.landing
+    gap, labels = judged.gap, labels_of(study)
+    plays = plays_of(study, len(plan.materials.chosen))
+    people = "1 participant" if len(labels) == 1 else f"{len(labels)} participants"
+    kind = f"{study.trials.order} order" if study.trials else "QUEST+"
+    minutes = number(planned_s(plan) / 60.0)
+    lines = [
+        study.title or study.name,
+        f"  trials    {people}, {plays} plays each, {kind}, seed {plan.materials.seed}",
+        f"  time      {minutes} min each, landing and breaks included, if answers come within the gap",
+        f"  gap       {number(gap.gap_s)} s: {gap.reason}",
+    ]
+    if gap.carried_by is not None:
+        before, after = gap.carried_by
+        left = number(gap.carry_over_d_prime, 2)
+        lines.append(f"            the icon before still changes it by d′ = {left} at most ({after} after {before})")
+    lines += [
+        f"  landing   {number(landing.landing_s)} s{'' if landing.derived else ', given'}: skin that arrives "
+        f"{number(landing.from_K)} K off is then {number(landing.left_K, 2)} K off "
+        f"({number(landing.left_at_10_s_K, 2)} K after 10 s)",
+        f"  drives    {_colours(plan)}",
+    ]
+    for label, session in judged.sessions.items():
+        lines.append(
+            f"  session   {label}: {session.verdict} in {session.scenarios} scenarios, baseline drift "
+            f"{number(session.baseline_drift_K, 2)} K, dose {session.dose_cem43_min:.2g} min CEM43"
+        )
+    if not judged.sessions:
+        lines.append("  session   judged by its drives alone, repeated in any order: a thermode has no current")
+    elif len(judged.sessions) < len(judged.drift_K):
+        lines.append(
+            f"            these are the most extreme of {len(judged.drift_K)} orders, all run on the rig as given"
+        )
+    return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
+
+
+def _colours(plan: Plan) -> str:
+    """How many drives are green and amber, in any order with this gap."""
+    colours = [one.verdict.colour for one in plan.judged.ready.prepared]
+    counts = ", ".join(f"{colours.count(colour)} {colour}" for colour in ("green", "amber") if colour in colours)
+    return f"{counts}, repeated in any order for the device {plan.materials.device.name}"

@@ -1,0 +1,210 @@
+"""The figure of a study: who is played what in which order, and one session on the clock."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .overview import GREY, INK, LIMIT
+from .session_figure import envelope
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Session
+
+    from ..study.bids import Pace, PlannedPlay
+    from ..study.keys import Threshold
+    from ..study.schedule import Course
+
+COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#999999")
+"""Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, hatches differ."""
+
+DARK = ("#0072b2", "#009e73", "#d55e00")
+HATCHES = ("", "//", "..", "xx")
+MOST_ROWS, MOST_NUMBERED = 40, 40
+"""Participants that are drawn, and plays up to which every one has its number written in it."""
+
+
+def study_figure(
+    courses: Sequence[Course], shown: Course, plays: Sequence[PlannedPlay], pace: Pace, session: Session | None
+) -> Figure:
+    """Draw the orders of all participants, and the planned session of one of them with the predicted skin.
+
+    Returns a matplotlib ``Figure``; nothing is shown.
+    """
+    from matplotlib.figure import Figure
+
+    drawn = list(courses[:MOST_ROWS])
+    names = list(dict.fromkeys(sorted(trial.icon for trial in courses[0].trials)))
+    heights = [max(1.2, 0.24 * len(drawn) + 0.4), 0.6, 2.2]
+    figure = Figure(figsize=(10.0, sum(heights) + 1.6), layout="constrained")
+    order, clock, skin = figure.subplots(3, 1, height_ratios=heights)
+    _orders(drawn, names, order)
+    more = f" (the first {len(drawn)} of {len(courses)})" if len(courses) > len(drawn) else ""
+    order.set_title(f"order of play{more}", fontsize=10, loc="left")
+    _clock(shown, plays, names, pace, clock)
+    clock.set_title(f"planned session of participant {shown.label}", fontsize=10, loc="left")
+    _skin(plays, session, skin)
+    skin.sharex(clock)
+    clock.tick_params(labelbottom=False)
+    skin.set_xlabel("time from the start of the session (min)")
+    for ax in (order, clock, skin):
+        ax.spines[["top", "right"]].set_visible(False)
+    handles = [_patch(place, name) for place, name in enumerate(names)]
+    order.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
+    return figure
+
+
+def threshold_figure(levels_K: Sequence[float], threshold: Threshold, session: Session | None) -> Figure:
+    """Draw the levels that may be played, and the session in which every trial plays the greatest."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 5.2 if session is not None else 2.4), layout="constrained")
+    heights = [1.0] if session is None else [1.0, 2.0]
+    axes: list[Axes] = list(figure.subplots(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0])
+    levels = axes[0]
+    levels.vlines(levels_K, 0.0, 1.0, color=COLOURS[0], lw=2.0)
+    levels.set_xscale("log")
+    levels.set_yticks([])
+    levels.set_xlabel(f"change of the display (K), {threshold.direction}")
+    levels.set_title(f"{len(levels_K)} drives, each judged; QUEST+ plays nothing else", fontsize=10, loc="left")
+    ticks = [levels_K[0], levels_K[len(levels_K) // 2], levels_K[-1]]
+    levels.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+    levels.minorticks_off()
+    if session is not None:
+        ax = axes[1]
+        time, skin = envelope(session.trace.time_s / 60.0, session.trace.skin_C)
+        ax.plot(time, skin, color=INK, lw=1.0)
+        ax.set_title(
+            "skin if every trial played the greatest change, the worst of all courses", fontsize=10, loc="left"
+        )
+        ax.set_ylabel("skin (°C)")
+        ax.set_xlabel("time (min)")
+    for ax in axes:
+        ax.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def _patch(place: int, name: str) -> object:
+    from matplotlib.patches import Patch
+
+    return Patch(facecolor=_colour(place), hatch=_hatch(place), edgecolor="white", lw=0.0, label=f"{place + 1}  {name}")
+
+
+def _colour(place: int) -> str:
+    return COLOURS[place % len(COLOURS)]
+
+
+def _ink(place: int) -> str:
+    """White on the dark colours."""
+    return "white" if _colour(place) in DARK else INK
+
+
+def _hatch(place: int) -> str:
+    return HATCHES[place // len(COLOURS) % len(HATCHES)]
+
+
+def _orders(courses: Sequence[Course], names: Sequence[str], ax: Axes) -> None:
+    """One row per participant, one cell per play; a line where a block begins."""
+    for row, course in enumerate(courses):
+        for trial in course.trials:
+            place = names.index(trial.icon)
+            pale = 0.45 if trial.block == 0 else 1.0
+            ax.bar(
+                trial.place - 0.5, 0.86, 1.0, row - 0.43, align="edge", color=_colour(place), hatch=_hatch(place),
+                edgecolor="white", lw=0.6, alpha=pale,
+            )  # fmt: skip
+            if len(course.trials) <= MOST_NUMBERED:
+                ax.text(
+                    trial.place,
+                    row,
+                    str(place + 1),
+                    fontsize=7,
+                    ha="center",
+                    va="center",
+                    color=_ink(place) if trial.block else INK,
+                )
+    starts = _block_starts(courses[0])
+    for block, place in starts.items():
+        ax.axvline(place - 0.5, color=INK, lw=1.2 if block else 0.0)
+    ax.set_xlim(0.4, len(courses[0].trials) + 0.6)
+    ax.set_ylim(len(courses) - 0.4, -0.6)
+    ax.set_yticks(range(len(courses)), [course.label for course in courses], fontsize=7)
+    ax.set_ylabel("participant")
+    middles = _block_middles(courses[0])
+    ax.set_xticks(list(middles.values()), ["practice" if not block else f"block {block}" for block in middles])
+    ax.tick_params(length=0)
+
+
+def _block_starts(course: Course) -> Mapping[int, int]:
+    starts: dict[int, int] = {}
+    for trial in course.trials:
+        starts.setdefault(trial.block, trial.place)
+    return starts
+
+
+def _block_middles(course: Course) -> dict[int, float]:
+    places: dict[int, list[int]] = {}
+    for trial in course.trials:
+        places.setdefault(trial.block, []).append(trial.place)
+    return {block: float(np.mean(block_places)) for block, block_places in places.items()}
+
+
+def _clock(course: Course, plays: Sequence[PlannedPlay], names: Sequence[str], pace: Pace, ax: Axes) -> None:
+    """Landings, plays and breaks as bars on the clock."""
+    last, ended = None, 0.0
+    labelled: set[str] = set()
+
+    def bar(begin_s: float, end_s: float, label: str, **style: object) -> None:
+        if end_s > begin_s:
+            shown = label if label not in labelled else None
+            labelled.add(label)
+            ax.barh(0.0, (end_s - begin_s) / 60.0, 0.8, begin_s / 60.0, label=shown, **style)  # type: ignore[arg-type]
+
+    for trial, play in zip(course.trials, plays, strict=True):
+        if trial.block != last and last != 0:
+            landed = play.onset_s - pace.landing_s
+            if last is not None:
+                bar(ended, landed, "break, hand off", color="0.85")
+            bar(landed, play.onset_s, "landing of the hand", color="white", hatch="////", edgecolor=GREY, lw=0.0)
+        place = names.index(trial.icon)
+        bar(play.onset_s, play.end_s, "", color=_colour(place), hatch=_hatch(place), edgecolor="white", lw=0.0)
+        last, ended = trial.block, play.end_s
+    ax.set_yticks([])
+    ax.set_xlim(0.0, plays[-1].end_s / 60.0)
+    handles, labels = ax.get_legend_handles_labels()
+    kept = [(handle, label) for handle, label in zip(handles, labels, strict=True) if label]
+    if kept:
+        ax.legend(*zip(*kept, strict=True), loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
+
+
+def _skin(plays: Sequence[PlannedPlay], session: Session | None, ax: Axes) -> None:
+    """The skin of the judged session, each play and its gap moved to its planned time."""
+    if session is None:
+        ax.text(0.5, 0.5, "no session is simulated for a thermode", transform=ax.transAxes, ha="center", color=GREY)
+        ax.set_yticks([])
+        return
+    trace = session.trace
+    rest = float(trace.skin_C[0])
+    starts = [play.start_s for play in session.plays]
+    for k, (play, begin) in enumerate(zip(plays, starts, strict=True)):
+        until = starts[k + 1] if k + 1 < len(starts) else float(trace.time_s[-1])
+        follows = k + 1 < len(plays) and plays[k + 1].onset_s - play.onset_s - (until - begin) < 1.0
+        rows = slice(*np.searchsorted(trace.time_s, [begin, until if follows else min(until, session.plays[k].end_s)]))
+        time, skin = envelope(trace.time_s[rows] - begin + play.onset_s, trace.skin_C[rows])
+        ax.plot(time / 60.0, skin, color=INK, lw=0.9)
+    low, high = ax.get_ylim()
+    for rule in session.limits.rules:
+        if rule.quantity == "skin surface" and not rule.relative and low - 4.0 < rule.limit < high + 4.0:
+            hard = rule.severity == "hard"
+            ax.axhline(
+                rule.limit, color=LIMIT, lw=1.4 if hard else 0.9, ls="-" if hard else (0, (4, 3)),
+                label=f"{rule.severity} limit, {rule.limit:g} °C",
+            )  # fmt: skip
+    ax.axhline(rest, color=GREY, lw=0.7, ls=":", label=f"rest, {rest:.3g} °C")
+    ax.set_ylabel("skin (°C),\nrig as given")
+    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)

@@ -1,0 +1,161 @@
+"""A study from its file to the bytes of its folder: derived pauses, orders, verdicts, script, tables and figure."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermicon.icons.near_words import did_you_mean
+
+from .judging import Judged, Progress, judge_drives, judge_sessions
+from .keys import Study
+from .levels import level_icons
+from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
+from .study_file import StudyError, parse_study, study_hash, study_text
+from .timing import Landing, find_gap, find_landing, regulated
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Device, Rig
+    from thermicon.icons import Icon, IconSet
+
+ProgressBar = Callable[[str], AbstractContextManager[Progress | None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Materials:
+    """A checked study with everything that it names, read: `text` is that of its file."""
+
+    study: Study
+    text: str
+    icons: IconSet
+    chosen: tuple[Icon, ...]
+    rig: Rig
+    device: Device
+    sha256: str
+
+    @property
+    def seed(self) -> int:
+        """The seed of all orders."""
+        return seed_of(self.sha256)
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Everything that a study's folder is written from."""
+
+    materials: Materials
+    judged: Judged
+    landing: Landing
+    courses: tuple[Course, ...]
+
+    @property
+    def durations_s(self) -> dict[str, float]:
+        """How long each drive plays."""
+        return {one.delivery.icon.name: one.delivery.file_s for one in self.judged.ready.prepared}
+
+
+def read_materials(source: str | Path) -> Materials:
+    """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
+    from thermicon.circuit import Device, Rig
+    from thermicon.icons import read_cue
+
+    text = study_text(source)
+    study = parse_study(text, str(source))
+    folder = Path(source).parent
+    stimuli = study.stimuli
+    rig = Rig.load(_beside(stimuli.rig, folder))
+    if stimuli.rig_changes:
+        rig = rig.with_set(list(stimuli.rig_changes))
+    device = Device.load(_beside(stimuli.device, folder))
+    icons = level_icons(study.threshold, rig) if study.threshold else read_cue(_beside(stimuli.set or "", folder))
+    if not stimuli.icons:
+        check_counts(study, len(icons))
+    known = [icon.name for icon in icons] if len(icons) <= 2000 else []
+    for name in stimuli.icons:
+        if name not in known:
+            raise StudyError(f"{source}: stimuli.icons: there is no icon {name}; {did_you_mean(name, known)}")
+    if not stimuli.icons and len(icons) > 30:
+        raise StudyError(f"{source}: the set has {len(icons):,} icons, and a person can be asked for 30; name some")
+    chosen = tuple(icons[name] for name in stimuli.icons) if stimuli.icons else tuple(icons)
+    check_counts(study, len(chosen))
+    contents = {
+        "icons": icons.content_hash,
+        "rig": rig.document,
+        "device": json.dumps(asdict(device), sort_keys=True, default=str),
+    }
+    return Materials(study, text, icons, chosen, rig, device, study_hash(study, contents))
+
+
+def _beside(name: str, folder: Path) -> str:
+    """A file that stands beside the study; any other name as it is."""
+    place = folder / name
+    return str(place) if place.is_file() else name
+
+
+def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
+    """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError."""
+    from thermicon.circuit import duration_s
+    from thermicon.circuit.delivery.formats import load_format
+    from thermicon.circuit.packing.pack import check_names
+
+    study, rig, icons = materials.study, materials.rig, materials.chosen
+    form = load_format(study.stimuli.format)
+    form.check(materials.device)
+    check_names([icon.name for icon in icons], form)
+    held = regulated(materials.device.driven_by)
+    mean_s = sum(duration_s(icon, rig) for icon in icons) / len(icons)
+    plays = plays_of(study, len(icons))
+    check_session_time(plays, mean_s, study.timing.gap_s or 0.0)
+    gap = find_gap(icons, rig, study.timing, held)
+    check_session_time(plays, mean_s, gap.gap_s)
+    landing = find_landing(icons[0], rig, study.timing, held)
+    courses = _courses(materials)
+    rig = _whole_session(rig, plays, mean_s, gap.gap_s)
+    with bar("drives") as progress:
+        ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
+    check_session_time(plays, mean_s, gap.gap_s)
+    with bar("sessions") as progress:
+        sessions, drift_K = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
+    return Plan(materials, Judged(ready, gap, sessions, drift_K), landing, courses)
+
+
+def plays_of(study: Study, icons: int) -> int:
+    """Number of plays of one participant.
+
+    >>> plays_of(parse_study(study_text("example"), "example"), 6)
+    18
+    """
+    if study.threshold is not None:
+        return study.threshold.trials
+    assert study.trials is not None
+    return icons * (study.trials.repetitions * study.trials.blocks + study.trials.practice)
+
+
+def _courses(materials: Materials) -> tuple[Course, ...]:
+    """Trials of all participants; none for a threshold, whose trials depend on the answers."""
+    if materials.study.threshold is not None:
+        return ()
+    return courses_of(materials.study, tuple(icon.name for icon in materials.chosen), materials.seed)
+
+
+def _judged_courses(materials: Materials, courses: tuple[Course, ...]) -> tuple[Course, ...]:
+    """Orders that are judged as sessions; for a threshold the worst: the greatest step in every trial."""
+    threshold = materials.study.threshold
+    if threshold is None:
+        return courses
+    strongest = materials.chosen[-1].name
+    trials = tuple(Trial(place, 1, place, strongest) for place in range(1, threshold.trials + 1))
+    return (Course("any", trials),)
+
+
+def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:
+    """A thermode's session is judged by its gate alone: doses then add up over all of it, where it is longer."""
+    minutes = math.ceil((plays * mean_s + (plays - 1) * gap_s) / 60.0)
+    if rig.thermode is None or 60.0 * minutes <= rig.limits.session_s:
+        return rig
+    return rig.with_(**{"safety.session_min": float(minutes)})

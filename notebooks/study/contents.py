@@ -1,0 +1,266 @@
+"""The files of a study's folder: drives, conditions, script, planned events, verdicts, and how to use them."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import string
+from collections.abc import Mapping
+from dataclasses import replace
+from importlib import resources
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+from .bids import (
+    Pace,
+    dataset_description,
+    events_description,
+    json_bytes,
+    participants_table,
+    planned_events,
+    planned_plays,
+    table,
+)
+from .build import Plan, plays_of
+from .levels import FELT, UNFELT, levels_K
+from .study_file import labels_of
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Session
+
+SCRIPTS = ("run_study.py", "study_bench.py", "study_questplus.py")
+"""The script and what it imports; the last one only for a threshold."""
+
+PLAYERS = {"volts": "ni", "set-points": "tcs2"}
+"""How the script calls play_icons.py, by what the device is driven by; otherwise by functions of the laboratory."""
+
+CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")
+LEVELS = ("icon", "change_K", "drive_file", "sidecar_file", "duration_s", "marker")
+QUESTIONS = ("Which pattern was that?", "Did you feel a change?")
+"""What the screen asks, in a study of naming and in one of a threshold."""
+
+CATCH, MANIFEST = "nothing", "study.json"
+"""What is presented in a catch trial; and the file with everything known about a study, digests of its files too."""
+
+
+def files_of(plan: Plan) -> dict[str, bytes]:
+    """Return the bytes of every file of a study, by name; equal studies give equal bytes.
+
+    Raises FormatError where a drive cannot be packed.
+    """
+    from thermicon.circuit import pack
+    from thermicon.circuit.rig.rig_text import toml_text
+
+    materials, ready = plan.materials, plan.judged.ready
+    study = materials.study
+    drives = pack(
+        ready.prepared,
+        ready.form,
+        felt={change.icon: change.to_dict() for change in ready.felt},
+        losses=ready.losses,
+    )
+    names = list(plan.durations_s)
+    markers = {name: place for place, name in enumerate(names, 1)}
+    stimuli = {one.delivery.icon.name: ready.form.file_name(one.delivery) for one in ready.prepared}
+    title = study.title or study.name
+    facts = study_facts(plan, stimuli, markers)
+    if study.threshold is not None:
+        markers[CATCH] = len(names) + 1
+    files = {
+        "study.toml": materials.text.encode("utf-8"),
+        "icons.cue": _icons(plan).encode("utf-8"),
+        "rig.toml": toml_text(_document(materials.rig.document)).encode("utf-8"),
+        **drives,
+        **{name: _shipped(name) for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
+        "participants.tsv": participants_table(labels_of(study)),
+        "dataset_description.json": dataset_description(title, version("thermicon")),
+        f"task-{study.name}_events.json": events_description(title, markers, _texts(plan)),
+        "README.txt": _readme(plan).encode("utf-8"),
+        "timeline.png": _timeline(plan),
+    }
+    if study.threshold is not None:
+        files["levels.csv"] = _levels(plan, stimuli, markers)
+    for course in plan.courses:
+        rows = [
+            {
+                "participant": course.label, "trial": str(trial.trial), "block": str(trial.block), "icon": trial.icon,
+                **_drive(trial.icon, plan, stimuli, markers),
+            }
+            for trial in course.trials
+        ]  # fmt: skip
+        stem = f"sub-{course.label}_task-{study.name}"
+        files[f"{stem}_conditions.csv"] = table(CONDITIONS, rows)
+        plays = planned_plays(course, plan.durations_s, pace_of(plan))
+        files[f"{stem}_desc-planned_events.tsv"] = planned_events(course, plays, stimuli, markers)
+    manifest = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
+    return {**files, MANIFEST: json_bytes({**facts, "study_files": manifest})}
+
+
+def pace_of(plan: Plan) -> Pace:
+    """The planned times between plays."""
+    return Pace(plan.landing.landing_s, plan.judged.gap.gap_s, plan.materials.study.timing.break_s)
+
+
+def planned_s(plan: Plan) -> float:
+    """How long a participant sits, landing and breaks included, if every answer comes within the gap."""
+    if plan.courses:
+        return planned_plays(plan.courses[0], plan.durations_s, pace_of(plan))[-1].end_s
+    count, longest_s = plays_of(plan.materials.study, 1), max(plan.durations_s.values())
+    return plan.landing.landing_s + count * longest_s + (count - 1) * plan.judged.gap.gap_s
+
+
+def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, Any]:
+    """Return what the script reads and what a methods section needs; units are in the names."""
+    materials, judged, landing = plan.materials, plan.judged, plan.landing
+    study, threshold = materials.study, materials.study.threshold
+    names = list(markers)
+    return {
+        "thermicon": version("thermicon"),
+        "study_sha256": materials.sha256,
+        "seed": materials.seed,
+        "name": study.name,
+        "title": study.title,
+        "kind": "naming" if threshold is None else "threshold",
+        "what_it_is_not": "A simulation was checked against limits. This is not a medical or ethical clearance.",
+        "participants": list(labels_of(study)),
+        "rig": materials.rig.name,
+        "device": materials.device.name,
+        "plays": PLAYERS.get(materials.device.driven_by, "send") if not _volts_of_setpoints(plan) else "ni",
+        "stimuli": list(stimuli.values()),
+        "choices": _choices(plan),
+        "question": study.run.question or QUESTIONS[threshold is not None],
+        "keys": {"start": study.run.start_key, "stop": study.run.stop_key, "abort": study.run.abort_key},
+        "marker": study.run.marker,
+        "gap_s": judged.gap.gap_s,
+        "gap_because": judged.gap.reason,
+        "carry_over_d_prime": judged.gap.carry_over_d_prime,
+        "carry_over_from_to": judged.gap.carried_by,
+        "landing_s": landing.landing_s,
+        "landing_derived": landing.derived,
+        "landing_from_K": landing.from_K,
+        "landing_left_K": landing.left_K,
+        "landing_left_at_10_s_K": landing.left_at_10_s_K,
+        "break_s": study.timing.break_s,
+        "answer_s": study.timing.answer_s,
+        "planned_s": planned_s(plan),
+        "levels": dict(zip(names, levels_K(threshold), strict=True)) if threshold else None,
+        "threshold": None if threshold is None else threshold.model_dump(),
+        "sessions": {label: _session_facts(session) for label, session in judged.sessions.items()},
+        "baseline_drift_K": dict(judged.drift_K),
+        "cautions": list(judged.cautions),
+    }
+
+
+def _session_facts(session: Session) -> dict[str, object]:
+    """The verdict on a session without its plays."""
+    whole = session.to_dict()
+    left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not", "time_beyond")
+    return {key: value for key, value in whole.items() if key not in left_out}
+
+
+def _volts_of_setpoints(plan: Plan) -> bool:
+    """Whether set-points of a controller go out as a voltage, which the player of NI devices does."""
+    from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage
+
+    device = plan.materials.device
+    return device.driven_by == "temperatures" and has_voltage(device)
+
+
+def _choices(plan: Plan) -> dict[str, dict[str, str]]:
+    """What can be answered: a key and a text for each name."""
+    study = plan.materials.study
+    used = {study.run.start_key, study.run.stop_key, study.run.abort_key}
+    if study.threshold is not None:
+        keys = [key for key in ("y", "n", "1", "2", "3", "4") if key not in used]
+        return {FELT: {"key": keys[0], "text": "felt"}, UNFELT: {"key": keys[1], "text": "not felt"}}
+    free = [key for key in string.digits[1:] + string.ascii_lowercase if key not in used]
+    texts = _texts(plan)
+    return {name: {"key": key, "text": texts[name]} for name, key in zip(texts, free, strict=False)}
+
+
+def _texts(plan: Plan) -> dict[str, str]:
+    """What the screen calls each icon: its meaning, or its name."""
+    return {icon.name: icon.metadata.means or icon.name for icon in plan.materials.chosen}
+
+
+def _drive(name: str, plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, str]:
+    from thermicon.circuit.packing.pack import sidecar_name
+
+    return {
+        "drive_file": stimuli[name],
+        "sidecar_file": sidecar_name(name, plan.judged.ready.form),
+        "duration_s": f"{plan.durations_s[name]:.9g}",
+        "marker": str(markers[name]),
+    }
+
+
+def _levels(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> bytes:
+    threshold = plan.materials.study.threshold
+    assert threshold is not None
+    changes = zip(plan.durations_s, levels_K(threshold), strict=True)
+    rows = [
+        {"icon": name, "change_K": f"{change:g}", **_drive(name, plan, stimuli, markers)} for name, change in changes
+    ]
+    return table(LEVELS, rows)
+
+
+def _shipped(name: str) -> bytes:
+    return resources.files("thermicon.notebooks").joinpath("templates", f"{name}.txt").read_bytes()
+
+
+def _icons(plan: Plan) -> str:
+    """The icons that are played as a cue file; the whole set where they play others of it."""
+    materials = plan.materials
+    try:
+        played = replace(materials.icons, entries=materials.chosen)
+    except ValueError:
+        played = materials.icons
+    return str(played).rstrip("\n") + "\n"
+
+
+def _document(text: str) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads(text)
+    return document
+
+
+def _timeline(plan: Plan) -> bytes:
+    from ..figures.study_figure import study_figure, threshold_figure
+
+    study = plan.materials.study
+    sessions = plan.judged.sessions
+    first = next(iter(sessions.values()), None)
+    if study.threshold is not None:
+        figure = threshold_figure(levels_K(study.threshold), study.threshold, first)
+    else:
+        label = next((label for label in sessions), plan.courses[0].label)
+        course = next(course for course in plan.courses if course.label == label)
+        plays = planned_plays(course, plan.durations_s, pace_of(plan))
+        figure = study_figure(plan.courses, course, plays, pace_of(plan), first)
+    content = io.BytesIO()
+    figure.savefig(content, dpi=130, format="png", metadata={"Software": None})
+    return content.getvalue()
+
+
+def _readme(plan: Plan) -> str:
+    """How to run the study, in a few lines of plain text."""
+    study, label = plan.materials.study, labels_of(plan.materials.study)[0]
+    lines = [
+        study.title or study.name,
+        "",
+        f"Made by thermicon {version('thermicon')} from study.toml; SHA-256 of the study {plan.materials.sha256}.",
+        "Safety was calculated. That is not a medical or ethical clearance, and hardware on skin needs a temperature",
+        "cut-off that works without software. No device was ever driven by these files.",
+        "",
+        f"Try it without hardware:   python run_study.py --participant {label} --simulate",
+        f"Run a participant:         python run_study.py --participant {label} --bench bench.py",
+        "Join all answers:          python run_study.py --collect",
+    ]
+    if study.threshold is None:
+        lines.append("Compare with predictions:  thermicon observed data/answers.csv icons.cue --rig rig.toml")
+    lines += [
+        "",
+        "bench.py is a file of yours with the function measured_C(), which returns the temperature of the display in",
+        "degrees C. Without it play_icons.py cannot switch off at the cut-off temperatures or test the polarity.",
+    ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,169 @@
+"""The judgement of a study: every drive by the export gate, then whole sessions in the order of play."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from ..files.exporting import PreparedExport, prepare_icons
+from .schedule import Course
+from .study_file import StudyError
+from .timing import Gap
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Device, Rig, Session
+    from thermicon.icons import Icon
+
+    from .keys import Study
+
+ALL_JUDGED = 4
+"""Participants up to whom every session is judged in all corners; of more, those whose run is the most extreme."""
+
+Progress = Callable[[int, int], None]
+
+
+class Refused(Exception):
+    """A study that is not safe, or whose drives are refused; `reasons` say why, one a line."""
+
+    def __init__(self, reasons: Sequence[str]) -> None:
+        super().__init__("\n".join(reasons))
+        self.reasons = tuple(reasons)
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """Drives that may be written, the gap between them, and the sessions judged in the worst case, by participant.
+
+    `drift_K` has the largest baseline drift of every participant on the rig as given; empty without a module.
+    """
+
+    ready: PreparedExport
+    gap: Gap
+    sessions: Mapping[str, Session]
+    drift_K: Mapping[str, float]
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Soft limits that a session exceeds, each with whose session it is."""
+        return tuple(
+            f"session of participant {label}: {text}"
+            for label, session in self.sessions.items()
+            for text in session.cautions
+        )
+
+
+def judge_drives(
+    icons: Sequence[Icon], rig: Rig, study: Study, gap: Gap, device: Device, step: Progress | None = None
+) -> tuple[PreparedExport, Gap]:
+    """Deliver and judge every drive, repeated in any order with the gap; a derived gap grows until that is safe.
+
+    Raises Refused with every reason against the drives, InputError where the device cannot play them.
+    """
+    stimuli, timing = study.stimuli, study.timing
+
+    def prepared(pause_s: float) -> PreparedExport:
+        return prepare_icons(icons, [], rig, device, stimuli.format, step=step, pause_s=pause_s)
+
+    ready = prepared(gap.gap_s)
+    if timing.gap_s is None:
+        longer = _longer_gap(ready, gap, timing.wait_for_skin)
+        if longer != gap:
+            ready, gap = prepared(longer.gap_s), longer
+    if ready.against:
+        raise Refused([f"{name}: {_about_study(str(refusal))}" for name, refusal in ready.against])
+    return ready, gap
+
+
+def _longer_gap(ready: PreparedExport, gap: Gap, wait_for_skin: bool) -> Gap:
+    """The gap that the gate asks for, where it is longer; carry-over is only less then."""
+    known = [one.verdict.to_dict() for one in ready.prepared]
+    wanted = [(_seconds(each.get("shortest_pause_s")), "the shortest pause that is safe") for each in known]
+    if wait_for_skin:
+        back = [each.get("recovery_s") for each in known]
+        if None in back:
+            raise StudyError(
+                "timing.wait_for_skin: after an icon the skin needs more than 10 min to return; leave it out, or take "
+                "smaller or shorter icons"
+            )
+        wanted += [(_seconds(each), "skin and display are back within 0.1 K in every corner") for each in back]
+    longest, why = max(wanted)
+    return replace(gap, gap_s=longest, reason=why) if longest > gap.gap_s else gap
+
+
+def _seconds(value: object) -> float:
+    return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+def _about_study(reason: str) -> str:
+    """A reason of the gate with the key of a study in place of the option of the command."""
+    return reason.replace("(--pause ", "(timing.gap_s = ")
+
+
+def judge_sessions(
+    courses: Sequence[Course], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
+) -> tuple[dict[str, Session], dict[str, float]]:
+    """Judge whole sessions in the worst case, and return them with every participant's drift of the baseline.
+
+    Every order is run on the rig as given. In all corners run those of up to four participants, or the orders with the
+    coldest and the warmest skin, the most dose and the most drift. `held`: the device corrects its display. Practice
+    is part of a session; breaks, in which skin only comes nearer to rest, are not. Raises Refused where one is red.
+    Empty for a rig without a module.
+    """
+    from thermicon.circuit import SessionPlan, play_session
+
+    if rig.thermode is not None:
+        return {}, {}
+    tracking = "display" if held else "replay"
+    extremes: dict[str, tuple[float, ...]] = {}
+    for course in courses:
+        extremes[course.label] = _nominal(course.order, icons, rig, gap_s, tracking)
+    chosen = [course for course in courses if course.label in _extreme(extremes)]
+    sessions: dict[str, Session] = {}
+    for done, course in enumerate(chosen):
+        sessions[course.label] = play_session(icons, SessionPlan(course.order, gap_s), rig, tracking=tracking)
+        if step is not None:
+            step(done + 1, len(chosen))
+    red = [
+        f"session of participant {label}: NOT SAFE: {session.reason}"
+        for label, session in sessions.items()
+        if session.verdict == "red"
+    ]
+    if red:
+        raise Refused(red)
+    return sessions, {label: values[3] for label, values in extremes.items()}
+
+
+def _nominal(
+    order: tuple[str, ...], icons: Sequence[Icon], rig: Rig, gap_s: float, tracking: str
+) -> tuple[float, float, float, float]:
+    """Coldest and warmest skin in °C, dose in min CEM43 and largest drift in K of an order on the rig as given."""
+    import numpy as np
+
+    from thermicon.circuit import SessionPlan, cem43_min, simulate_current
+    from thermicon.circuit.safety.sessiondrive import drive_of
+
+    known = {icon.name: icon for icon in icons}
+    played = drive_of(SessionPlan(order, gap_s), known, rig, tracking)
+    trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
+    before = trace.skin_C[np.rint(np.array(played.starts_s) * played.rate_Hz).astype(np.int64)] - trace.skin_C[0]
+    drift = float(before[np.abs(before).argmax()])
+    dose = float(cem43_min(trace.time_s, trace.skin_C)[-1])
+    return float(trace.skin_C.min()), float(trace.skin_C.max()), dose, drift
+
+
+def _extreme(values: Mapping[str, tuple[float, ...]]) -> set[str]:
+    """Labels of the participants whose sessions are judged in all corners.
+
+    >>> sorted(_extreme({str(k): (30.0 - k, 33.0 + k, 0.0, 0.1 * k) for k in range(9)}))
+    ['0', '8']
+    """
+    if len(values) <= ALL_JUDGED:
+        return set(values)
+    labels = list(values)
+    return {
+        min(labels, key=lambda label: values[label][0]),
+        max(labels, key=lambda label: values[label][1]),
+        max(labels, key=lambda label: values[label][2]),
+        max(labels, key=lambda label: abs(values[label][3])),
+    }

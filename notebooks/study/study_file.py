@@ -1,0 +1,182 @@
+"""A study file at the door: read, checked as a whole, and identified by the hash of everything that decides a study."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from thermicon.circuit.inputs import TEXT_FAULT, InputError, quoted, read_text, read_toml
+from thermicon.icons.near_words import did_you_mean, nearest_words
+
+from .keys import TABLES, Study, Table
+
+LIMIT_MB = 1.0
+SHIPPED = "example-study.toml"
+SHIPPED_NAMES = ("example", "example.toml", SHIPPED)
+"""What the shipped study answers to where no file has that name."""
+
+UNITS = {"_s": "s", "_K": "K", "_K_per_s": "K/s"}
+
+
+class StudyError(InputError):
+    """A study that cannot be made; the text says what, where, the value, the limit and the cure.
+
+    Examples
+    --------
+    >>> try:
+    ...     parse_study("format = 1", "mine.toml")
+    ... except StudyError as problem:
+    ...     print(str(problem).splitlines()[0])
+    mine.toml: name is missing; add it
+    """
+
+
+def study_text(source: str | Path) -> str:
+    """Return the text of a study file, or of the shipped example, which answers to `example`.
+
+    Raises StudyError for a file that is missing or is not UTF-8 text.
+
+    >>> "six-icons" in study_text("example")
+    True
+    """
+    path = Path(source)
+    if not path.exists() and str(source) in SHIPPED_NAMES:
+        return resources.files("thermicon.notebooks").joinpath("data", SHIPPED).read_text(encoding="utf-8")
+    return read_text(path, "study file", LIMIT_MB, StudyError)
+
+
+def parse_study(text: str, where: str) -> Study:
+    """Return a checked study, or raise StudyError with all faults at once, a line each.
+
+    >>> parse_study(study_text("example"), "example").trials.order
+    'balanced'
+    """
+    document = read_toml(text, where, StudyError)
+    try:
+        study = Study.model_validate(document)
+    except ValidationError as problem:
+        findings = [_in_words(error) for error in problem.errors(include_url=False)]
+    else:
+        findings = _faults(study)
+        if not findings:
+            return study
+    raise StudyError("\n".join(f"{where}: {finding}" for finding in findings))
+
+
+def labels_of(study: Study) -> tuple[str, ...]:
+    """Labels of the participants, in order.
+
+    >>> labels_of(parse_study(study_text("example"), "example"))[:2]
+    ('01', '02')
+    """
+    people = study.participants
+    if people.labels is not None:
+        return tuple(people.labels)
+    count = people.count or 0
+    width = max(2, len(str(count)))
+    return tuple(f"{k:0{width}d}" for k in range(1, count + 1))
+
+
+def study_hash(study: Study, contents: Mapping[str, str]) -> str:
+    """SHA-256 of everything that decides a study: its keys, with defaults, and the content of what it names.
+
+    >>> one = parse_study(study_text("example"), "example")
+    >>> study_hash(one, {}) == study_hash(one, {"rig": "another"})
+    False
+    """
+    whole = {"study": study.model_dump(mode="json"), "contents": dict(contents)}
+    text = json.dumps(whole, sort_keys=True, ensure_ascii=False, allow_nan=False)
+    return hashlib.sha256(text.encode("utf-8")).hexdigest()
+
+
+def _faults(study: Study) -> list[str]:
+    """What is wrong between keys, a sentence each with the cure."""
+    faults, people = [], study.participants
+    if (people.count is None) == (people.labels is None):
+        faults.append("participants: give either count or labels")
+    folded = Counter(label.casefold() for label in people.labels or ())
+    for label, times in folded.items():
+        if times > 1:
+            faults.append(f"participants.labels: {label} appears {times} times; each participant has one label")
+    for icon, times in Counter(study.stimuli.icons).items():
+        if times > 1:
+            faults.append(
+                f"stimuli.icons: {icon} appears {times} times; trials.repetitions says how often it is played"
+            )
+    if (study.trials is None) == (study.threshold is None):
+        faults.append("give either [trials], for naming icons, or [threshold]")
+    if study.trials is not None and study.stimuli.set is None:
+        faults.append('stimuli.set is missing; add a cue file or the name of a shipped set, as in set = "six-icons"')
+    if study.threshold is not None:
+        faults += _threshold_faults(study)
+    keys = study.run
+    used = Counter((keys.start_key, keys.stop_key, keys.abort_key))
+    faults += [f"run: {key} is the key for two things; give each its own" for key, times in used.items() if times > 1]
+    return faults
+
+
+def _threshold_faults(study: Study) -> list[str]:
+    threshold, faults = study.threshold, []
+    assert threshold is not None
+    if not threshold.least_K < threshold.most_K:
+        faults.append(
+            f"threshold.least_K = {threshold.least_K:g} K is not below threshold.most_K = {threshold.most_K:g} K"
+        )
+    if study.stimuli.set is not None or study.stimuli.icons:
+        faults.append("stimuli: a threshold is measured with steps of its own; leave out set and icons")
+    return faults
+
+
+def _in_words(error: ErrorDetails) -> str:
+    """One fault of a key in a sentence with the limit and its unit."""
+    place = list(error["loc"])
+    key, last = ".".join(map(str, place)), str(place[-1]) if place else ""
+    unit = next((f" {unit}" for end, unit in reversed(UNITS.items()) if last.endswith(end)), "")
+    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
+    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
+    if kind == "extra_forbidden":
+        return f"{key}: unknown key; {_nearest(place)}"
+    if kind == TEXT_FAULT:
+        return f"{subject}: {context['fault']}"
+    if kind == "missing":
+        return f"{key} is missing; add it"
+    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
+        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
+        words = {"greater_than": "above", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
+        return f"{subject}{unit}: must be {words} {limit:g}{unit}"
+    if kind == "literal_error":
+        return f"{subject}: must be {context.get('expected')}"
+    if kind == "string_pattern_mismatch":
+        return f"{subject}: {_shape(last, place)}"
+    if kind in ("float_type", "int_type", "finite_number", "int_from_float"):
+        return (
+            f"{subject}: must be a {'whole ' if 'int' in kind[:4] else ''}number without quotes{unit and f', in{unit}'}"
+        )
+    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+
+
+def _nearest(place: list[Any]) -> str:
+    """The known key nearest to an unknown one, also where it stands in the wrong table."""
+    known: type[Table] = TABLES.get(str(place[0]), Study) if len(place) > 1 else Study
+    word = str(place[-1])
+    if not nearest_words(word, known.model_fields, cutoff=0.55):
+        for name, table in TABLES.items():
+            if word in table.model_fields:
+                return f"it belongs to [{name}]"
+    return did_you_mean(word, known.model_fields)
+
+
+def _shape(last: str, place: list[Any]) -> str:
+    if last == "marker":
+        return "must be none, serial:PORT, parallel:ADDRESS or ni:LINES"
+    if last.endswith("_key"):
+        return "must be the name of a key in small letters, such as space, escape or q"
+    return "must have letters and digits alone, since it becomes part of file names"

@@ -1,0 +1,183 @@
+"""Gap between icons and landing of the hand, both derived from simulation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .study_file import StudyError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+
+    from .keys import Timing
+
+AFTER_S = 10.0
+"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
+
+GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 180.0, 240.0, 300.0, 420.0, 600.0)
+"""Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""
+
+LONGEST_LANDING_S = 1800.0
+HELD_WORDS = {True: "the display held at its baseline", False: "the resting current held, nothing corrected"}
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """The least time between icons in s, why it is that long, and what the icon before still changes after it.
+
+    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory.
+    """
+
+    gap_s: float
+    reason: str
+    carry_over_d_prime: float
+    carried_by: tuple[str, str] | None
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.gap_s <= 600.0:
+            raise ValueError(f"a gap of {self.gap_s:g} s is outside 0 to 600 s")
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """How long the hand rests on the display before a block, and what is left of its own temperature by then.
+
+    `left_K` is the largest deviation of skin and receptors at the end, `left_at_10_s_K` after 10 s, for skin that
+    arrives `from_K` warmer or colder than it rests.
+    """
+
+    landing_s: float
+    derived: bool
+    from_K: float
+    left_K: float
+    left_at_10_s_K: float
+
+
+def regulated(driven_by: str) -> bool:
+    """Whether a device measures its display and corrects it; a drive in volts or amperes is played open loop.
+
+    >>> regulated("set-points"), regulated("volts")
+    (True, False)
+    """
+    return driven_by in ("set-points", "temperatures")
+
+
+def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> tuple[float, tuple[str, str]]:
+    """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
+    from thermicon.circuit import duration_s
+    from thermicon.perception.identification.carry_over import carry_over
+
+    end_s = max(duration_s(icon, rig) for icon in icons) + AFTER_S
+    left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
+    d_prime = left.apart[0] / left.noise[0]
+    before, after = divmod(int(d_prime.argmax()), len(icons))
+    return float(d_prime.max()), (icons[before].name, icons[after].name)
+
+
+def find_gap(icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool) -> Gap:
+    """Return the given gap, or the shortest from which on no icon carries over by more than the wanted d′.
+
+    Raises StudyError where no gap up to 10 min suffices.
+    """
+    wanted = timing.carry_over_d_prime
+    carried = lru_cache(maxsize=None)(lambda gap_s: carried_over(icons, rig, gap_s, held))
+    if timing.gap_s is not None:
+        d_prime, pair = carried(timing.gap_s)
+        return Gap(timing.gap_s, "given", d_prime, pair)
+    gap_s = shortest_gap_s(lambda gap_s: carried(gap_s)[0] <= wanted)
+    if gap_s is None:
+        worst, (before, after) = carried(GAPS_S[-1])
+        raise StudyError(
+            f"timing.carry_over_d_prime = {wanted:g}: after {GAPS_S[-1]:g} s {before} still changes {after} by d′ = "
+            f"{worst:.2g}; allow more, or give timing.gap_s"
+        )
+    d_prime, pair = carried(gap_s)
+    return Gap(gap_s, f"carry-over falls below d′ = {wanted:g}", d_prime, pair)
+
+
+def shortest_gap_s(passes: Callable[[float], bool]) -> float | None:
+    """The shortest gap in whole seconds from which on every tried gap passes; None where the longest does not.
+
+    >>> shortest_gap_s(lambda gap_s: gap_s >= 33.2 or gap_s < 5)
+    34.0
+    """
+    last = None
+    for gap_s in reversed(GAPS_S):
+        if not passes(gap_s):
+            break
+        last = gap_s
+    else:
+        return last
+    if last is None:
+        return None
+    low, high = math.floor(gap_s), math.ceil(last)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if passes(float(middle)) else (middle, high)
+    return float(high)
+
+
+def find_landing(icon: Icon, rig: Rig, timing: Timing, held: bool) -> Landing:
+    """Return the given landing, or the time until a hand that arrives too warm or too cold has settled.
+
+    Raises StudyError where that takes longer than half an hour.
+    """
+    times, away = settling(icon, rig, timing.landing_from_K, held)
+    if timing.landing_s is not None:
+        seconds = timing.landing_s
+    else:
+        late = np.flatnonzero(away > timing.landing_within_K)
+        if len(late) and late[-1] + 1 == len(away):
+            raise StudyError(
+                f"timing.landing_within_K = {timing.landing_within_K:g} K: skin that arrives {timing.landing_from_K:g} "
+                f"K away is still {away[-1]:.2g} K off after {LONGEST_LANDING_S:g} s; allow more, or give landing_s"
+            )
+        seconds = float(times[late[-1] + 1]) if len(late) else 0.0
+    left, early = (float(np.interp(at, times, away)) for at in (seconds, 10.0))
+    return Landing(seconds, timing.landing_s is None, timing.landing_from_K, left, early)
+
+
+def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Seconds after contact, and the largest deviation of skin and receptors in K from where they settle.
+
+    Skin arrives in the steady state of a surface `from_K` warmer or colder than it rests. The display waits at the
+    baseline of the icon; `held`: it stays there, otherwise the resting current flows and the hand warms the module.
+    """
+    from thermicon.circuit import Drive, design, duration_s, simulate_current
+    from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.circuit.solver.network import SKIN
+    from thermicon.circuit.solver.prescribed import FELT, modes_of
+
+    modes = modes_of(rig)
+    columns = ("skin_C", "cold_receptor_C", "warm_receptor_C")
+    times = np.arange(LONGEST_LANDING_S + 1.0)
+    base = baseline_C(icon, rig)
+    deviations = []
+    for arrived_C in (rig.skin.rest_C - from_K, rig.skin.rest_C + from_K):
+        begun = modes.steady(modes.display_holding_skin_C(arrived_C))
+        if held:
+            display = modes.display_holding_skin_C(base) if icon.context.control == "skin" else base
+            run = modes.relax(times, display, begun)
+            steady = modes.relax(times[:1], display, modes.steady(display))
+            places = [FELT.index(name) for name in columns]
+            deviations.append(np.abs(run[places] - steady[places]).max(axis=0))
+            continue
+        plan = design(icon, rig, duration_s(icon, rig))
+        start = plan.start_C.copy()
+        start[SKIN:-1] = modes.lumps @ begun + modes.deep_C
+        drive = Drive([0.0, LONGEST_LANDING_S], [plan.rest_A, plan.rest_A], held=True)
+        trace = simulate_current(drive, rig, rate_Hz=1.0, start_C=start)
+        still = simulate_current(
+            Drive([0.0, 1.0], [plan.rest_A] * 2, held=True), rig, rate_Hz=1.0, start_C=plan.start_C
+        )
+        deviations.append(np.max([np.abs(getattr(trace, name) - getattr(still, name)[0]) for name in columns], axis=0))
+    return times, np.asarray(np.max(deviations, axis=0))

@@ -1,0 +1,211 @@
+"""``thermicon study``: the folder, the verdicts, and every way in which a study is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.notebooks.study.conftest import QUICK, make, write_study
+from thermicon.circuit import Rig
+from thermicon.icons import read_cue
+
+Cli = Callable[..., Any]
+HOT = QUICK.replace('["dip", "glow"]', '["dip", "burn"]')
+
+
+@pytest.fixture(scope="module")
+def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make(tmp_path_factory.mktemp("study"), QUICK)
+
+
+def test_the_folder_has_everything(out: Path) -> None:
+    names = {path.name for path in out.iterdir()}
+    assert names >= {
+        *("study.toml", "study.json", "icons.cue", "rig.toml", "dip.csv", "dip.json", "glow.csv", "glow.json"),
+        *("conditions.csv", "play_icons.py", "run_study.py", "study_bench.py", "timeline.png", "README.txt"),
+        *("participants.tsv", "dataset_description.json", "task-quick_events.json"),
+        *(f"sub-{who}_task-quick_{what}" for who in "AB" for what in ("conditions.csv", "desc-planned_events.tsv")),
+    }
+    assert "study_questplus.py" not in names
+    assert [icon.name for icon in read_cue(out / "icons.cue")] == ["dip", "glow"]
+    assert Rig.load(out / "rig.toml").uncertainty == Rig.load(out / "rig.toml").uncertainty
+    assert (out / "timeline.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_study_json_states_what_was_derived_and_judged(out: Path) -> None:
+    facts = json.loads((out / "study.json").read_text(encoding="utf-8"))
+    assert facts["participants"] == ["A", "B"]
+    assert (facts["gap_s"], facts["gap_because"], facts["landing_s"]) == (10.0, "given", 30.0)
+    assert 0.0 < facts["carry_over_d_prime"] < 5.0
+    assert 0.0 < facts["landing_left_K"] < facts["landing_left_at_10_s_K"] < 2.5
+    assert {label: session["verdict"] for label, session in facts["sessions"].items()} == {"A": "green", "B": "green"}
+    for session in facts["sessions"].values():
+        assert session["dose_cem43_worst_min"] < session["dose_cem43_limit_min"]
+        assert abs(session["baseline_drift_K"]) < 1.0
+    assert facts["choices"]["dip"] == {"key": "1", "text": "a dip"}
+    assert "not a medical or ethical clearance" in facts["what_it_is_not"]
+
+
+def test_conditions_name_files_that_are_there(out: Path) -> None:
+    for who in "AB":
+        with (out / f"sub-{who}_task-quick_conditions.csv").open(newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        assert len(rows) == 10
+        assert all((out / row["drive_file"]).is_file() and (out / row["sidecar_file"]).is_file() for row in rows)
+
+
+def test_the_same_study_gives_the_same_bytes(out: Path, tmp_path: Path) -> None:
+    again = make(tmp_path, QUICK)
+    assert {path.name: path.read_bytes() for path in again.iterdir()} == {
+        path.name: path.read_bytes() for path in out.iterdir()
+    }
+
+
+def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) -> None:
+    said = cli("export", "--verify", out)
+    assert said.exit_code == 0, said.stderr
+    copy = tmp_path / "copy"
+    copy.mkdir()
+    for path in out.iterdir():
+        (copy / path.name).write_bytes(path.read_bytes())
+    conditions = copy / "sub-A_task-quick_conditions.csv"
+    conditions.write_text(conditions.read_text(encoding="utf-8").replace("dip", "glow"), encoding="utf-8")
+    (copy / "run_study.py").unlink()
+    said = cli("export", "--verify", copy)
+    assert said.exit_code == 1
+    assert "sub-A_task-quick_conditions.csv: has changed since the study was made" in said.stderr
+    assert "run_study.py: is missing; study.json names it" in said.stderr
+
+
+def test_the_report(tmp_path: Path, cli: Cli) -> None:
+    said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "made")
+    assert said.exit_code == 0
+    for words in (
+        "2 participants, 10 plays each, balanced order, seed",
+        "gap       10 s: given",
+        "landing   30 s, given: skin that arrives 2.5 K off is then",
+        "drives    2 green, repeated in any order for the device ni-analogue-output",
+        "session   A: green in 3 scenarios",
+    ):
+        assert words in said.stdout
+    assert "wrote 21 files into" in said.stderr
+    assert "not a medical or ethical clearance" in said.stderr
+
+
+def refused(cli: Cli, folder: Path, text: str) -> str:
+    """What a refused study says; nothing may be there."""
+    said = cli("study", write_study(folder, text), "-o", folder / "out")
+    assert said.exit_code == 3, said.stdout
+    assert sorted(path.name for path in folder.iterdir()) == ["study.toml", "two.cue"]
+    assert "nothing was written" in said.stderr
+    return str(said.stderr)
+
+
+def test_a_gap_that_is_not_safe_refuses_the_study_and_names_the_shortest(tmp_path: Path, cli: Cli) -> None:
+    text = refused(cli, tmp_path, HOT.replace("gap_s = 10", "gap_s = 0"))
+    assert "refused: burn: NOT SAFE: " in text
+    assert "timing.gap_s = " in text or "no pause up to 10 min" in text
+    assert "--pause" not in text
+
+
+def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
+    """The same icons with nothing given: the gate asks for more than carry-over of d′ 5 does."""
+    text = HOT.replace("gap_s = 10\n", "carry_over_d_prime = 5\n").replace("hold for 20 s", "hold for 1 s")
+    path = write_study(tmp_path, text)
+    (tmp_path / "two.cue").write_text(
+        (tmp_path / "two.cue").read_text(encoding="utf-8").replace("hold for 20 s", "hold for 12 s"), encoding="utf-8"
+    )
+    said = cli("study", path, "-o", tmp_path / "made")
+    assert said.exit_code == 0, said.stderr
+    assert "the shortest pause that is safe" in said.stdout
+
+
+def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
+    """In the short session of this rig no drive is too much by itself; in the whole order of play they are."""
+    rules = (
+        "'safety.reason=\"the session of the test lasts one minute\"', 'safety.session_min=1', "
+        "'safety.thermal_dose_min_CEM43=0.15', "
+    )
+    text = HOT.replace("rig_changes = [", f"rig_changes = [{rules}").replace("repetitions = 2", "repetitions = 5")
+    text = text.replace("gap_s = 10", "gap_s = 90")
+    said = refused(cli, tmp_path, text)
+    assert "refused: session of participant A: NOT SAFE: " in said
+    assert "thermal dose" in said
+
+
+def test_a_session_that_is_too_long_is_said(tmp_path: Path, cli: Cli) -> None:
+    path = write_study(tmp_path, QUICK.replace("repetitions = 2", "repetitions = 300"))
+    said = cli("study", path, "-o", tmp_path / "out")
+    assert said.exit_code == 1
+    assert (
+        "1202 plays of 3 s with gaps of 10 s last 260 min for each participant; the limit of a session is 180 min"
+        in (said.stderr)
+    )
+
+
+def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "study.json").write_text("mine", encoding="utf-8")
+    said = cli("study", write_study(tmp_path, QUICK), "-o", out)
+    assert said.exit_code == 1
+    assert "already exists and was kept; give another folder with -o" in said.stderr
+    assert [path.name for path in out.iterdir()] == ["study.json"]
+
+
+def test_a_read_only_folder_is_said_before_anything_is_simulated(
+    tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    closed = tmp_path / "closed"
+    closed.mkdir()
+    allowed = os.access
+    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != closed and allowed(path, mode))
+    monkeypatch.setattr("thermicon.notebooks.study.build.make_plan", None)
+    said = cli("study", write_study(tmp_path, QUICK), "-o", closed / "out")
+    assert said.exit_code == 1
+    assert "is not writable" in said.stderr
+
+
+def test_a_folder_that_is_a_file_is_said(tmp_path: Path, cli: Cli) -> None:
+    said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "two.cue")
+    assert said.exit_code == 1
+    assert "is a file; give the name of a folder" in said.stderr
+
+
+@pytest.mark.parametrize("changes", [("dip", "dpi"), ("repetitions = 2", "repetitions = 0")], ids=["icon", "none"])
+def test_bad_input_exits_with_1_and_no_traceback(changes: tuple[str, str], tmp_path: Path, cli: Cli) -> None:
+    said = cli("study", write_study(tmp_path, QUICK.replace(*changes)), "-o", tmp_path / "out")
+    assert said.exit_code == 1
+    assert "study.toml: " in said.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path, cli: Cli) -> None:
+    text = QUICK.replace("rig_changes", 'rig = "tcs2"\ndevice = "qst-tcs2"\nrig_changes', 1)
+    lines = [line for line in text.splitlines() if not line.startswith("rig_changes")]
+    text = "\n".join(lines).replace("gap_s = 10", "gap_s = 300").replace("repetitions = 2", "repetitions = 4")
+    said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
+    assert said.exit_code == 0, said.stderr
+    assert "judged by its drives alone, repeated in any order: a thermode has no current" in said.stdout
+    sidecar = json.loads((tmp_path / "out" / "dip.json").read_text(encoding="utf-8"))
+    assert sidecar["rig"]["changes"] == ["safety.session_min=86.0"], "18 plays of 3 s and 17 gaps of 300 s"
+    assert json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))["plays"] == "tcs2"
+
+
+def test_of_many_participants_the_extreme_sessions_are_judged(tmp_path: Path, cli: Cli) -> None:
+    text = QUICK.replace('labels = ["A", "B"]', "count = 9").replace("repetitions = 2", "repetitions = 1")
+    said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
+    assert "these are the most extreme of 9 orders, all run on the rig as given" in said.stdout
+    facts = json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))
+    assert len(facts["baseline_drift_K"]) == 9
+    assert 1 <= len(facts["sessions"]) <= 4
+    drifts = {label: abs(drift) for label, drift in facts["baseline_drift_K"].items()}
+    assert max(drifts, key=lambda label: drifts[label]) in facts["sessions"]
+    for label, session in facts["sessions"].items():
+        assert session["baseline_drift_K"] == pytest.approx(facts["baseline_drift_K"][label], abs=1e-9)

@@ -1,0 +1,71 @@
+"""Orders of play: designs against their definition, and what no order may have."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from thermicon.notebooks.study.orders import first_order_counts, orders_of, williams_rows
+
+
+@pytest.mark.parametrize("count", range(2, 11))
+def test_in_a_williams_design_every_icon_follows_every_other_equally_often(count: int) -> None:
+    rows = williams_rows(count)
+    assert len(rows) == (count if count % 2 == 0 else 2 * count)
+    assert all(sorted(row) == list(range(count)) for row in rows)
+    pairs = first_order_counts(rows)
+    assert len(pairs) == count * (count - 1)
+    assert len(set(pairs.values())) == 1
+    places = Counter((place, icon) for row in rows for place, icon in enumerate(row))
+    assert len(set(places.values())) == 1, "every icon is at every place equally often"
+
+
+@given(
+    rule=st.sampled_from(["balanced", "williams", "random"]),
+    icons=st.integers(2, 9),
+    repetitions=st.integers(1, 6),
+    blocks=st.integers(1, 4),
+    seed=st.integers(0, 2**52),
+)
+def test_no_icon_follows_itself_and_blocks_are_complete(
+    rule: str, icons: int, repetitions: int, blocks: int, seed: int
+) -> None:
+    for person in orders_of(rule, icons, repetitions, blocks, 2, seed):
+        whole = [place for block in person for place in block]
+        assert all(before != after for before, after in pairwise(whole))
+        assert len(person) == blocks
+        assert all(Counter(block) == dict.fromkeys(range(icons), repetitions) for block in person)
+
+
+def test_balanced_orders_are_more_even_than_random_ones() -> None:
+    def spread(rule: str) -> int:
+        (person,) = orders_of(rule, 6, 10, 1, 1, seed=4)
+        pairs = first_order_counts(person)
+        counts = [pairs[a, b] for a in range(6) for b in range(6) if a != b]
+        return max(counts) - min(counts)
+
+    assert spread("balanced") <= 2
+    assert spread("random") >= 5
+
+
+def test_shuffled_orders_have_repeats_and_whole_blocks() -> None:
+    people = orders_of("shuffled", 3, 8, 2, 4, seed=1)
+    assert any(a == b for person in people for block in person for a, b in pairwise(block))
+    assert all(Counter(block) == {0: 8, 1: 8, 2: 8} for person in people for block in person)
+
+
+def test_rows_of_a_williams_design_are_dealt_out_equally() -> None:
+    people = orders_of("williams", 4, 1, 2, 6, seed=9)
+    used = Counter(block for person in people for block in person)
+    assert sum(used.values()) == 12
+    assert set(used.values()) == {3}
+
+
+def test_equal_seeds_give_equal_orders() -> None:
+    for rule in ("balanced", "williams", "random", "shuffled"):
+        assert orders_of(rule, 5, 3, 2, 3, seed=7) == orders_of(rule, 5, 3, 2, 3, seed=7)
+        assert orders_of(rule, 5, 3, 2, 3, seed=7) != orders_of(rule, 5, 3, 2, 3, seed=8)

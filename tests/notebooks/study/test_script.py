@@ -1,0 +1,348 @@
+"""The script of a study, run in a process of its own without thermicon, PsychoPy or hardware."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+import threading
+import time
+import types
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .conftest import Runner
+
+COLUMNS = ["participant", "trial", "presented", "responded", "time_s"]
+
+
+def rows_of(path: Path, delimiter: str = ",") -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file, delimiter=delimiter))
+
+
+def answers(folder: Path, who: str = "A") -> list[dict[str, str]]:
+    return rows_of(folder / f"sub-{who}_task-quick_answers.csv")
+
+
+def events(folder: Path, who: str = "A", run: int = 1) -> list[dict[str, str]]:
+    return rows_of(folder / f"sub-{who}" / "beh" / f"sub-{who}_task-quick_run-{run}_events.tsv", "\t")
+
+
+def test_a_simulated_run_writes_answers_and_events(quick: Path, script: Runner, tmp_path: Path) -> None:
+    done = script("--participant", "A", "--simulate")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "A: done; 8 answers after" in done.stdout
+    conditions = rows_of(quick / "sub-A_task-quick_conditions.csv")
+    found = answers(tmp_path)
+    assert list(found[0]) == COLUMNS
+    assert [row["presented"] for row in found] == [row["icon"] for row in conditions if row["trial"] != "0"]
+    assert [int(row["trial"]) for row in found] == list(range(1, 9))
+    assert {row["responded"] for row in found} <= {"dip", "glow"}
+    assert all(float(row["time_s"]) > 3.0 for row in found), "answers come after the icon, from whose start they count"
+    played = events(tmp_path)
+    assert [row["trial_type"] for row in played] == [row["icon"] for row in conditions], "practice included"
+    assert all((tmp_path / "stimuli" / row["stim_file"]).is_file() for row in played)
+    columns = json.loads((tmp_path / "task-quick_events.json").read_text(encoding="utf-8"))
+    assert set(played[0]) <= set(columns)
+
+
+def test_the_scripts_need_neither_thermicon_nor_psychopy_to_be_simulated(quick: Path) -> None:
+    for name in ("run_study.py", "study_bench.py"):
+        lines = (quick / name).read_text(encoding="utf-8").splitlines()
+        imported = {line.split()[1].partition(".")[0] for line in lines if line.startswith(("import ", "from "))}
+        assert imported <= sys.stdlib_module_names
+
+
+def test_pauses_landings_and_breaks_are_kept(quick: Path, script: Runner, tmp_path: Path) -> None:
+    script("--participant", "A", "--simulate")
+    played = events(tmp_path)
+    onsets = [float(row["onset"]) for row in played]
+    ends = [onset + float(row["duration"]) for onset, row in zip(onsets, played, strict=True)]
+    assert onsets[0] >= 30.0, "the hand lands"
+    for before, (row, after) in enumerate(pairwise(played)):
+        waited = onsets[before + 1] - ends[before]
+        assert waited >= 10.0
+        if row["block"] == "1" and after["block"] == "2":
+            assert waited >= 40.0 + 30.0, "a break, and the hand lands again"
+        elif row["block"] == "0" and after["block"] == "1":
+            assert waited < 40.0, "after practice the hand stays"
+    planned = rows_of(quick / "sub-A_task-quick_desc-planned_events.tsv", "\t")
+    assert [row["trial_type"] for row in planned] == [row["trial_type"] for row in played]
+    assert all(float(row["onset"]) <= onset for row, onset in zip(planned, onsets, strict=True))
+
+
+def test_equal_seeds_give_equal_answers(script: Runner, tmp_path: Path) -> None:
+    for folder, seed in (("one", 1), ("two", 1), ("three", 2)):
+        script("--participant", "A", "--simulate", "--seed", seed, output=tmp_path / folder)
+    one, two, three = (answers(tmp_path / folder) for folder in ("one", "two", "three"))
+    assert one == two != three
+
+
+def test_a_perfect_person_is_always_right(script: Runner, tmp_path: Path) -> None:
+    script("--participant", "B", "--simulate", "--correct", 1)
+    assert all(row["presented"] == row["responded"] for row in answers(tmp_path, "B"))
+
+
+def test_answers_are_joined_in_the_form_that_observed_reads(script: Runner, tmp_path: Path) -> None:
+    for who in ("A", "B"):
+        script("--participant", who, "--simulate")
+    done = script("--collect")
+    assert "16 answers of 2 participants" in done.stdout
+    joined = rows_of(tmp_path / "answers.csv")
+    assert list(joined[0]) == COLUMNS
+    assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
+
+
+def test_nothing_is_overwritten(script: Runner, tmp_path: Path) -> None:
+    script("--participant", "A", "--simulate")
+    before = answers(tmp_path)
+    again = script("--participant", "A", "--simulate")
+    assert again.returncode == 1
+    assert "has 8 answers already: --resume goes on after them" in again.stderr
+    assert answers(tmp_path) == before
+
+
+def test_the_stop_key_ends_after_the_trial_and_resume_goes_on(script: Runner, tmp_path: Path) -> None:
+    first = script("--participant", "A", "--simulate", "--press", "70:q")
+    assert first.returncode == 0
+    assert "stopped by key; --resume goes on" in first.stdout
+    some = answers(tmp_path)
+    assert 0 < len(some) < 8
+    assert len(events(tmp_path)) == len(some) + 2, "every trial that began has its answer"
+    rest = script("--participant", "A", "--simulate", "--resume")
+    assert "8 answers" in rest.stdout
+    assert [int(row["trial"]) for row in answers(tmp_path)] == list(range(1, 9))
+    assert len(events(tmp_path, run=2)) == 8 - len(some)
+
+
+@pytest.mark.parametrize("at_s", [5, 32, 45, 60], ids=["landing", "a play", "a question or pause", "later"])
+def test_the_abort_key_ends_at_once_wherever_it_comes(at_s: float, script: Runner, tmp_path: Path) -> None:
+    done = script("--participant", "A", "--simulate", "--press", f"{at_s}:escape")
+    assert done.returncode == 3
+    assert "ABORTED by key; the display is off" in done.stdout
+    minutes = float(done.stdout.partition("answers after ")[2].split()[0])
+    assert minutes == pytest.approx(at_s / 60.0, abs=0.06)
+
+
+def test_keys_can_be_given(script: Runner) -> None:
+    done = script("--participant", "A", "--simulate", "--abort-key", "f1", "--press", "5:escape", "--press", "40:f1")
+    assert done.returncode == 3
+    minutes = float(done.stdout.partition("answers after ")[2].split()[0])
+    assert minutes == pytest.approx(40.0 / 60.0, abs=0.06)
+
+
+def test_an_unknown_participant_is_said(script: Runner) -> None:
+    for arguments, words in (
+        (("--participant", "C"), "there is no participant C; the study has A, B"),
+        ((), "whose trials? give --participant LABEL, one of A, B"),
+        (("--collect",), "there are no answers in"),
+    ):
+        done = script(*arguments)
+        assert done.returncode == 1
+        assert words in done.stderr
+
+
+def bench_of(quick: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
+    """The module of the study's folder that plays and waits."""
+    monkeypatch.syspath_prepend(str(quick))
+    monkeypatch.delitem(sys.modules, "study_bench", raising=False)
+    import importlib
+
+    return importlib.import_module("study_bench")
+
+
+class RealTime(types.ModuleType):
+    """A stand-in for nidaqmx that takes as long as the samples do, by the clock on the wall."""
+
+    def __init__(self) -> None:
+        super().__init__("nidaqmx")
+        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
+        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
+        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=lambda *_, **__: None)
+        self.out: list[Any] = []
+        self.ends = 0.0
+
+    def Task(self) -> RealTime:
+        return self
+
+    def __enter__(self) -> RealTime:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+    def write(self, volts: Any, **_: object) -> None:
+        self.out.append(volts)
+        if isinstance(volts, list):
+            self.ends = time.monotonic() + 3.0
+
+    def is_task_done(self) -> bool:
+        return time.monotonic() >= self.ends
+
+    def stop(self) -> None:
+        self.out.append("stopped")
+
+
+@pytest.fixture
+def display(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    device = RealTime()
+    monkeypatch.setitem(sys.modules, "nidaqmx", device)
+    monkeypatch.setitem(sys.modules, "nidaqmx.constants", device)
+    made = bench_of(quick, monkeypatch).Display("ni", channel="Dev7/ao1")
+    made.player.REST_S = 0.0
+    made.device = device
+    return made
+
+
+def test_a_play_does_not_block_and_abort_switches_off(display: Any, quick: Path) -> None:
+    """In real time, with threads."""
+    assert display.player.CHANNEL == "Dev7/ao1"
+    begun = time.monotonic()
+    display.play(str(quick / "dip.csv"))
+    assert time.monotonic() - begun < 0.5, "the call returned while the icon plays"
+    while not any(isinstance(each, list) for each in display.device.out):
+        assert time.monotonic() - begun < 2.0
+        time.sleep(0.01)
+    assert display.busy
+    display.abort()
+    assert time.monotonic() - begun < 2.0
+    assert display.device.out[-1] == 0.0
+    with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
+        _ = display.busy
+
+
+def test_the_guard_stops_a_display_that_is_too_warm(display: Any, quick: Path) -> None:
+    """The cut-off of the exported player acts in a study too."""
+    readings = iter([32.0 + 0.001 * k for k in range(10)] + [60.0 + 0.001 * k for k in range(1000)])
+    display.measured_C = lambda: next(readings)
+    display.player.TEST_POLARITY = False
+    display.play(str(quick / "dip.csv"))
+    begun = time.monotonic()
+    with pytest.raises(RuntimeError, match=r"the display is at 60\.\d\d degrees C, outside"):
+        while time.monotonic() < begun + 3.0 and display.busy:
+            time.sleep(0.01)
+    assert display.device.out[-1] == 0.0
+    assert threading.active_count() >= 1
+
+
+def test_a_pause_that_is_too_short_is_refused_by_the_player(display: Any, quick: Path) -> None:
+    display.player._known["ended"] = time.monotonic()
+    display.player.PAUSE_S = 5.0
+    display.play(str(quick / "dip.csv"))
+    display._thread.join()
+    with pytest.raises(RuntimeError, match=r"the pause of 5 s between plays is not over"):
+        _ = display.busy
+
+
+def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> None:
+    first = float(rows_of(quick / "dip.csv")[0]["command_V"])
+    display.player.REST_S = 0.05
+    display.rest(str(quick / "dip.csv"))
+    display._thread.join()
+    assert display.device.out == [first]
+    assert display.player._known["rested"]
+
+
+@pytest.mark.parametrize("plays", ["tcs2", "send"])
+def test_other_devices_have_their_functions(plays: str, quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = bench_of(quick, monkeypatch)
+    if plays == "send":
+        with pytest.raises(
+            SystemExit, match=r"needs --bench FILE\.py with the functions send\(display_C\) and off\(\)"
+        ):
+            bench.Display("send")
+        off: list[str] = []
+        own = types.SimpleNamespace(send=lambda _: None, off=lambda: off.append("off"))
+        bench.Display("send", own).abort()
+        assert off == ["off"]
+    else:
+        sent: list[bytes] = []
+        display = bench.Display.__new__(bench.Display)
+        display.player, display.plays, display._thread = types.SimpleNamespace(abort=lambda: None), "tcs2", None
+        display.port = types.SimpleNamespace(write=sent.append)
+        display.abort()
+        assert sent == [b"A"]
+
+
+PSYCHOPY = {
+    "psychopy/__init__.py": "",
+    "psychopy/visual.py": """
+class Window:
+    def __init__(self, size=(800, 600), pos=None, color=(0, 0, 0), fullscr=None, units="norm"):
+        self.open = True
+    def flip(self):
+        import time
+        time.sleep(0.01)
+    def close(self):
+        self.open = False
+class TextStim:
+    def __init__(self, win, text="Hello", height=None, wrapWidth=None):
+        self.text = text
+    def draw(self):
+        print(self.text.replace("\\n", "|"), file=open(LOG, "a"))
+LOG = __file__ + ".log"
+""",
+    "psychopy/event.py": """
+import time
+begun = time.monotonic()
+def getKeys(keyList=None, modifiers=False, timeStamped=False):
+    pressed = ["space", "1"] if int((time.monotonic() - begun) * 100) % 10 == 0 else []
+    return pressed
+""",
+    "nidaqmx/__init__.py": """
+import time
+class Task:
+    def __enter__(self): return self
+    def __exit__(self, *_): return None
+    class ao_channels:
+        add_ao_voltage_chan = staticmethod(lambda *_, **__: None)
+    class timing:
+        cfg_samp_clk_timing = staticmethod(lambda *_, **__: None)
+    def write(self, volts, auto_start=False):
+        self.ends = time.monotonic() + 0.2
+        print("put", len(volts) if isinstance(volts, list) else volts, file=open(LOG, "a"))
+    def is_task_done(self): return time.monotonic() >= self.ends
+    def stop(self): pass
+LOG = __file__ + ".log"
+""",
+    "nidaqmx/constants.py": "class AcquisitionType:\n    FINITE = 1\n",
+}
+"""Stand-ins with the names and arguments of PsychoPy and nidaqmx that the script uses."""
+
+
+@pytest.mark.slow
+def test_with_psychopy_and_a_device_it_runs_in_real_time(quick: Path, tmp_path: Path) -> None:
+    import os
+    import shutil
+    import subprocess
+
+    for name, text in PSYCHOPY.items():
+        (tmp_path / "stubs" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "stubs" / name).write_text(text, encoding="utf-8")
+    folder = tmp_path / "study"
+    shutil.copytree(quick, folder)
+    facts = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+    facts |= {"landing_s": 0.2, "gap_s": 0.3, "break_s": 0.2}
+    (folder / "study.json").write_text(json.dumps(facts), encoding="utf-8")
+    with (folder / "play_icons.py").open("a", encoding="utf-8") as file:
+        file.write("\nREST_S = PAUSE_S = 0.1\n")
+    conditions = folder / "sub-A_task-quick_conditions.csv"
+    lines = [line.replace(",3.01,", ",0.2,") for line in conditions.read_text(encoding="utf-8").splitlines()]
+    conditions.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, str(folder / "run_study.py"), "--participant", "A", "--window"],
+        capture_output=True, encoding="utf-8", timeout=100, check=False,
+        env={**os.environ, "PYTHONPATH": str(tmp_path / "stubs")},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert len(answers(folder / "data")) == 8
+    put = (tmp_path / "stubs" / "nidaqmx" / "__init__.py.log").read_text(encoding="utf-8").split("\n")
+    assert sum(line.startswith("put 3") for line in put) == 10, "every drive of about 300 samples, practice included"
+    assert put[-2] == "put 0.0", "the output is off at the end"
+    shown = (tmp_path / "stubs" / "psychopy" / "visual.py.log").read_text(encoding="utf-8")
+    for words in ("Place the hand on the display", "Practice is over", "Which pattern was that?||1   a dip|2   a glow"):
+        assert words in shown

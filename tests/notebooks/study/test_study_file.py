@@ -1,0 +1,150 @@
+"""A study file at the door: every fault in words, all at once, before anything is simulated."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.notebooks.study.conftest import QUICK, write_study
+from thermicon.icons.model.errors import CueErrors
+from thermicon.notebooks.study.build import read_materials
+from thermicon.notebooks.study.schedule import courses_of, seed_of
+from thermicon.notebooks.study.study_file import StudyError, labels_of, parse_study, study_hash, study_text
+
+FAULTS = [
+    ("repetitions = 2", "repetitions = 0", r"trials\.repetitions = 0: must be at least 1"),
+    ("repetitions = 2", "repetitions = 2.5", r"trials\.repetitions = 2\.5: must be a whole number without quotes"),
+    ("repetitions = 2", "repetition = 2", r"trials\.repetition: unknown key; did you mean repetitions\?"),
+    ("blocks = 2", "blocks = 2\ngap_s = 3", r"trials\.gap_s: unknown key; it belongs to \[timing\]"),
+    ("gap_s = 10", "gap_s = -1", r"timing\.gap_s = -1 s: must be at least 0 s"),
+    ("gap_s = 10", "gap_s = 601", r"timing\.gap_s = 601 s: must be at most 600 s"),
+    ("gap_s = 10", "gap_s = nan", r"timing\.gap_s = nan s?: must be|timing\.gap_s = nan: must be"),
+    ("landing_s = 30", 'landing_s = "30"', r"timing\.landing_s = '30': must be a number without quotes, in s"),
+    ('labels = ["A", "B"]', 'labels = ["A", "a"]', r"participants\.labels: a appears 2 times"),
+    (
+        'labels = ["A", "B"]',
+        'labels = ["A", "B/.."]',
+        r"participants\.labels\.1 = 'B/\.\.': must have letters and digits",
+    ),
+    ('labels = ["A", "B"]', "", r"participants: give either count or labels"),
+    ('labels = ["A", "B"]', "count = 0", r"participants\.count = 0: must be at least 1"),
+    ('labels = ["A", "B"]', "count = 1000000", r"participants\.count = 1000000: must be at most 500"),
+    ('icons = ["dip", "glow"]', 'icons = ["dip", "dip"]', r"stimuli\.icons: dip appears 2 times"),
+    (
+        'icons = ["dip", "glow"]',
+        'icons = ["dip", "glwo"]',
+        r"stimuli\.icons: there is no icon glwo; did you mean glow\?",
+    ),
+    ('icons = ["dip", "glow"]', 'icons = ["dip"]', r"1 icon cannot be confused with another; .* needs 2 or more"),
+    ('name = "quick"', 'name = "../quick"', r"name = '\.\./quick': must have letters and digits alone"),
+    ('name = "quick"', "", r"name is missing; add it"),
+    ("format = 1", "format = 2", r"format = 2: must be 1"),
+    ("[timing]", '[run]\nstop_key = "space"\n[timing]', r"run: space is the key for two things"),
+    ("[timing]", '[run]\nmarker = "usb"\n[timing]', r"run\.marker = 'usb': must be none, serial:PORT"),
+    (
+        "[timing]",
+        '[threshold]\ndirection = "cool"\n[timing]',
+        r"give either \[trials\], for naming icons, or \[threshold\]",
+    ),
+    ('set = "two.cue"', "", r"stimuli\.set is missing; add a cue file"),
+    ('set = "two.cue"', 'set = "two.cue"\nformat = "wav"', r"stimuli\.format = 'wav': must be 'psychopy'"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "words"), FAULTS, ids=[new.replace("\n", " ") or old for old, new, _ in FAULTS])
+def test_a_fault_is_named_with_its_cure(old: str, new: str, words: str, tmp_path: Path) -> None:
+    assert old in QUICK
+    path = write_study(tmp_path, QUICK.replace(old, new, 1))
+    with pytest.raises(StudyError, match=words):
+        read_materials(path)
+
+
+def test_a_million_trials_are_refused_before_anything_is_simulated(tmp_path: Path) -> None:
+    many = QUICK.replace("repetitions = 2", "repetitions = 500").replace("blocks = 2", "blocks = 100")
+    with pytest.raises(StudyError, match=r"2 icons × \(100 blocks × 500 repetitions \+ 1 practice\) are 100,002 plays"):
+        read_materials(write_study(tmp_path, many))
+
+
+def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
+    text = QUICK.replace("repetitions = 2", "repetitions = 0").replace("gap_s = 10", "gap = 10")
+    with pytest.raises(StudyError) as problem:
+        read_materials(write_study(tmp_path, text))
+    lines = str(problem.value).splitlines()
+    assert len(lines) == 2
+    assert all(line.startswith(str(tmp_path / "study.toml")) for line in lines)
+
+
+def test_an_unknown_set_names_the_nearest(tmp_path: Path) -> None:
+    path = write_study(tmp_path, QUICK.replace("two.cue", "six-icon"))
+    with pytest.raises(CueErrors, match=r"six-icons"):
+        read_materials(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (QUICK.encode("utf-16"), r"binary file|not UTF-8 text"),
+        (
+            QUICK.replace("quick", "qüick").encode("latin-1"),
+            r"not UTF-8 text \(byte \d+\); save the study file as UTF-8",
+        ),
+        (b"", r"the file is empty; a study file was expected"),
+        (b"format = ", r"not a valid TOML file"),
+    ],
+    ids=["UTF-16", "Latin-1", "empty", "cut"],
+)
+def test_what_is_not_a_study_file_is_said(content: bytes, words: str, tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_bytes(content)
+    with pytest.raises(StudyError, match=words):
+        read_materials(path)
+
+
+def test_a_missing_study_is_said() -> None:
+    with pytest.raises(StudyError, match=r"nothing-here\.toml: no such study file"):
+        read_materials("nothing-here.toml")
+
+
+def test_a_threshold_takes_no_set() -> None:
+    text = 'format = 1\nname = "t"\n[stimuli]\nset = "six-icons"\n[participants]\ncount = 1\n[threshold]\n'
+    with pytest.raises(StudyError, match=r"leave out set and icons"):
+        parse_study(text + 'direction = "cool"\n', "t.toml")
+    with pytest.raises(StudyError, match=r"threshold\.least_K = 5 K is not below threshold\.most_K = 4 K"):
+        parse_study(text.replace('set = "six-icons"\n', "") + 'direction = "cool"\nleast_K = 5\n', "t.toml")
+
+
+def test_the_shipped_study_is_read_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    materials = read_materials("example.toml")
+    assert len(materials.chosen) == 6
+    assert labels_of(materials.study) == tuple(f"{k:02d}" for k in range(1, 13))
+    (tmp_path / "example.toml").write_text("format = 1\n", encoding="utf-8")
+    with pytest.raises(StudyError, match="name is missing"):  # a file of that name comes first
+        read_materials("example.toml")
+
+
+def test_the_seed_depends_on_everything_that_decides_a_study(tmp_path: Path) -> None:
+    first = read_materials(write_study(tmp_path, QUICK))
+    assert read_materials(tmp_path / "study.toml").seed == first.seed
+    commented = read_materials(write_study(tmp_path, "# a remark\n" + QUICK))
+    assert commented.seed == first.seed, "a comment decides nothing"
+    for change in (("gap_s = 10", "gap_s = 11"), ('labels = ["A", "B"]', 'labels = ["A", "C"]')):
+        assert read_materials(write_study(tmp_path, QUICK.replace(*change))).seed != first.seed
+    path = write_study(tmp_path, QUICK)
+    (tmp_path / "two.cue").write_text(
+        (tmp_path / "two.cue").read_text(encoding="utf-8").replace("2 °C/s; hold for 1 s", "1 °C/s; hold for 1 s"),
+        encoding="utf-8",
+    )
+    assert read_materials(path).seed != first.seed, "an icon decides too"
+
+
+def test_orders_follow_the_hash() -> None:
+    study = parse_study(study_text("example"), "example")
+    seed = seed_of(study_hash(study, {}))
+    names = tuple("abcdef")
+    courses = courses_of(study, names, seed)
+    assert courses == courses_of(study, names, seed)
+    assert [course.label for course in courses] == list(labels_of(study))
+    assert all([trial.trial for trial in course.trials if trial.block] == list(range(1, 13)) for course in courses)
+    assert all({trial.trial for trial in course.trials if not trial.block} == {0} for course in courses)
