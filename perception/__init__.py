@@ -12,7 +12,8 @@ from .identification.confusion import Confusion, confuse
 from .identification.measures import information_bits, proportion_correct
 from .observer.people import draw_people
 from .sensation.bench import Bench, Stimulus
-from .procedures.classical import choice_reaction_time, forced_choice, method_of_levels, method_of_limits, yes_no
+from .procedures.classical import choice_reaction_time, forced_choice, method_of_limits, yes_no
+from .procedures.levels import method_of_levels
 from .procedures.prepulse import CoolingAfterPulse, cooling_after_pulse
 from .procedures.psychometric import PsychometricFunction, psychometric_function
 from .procedures.rating import Ratings, magnitude_rating

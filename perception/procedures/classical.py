@@ -8,9 +8,8 @@ thresholds, conduction and decision, not in skin or touch.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from statistics import NormalDist
 
 import numpy as np
@@ -87,7 +86,7 @@ def forced_choice(
         channel,
         "K",
         size_reaching(log_peak, played.sizes_K, float(np.log(d_prime))),
-        f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {proportion:.3g} correct",
+        f"{said_of(bench, rate_K_per_s)}, held {hold_s:g} s, {proportion:.3g} correct",
     )
 
 
@@ -146,7 +145,7 @@ def yes_no(
         channel,
         "K",
         size_reaching(lambda k: played.reported(k, asked, crowd), played.sizes_K, hits),
-        f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, {hits:g} reported, criterion {asked.criterion:.2f} d′",
+        f"{said_of(bench, rate_K_per_s)}, held {hold_s:g} s, {hits:g} reported, criterion {asked.criterion:.2f} d′",
     )
 
 
@@ -192,7 +191,7 @@ def method_of_limits(
     """
     played, pressed = _half_answered(observer, bench, channel, rate_K_per_s, limit_K, people)
     each = change_at(pressed, played, bench, limit_K / rate_K_per_s)
-    return Measurement("method of limits", channel, "K", each, f"{_said(bench, rate_K_per_s)} up to {limit_K:g} K")
+    return Measurement("method of limits", channel, "K", each, f"{said_of(bench, rate_K_per_s)} up to {limit_K:g} K")
 
 
 def change_at(pressed_s: Array, played: Stimulus, bench: Bench, end_s: float) -> Array:
@@ -254,113 +253,8 @@ def ramp_responses(
     return played, _responses(played, observer, crowd_of(observer, bench.rig.site, people), choice_s=choice_s)
 
 
-def method_of_levels(
-    observer: Observer,
-    bench: Bench,
-    channel: Channel,
-    *,
-    rate_K_per_s: float = 1.0,
-    hold_s: float = 1.0,
-    first_K: float = 2.0,
-    last_K: float = 0.1,
-    runs: int = 100,
-    seed: int = 0,
-    people: People | None = None,
-) -> Measurement:
-    """Measure a threshold by a staircase of ramps: smaller after yes, larger after no, in steps halved at every turn.
-
-    A run ends when the step is below `last_K`, and counts the mean of its last reported and last unreported level.
-
-    Parameters
-    ----------
-    observer, bench, channel
-        The nominal person, what plays the ramps, and `cold` or `warm`.
-    rate_K_per_s
-        Rate of the ramps, K/s.
-    hold_s
-        How long each is held, s.
-    first_K
-        First level and first step, K.
-    last_K
-        Step below which a run ends, K.
-    runs
-        Runs of the nominal person; each of the people runs once.
-    seed
-        Seed of the answers.
-    people
-        Virtual people; None: the nominal person alone.
-
-    Returns
-    -------
-    Measurement
-        Threshold of each run, K; inf where even the largest ramp was not reported.
-
-    Raises
-    ------
-    ValueError
-        For no run, and for steps that are not above 0 with the last below the first.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig
-    >>> method_of_levels(Observer.load(), Bench(Rig.load("thenar")), "cold", runs=4).unit
-    'K'
-    """
-    if runs < 1 or not 0.0 < last_K < first_K:
-        raise ValueError(f"levels need a run and 0 < last_K < first_K, not {runs}, {last_K:g} and {first_K:g}")
-    played, crowd = ramps(bench, channel, rate_K_per_s, hold_s), crowd_of(observer, bench.rig.site, people)
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
-    reported = _at_any_level(cache(lambda k: played.reported(k, observer, crowd)), played.sizes_K)
-    largest, each = float(played.sizes_K[-1]), []
-    for person in range(len(crowd)):
-        each += [
-            _staircase(reported, person, largest, first_K, last_K, rng)
-            for _ in range(1 if people is not None else runs)
-        ]
-    conditions = f"{_said(bench, rate_K_per_s)}, held {hold_s:g} s, from {first_K:g} K down to steps of {last_K:g} K"
-    return Measurement("method of levels", channel, "K", np.array(each), conditions)
-
-
-def _at_any_level(at: Callable[[int], Array], sizes_K: Array) -> Callable[[float], Array]:
-    """Numbers of people (people,) at a level in K, on log size between the sizes that they are known for."""
-    logs = np.log(sizes_K)
-
-    @cache
-    def between(level: float) -> Array:
-        place = np.log(level)
-        k = int(np.clip(np.searchsorted(logs, place), 1, logs.size - 1))
-        pair = np.stack([at(k - 1), at(k)])
-        return np.array([np.interp(place, logs[k - 1 : k + 1], own) for own in pair.T])
-
-    return between
-
-
-def _staircase(
-    reported: Callable[[float], Array],
-    person: int,
-    largest_K: float,
-    first_K: float,
-    last_K: float,
-    rng: np.random.Generator,
-) -> float:
-    """One run over the probability of a report at a level in K; inf when the largest level stays unreported."""
-    level, step, last = first_K, first_K, {True: np.inf, False: 0.0}
-    before: bool | None = None
-    while step >= last_K:
-        yes = bool(rng.random() < reported(level)[person])
-        if not yes and level >= largest_K:
-            return float(np.inf)
-        step = 0.5 * step if before is not None and yes != before else step
-        last[yes], before = level, yes
-        nearer = level - step if yes else min(level + step, largest_K)
-        while nearer <= 0.0:
-            step *= 0.5
-            nearer = level - step
-        level = nearer
-    return 0.5 * (last[True] + last[False])
-
-
-def _said(bench: Bench, rate_K_per_s: float) -> str:
+def said_of(bench: Bench, rate_K_per_s: float) -> str:
+    """What was played, in words."""
     return f"{rate_K_per_s:g} K/s at the {bench.surface} from {bench.baseline_C:g} °C on {bench.rig.name}"
 
 

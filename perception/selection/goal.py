@@ -102,7 +102,22 @@ class GoalPart:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """What is wanted of a set; parts of different quantities, in the order in which they were given.
+    """What is wanted of a set.
+
+    Attributes
+    ----------
+    parts
+        Its parts, about different quantities or shares of people, in the order in which they were given.
+
+    Raises
+    ------
+    GoalError
+        For two parts about the same.
+
+    See Also
+    --------
+    rank : Judges a set by a goal.
+    search : Looks for a set that meets one.
 
     Examples
     --------

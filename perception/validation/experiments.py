@@ -20,7 +20,8 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..observer.variants import Model, Variable
-from ..procedures.classical import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
+from ..procedures.classical import choice_reaction_time, forced_choice, method_of_limits
+from ..procedures.levels import method_of_levels
 from ..sensation.bench import Bench, ramp
 from .predicted import DRAWS, Asked, Predicted, predict
 
