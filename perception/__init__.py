@@ -32,6 +32,8 @@ from .identification.task import Task
 from .ranking.rank import rank
 from .ranking.frontier import Frontier, frontier
 from .identification.map import PerceptualMap, map_of, perceptual_map
+from .pilot.observed import observed
+from .pilot.plan import plan
 from .sensitivity.sensitivity import Sensitivity, sensitivity
 from .validation.validate import ValidationReport, validate
 from .identification.delivered import PerceivedChange, judge_delivered
@@ -74,6 +76,8 @@ __all__ = [
     "perceptual_map",
     "map_of",
     "PerceptualMap",
+    "observed",
+    "plan",
     "sensitivity",
     "Sensitivity",
     "validate",

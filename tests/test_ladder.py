@@ -18,7 +18,7 @@ LADDER = {
     "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "fitting", "studies"),
     "perception": (
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
-        *("comparison", "selection", "ranking", "sensitivity", "validation"),
+        *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),
     ),
     "notebooks": ("text", "files", "figures", "pages", "study", "cli", "workbench"),
 }

@@ -71,7 +71,7 @@ def export_command(
         _alone(file, {**options, "--rig": rig, "--set": changes})
         if force or tail:
             raise usage("takes no other argument; leave out --force and --tail", "--verify")
-        from .verifying import verify_folder
+        from ..files.verifying import verify_folder
 
         verify_folder(verify)
         return

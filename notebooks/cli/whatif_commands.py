@@ -145,8 +145,8 @@ def compare_command(
     .csv or .parquet files with time_s and columns of a trace.
     """
     check_changes(changes or [])
+    from ..text.compare_inputs import Request
     from .compare import compare
-    from .compare_inputs import Request
 
     compare(first, second, Request(file, icon, rig, tuple(changes or ()), align), figure)
 

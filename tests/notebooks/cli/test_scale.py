@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli import cache
+from thermicon.notebooks.files import cache
 
 Cli = Callable[..., Any]
 

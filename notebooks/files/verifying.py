@@ -10,10 +10,10 @@ import typer
 
 from thermicon.icons.number_text import number, span
 
-from ..files.export_folder import STAGE
-from ..files.outputs import OutputError
 from ..text.messages import BAD_INPUT, note
 from ..text.tables import show, table
+from .export_folder import STAGE
+from .outputs import OutputError
 
 if TYPE_CHECKING:
     from thermicon.circuit.packing.readback import Figures

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from thermicon.circuit.userfolder import cache_folder, private_folder
 
-from ..files.outputs import check_folder
+from .outputs import check_folder
 
 LONG_PAIRS = 30_000
 """Icons × people from which parts are kept without being asked to: below it, to start again takes seconds."""

@@ -1,0 +1,167 @@
+"""What ``thermicon observed`` prints: answers beside their prediction, and the prediction before and after."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermicon.icons.number_text import percent, percent_span, seconds, signed
+
+from .tables import show, table
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from thermicon.perception.pilot.answers import AnswerScore
+    from thermicon.perception.pilot.fit import Fit
+    from thermicon.perception.pilot.observed import Observed
+
+MOST_PEOPLE, MOST_PAIRS, MOST_CONSTANTS = 20, 8, 8
+POOR = 0.05
+
+
+def show_observed(found: Observed, files: Sequence[str]) -> None:
+    """Print what was observed, how it fits, and what the predictions of all sets become."""
+    title = found.predictions[0].before.title
+    show(
+        *([title, ""] if title else []),
+        people_table(found),
+        "",
+        *observed_sentences(found),
+        "",
+        *fit_sentences(found),
+        "",
+        sets_table(found, files),
+        "",
+        *draws_sentences(found),
+    )
+
+
+def people_table(found: Observed) -> Table:
+    """One row per participant and one for all: trials, per cent correct, bits, median time."""
+    timed = not math.isnan(found.pooled.time_s)
+    columns = ["", "trials", "correct", "95 %", "bits", "95 %", "further trials"] + ["time"] * timed
+    made = table(*columns, numbers=("trials", "correct", "bits", "time"))
+    for score, own in list(zip(found.each, found.own, strict=True))[:MOST_PEOPLE]:
+        made.add_row(*_row(score, timed, f"{percent(own[0])} ({percent_span(own[1], own[2])})"))
+    if (more := len(found.each) - MOST_PEOPLE) > 0:
+        made.add_row(f"and {more} more", *[""] * (len(columns) - 1))
+    made.add_row(*_row(found.pooled, timed, ""))
+    return made
+
+
+def _row(score: AnswerScore, timed: bool, own: str) -> list[str]:
+    low, high = score.bits_interval
+    time = seconds(None if math.isnan(score.time_s) else score.time_s)
+    cells = [score.who, str(score.trials), percent(score.proportion_correct), percent_span(*score.proportion_interval)]
+    cells += [f"{score.bits:.2f}", f"{low:.2f}–{high:.2f}", own]
+    return cells + [time] * timed
+
+
+def observed_sentences(found: Observed) -> list[str]:
+    """Bias of the bits, and what the answers do not cover."""
+    pooled, trials = found.pooled, found.trials
+    lines = [
+        f"Bits are corrected for bias (Miller–Madow): the plug-in estimate of the pooled answers is "
+        f"{pooled.bits_plugin:.2f} bits, {pooled.bits_bias:.2f} too many by that formula; "
+        "with few trials some bias is left. Further trials: predicted for the same participant."
+    ]
+    if trials.never_presented:
+        lines.append(
+            f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
+            "per cent correct is that of the others."
+        )
+    if trials.single_trial:
+        lines.append(f"One trial only: {', '.join(trials.single_trial)}; it counts, but shows no spread.")
+    return lines
+
+
+def fit_sentences(found: Observed) -> list[str]:
+    """The test of fit before and after, and the pairs that were missed."""
+    fit, pooled = found.fit, found.pooled
+    middle, low, high = fit.proportion_correct
+    bits, least, most = fit.bits_plugin
+    lines = [
+        f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
+        f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {pooled.bits_plugin:.2f} "
+        "bits.",
+        f"Test of fit (posterior predictive): p = {_p(fit.p)} before, {_p(found.fit_after.p)} after the answers were "
+        f"used{_verdict(found)}",
+    ]
+    if fit.p_people is not None:
+        lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
+    return lines + pair_lines(fit)
+
+
+def pair_lines(fit: Fit) -> list[str]:
+    """The missed pairs as a list, and how many are expected by chance."""
+    missed, chance = fit.missed, 0.05 * len(fit.pairs)
+    if not missed:
+        return [f"No pair was missed: all {len(fit.pairs)} lie within their predicted 95 %."]
+    lines = [f"Pairs outside their predicted 95 % ({len(missed)} of {len(fit.pairs)}; about {chance:.1f} by chance):"]
+    for pair in missed[:MOST_PAIRS]:
+        more = "more" if pair.observed > pair.predicted else "less"
+        lines.append(
+            f"  - {pair.a} and {pair.b}: confused {more} than predicted, in {percent(pair.observed)} of {pair.trials} "
+            f"trials; predicted {percent(pair.predicted)} ({percent_span(*pair.interval)})"
+        )
+    return lines + [f"  - and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)
+
+
+def _p(p: float) -> str:
+    return "under 0.01" if p < 0.01 else f"{p:.2f}"
+
+
+def _verdict(found: Observed) -> str:
+    if found.fit_after.p < POOR:
+        return ": the model cannot explain these answers, not even with other constants; trust the answers"
+    if found.fit.p < POOR:
+        return ": the prediction missed, but laboratories that the evidence allows explain the answers"
+    return ": the answers are what the prediction allows"
+
+
+def sets_table(found: Observed, files: Sequence[str]) -> Table:
+    """Each set before and after: per cent correct and bits of people who did not take part."""
+    made = table("set", "", "correct", "95 %", "bits", "95 %", "narrower", numbers=("correct", "bits", "narrower"))
+    for file, each in zip(files, found.predictions, strict=True):
+        for when, one in (("before", each.before), ("after", each.after)):
+            (share, low, high), (bits, least, most) = one.proportion_correct, one.information_bits
+            made.add_row(
+                Path(file).name if when == "before" else "",
+                when,
+                percent(share),
+                percent_span(low, high),
+                f"{bits:.2f}",
+                f"{least:.2f}–{most:.2f}",
+                f"{each.narrower:.2f} ×" if when == "after" else "",
+            )
+    return made
+
+
+def draws_sentences(found: Observed) -> list[str]:
+    """How many draws carry the result, and which constants moved."""
+    conditioned = found.conditioned
+    people = found.predictions[0].after.people
+    lines = [
+        f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of laboratories."
+    ]
+    carried = f"effective sample size {conditioned.effective:.0f} of {len(conditioned.before)} draws"
+    if conditioned.rounds:
+        carried += (
+            f", too few to be weighted: {len(conditioned.after)} fresh laboratories were sampled in "
+            f"{conditioned.rounds} rounds by their pooled answers"
+        )
+    lines.append(f"The answers weigh the draws: {carried}.")
+    if not found.constants:
+        return [*lines, "No constant moved by more than chance."]
+    lines.append("What moved or narrowed most (median and 95 %, before → after):")
+    for each in found.constants[:MOST_CONSTANTS]:
+        lines.append(f"  - {each.name}: {_three(each.before)} → {_three(each.after)}")
+    return lines
+
+
+def _three(ends: tuple[float, float, float]) -> str:
+    middle, low, high = (signed(end, ".3g") for end in ends)
+    return f"{middle} ({low} to {high})"

@@ -1,0 +1,102 @@
+"""What ``thermicon plan`` prints: sizes of experiments and what each gives, and the icons to pilot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from thermicon.icons.number_text import number, percent, percent_span
+
+from .tables import show, table
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from thermicon.perception.pilot.plan import Design, Plan
+
+MOST_LISTED = 12
+CLEAR = 2.0
+"""A list is called better than random ones where it is so many SDs of them better."""
+
+
+def show_plan(found: Plan, names: Sequence[str]) -> None:
+    """Print predictions, designs, the one to take, and the pilot."""
+    show(*prediction_lines(found, names), "", designs_table(found), "", *design_lines(found), "", *pilot_lines(found))
+
+
+def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
+    """What is predicted before any answer."""
+    lines = []
+    for name, each in zip(names, found.predictions, strict=True):
+        share, low, high = each.proportion_correct
+        lines.append(f"{name}: {percent(share)} correct, 95 % of laboratories {percent_span(low, high)}")
+    if found.difference is not None:
+        points = [number(100 * value) for value in found.difference]
+        lines.append(f"Difference of the two: {points[0]} points, 95 % of laboratories {points[1]} to {points[2]}")
+    return lines
+
+
+def designs_table(found: Plan) -> Table:
+    """Participants down, trials across: width of the interval, or share of experiments that distinguish the sets."""
+    trials = sorted({each.trials for each in found.designs})
+    headings = [f"{each} trials" for each in trials]
+    made = table("participants", *headings, numbers=headings)
+    for people in sorted({each.participants for each in found.designs}):
+        own = {each.trials: each for each in found.designs if each.participants == people}
+        made.add_row(str(people), *(_cell(found, own[each]) for each in trials))
+    return made
+
+
+def _cell(found: Plan, design: Design) -> str:
+    text = f"{100 * design.width:.1f}" if design.found is None else percent(design.found)
+    return f"{text} *" if found.enough(design) else f"{text}  "
+
+
+def design_lines(found: Plan) -> list[str]:
+    """What the table shows, and which size to take."""
+    best = found.cheapest
+    if found.difference is None:
+        wanted = f"an interval of {number(100 * found.wanted)} points or less"
+        lines = [f"Mean width of the 95 % interval of the per cent correct, in points; * marks {wanted}."]
+    else:
+        wanted = f"{percent(found.wanted)} of experiments distinguish the sets"
+        wrong = max(each.wrong or 0.0 for each in found.designs)
+        lines = [
+            "Share of experiments that distinguish the two sets in the right direction (paired t test at 5 %, every "
+            f"participant names both); * marks {percent(found.wanted)} or more. At most {percent(wrong)} find the "
+            "wrong direction."
+        ]
+    if best is None:
+        lines.append(
+            f"None of these sizes is enough: {wanted} needs more"
+            + (
+                ", or cannot be had where the sets hardly differ in many laboratories that the evidence allows: pilot "
+                "first."
+                if found.difference is not None
+                else " participants or trials; try larger --participants."
+            )
+        )
+    else:
+        lines.append(
+            f"Fewest trials: {best.participants} participants with {best.trials} trials each"
+            f"{' of each set' if found.difference is not None else ''}."
+        )
+    return lines
+
+
+def pilot_lines(found: Plan) -> list[str]:
+    """The trial list of the pilot, and what it is expected to be worth."""
+    pilot, what = found.pilot, "difference" if found.difference is not None else "per cent correct"
+    named = list(pilot.presented.items())
+    lines = [f"Pilot with one participant, {pilot.length} presentations in random order:"]
+    lines += [f"  - {name}: {times} ×" for name, times in named[:MOST_LISTED]]
+    lines += [f"  - and {len(named) - MOST_LISTED} more icons, see --json"] * (len(named) > MOST_LISTED)
+    average, spread = pilot.sd_random
+    lines.append(
+        f"Expected SD of the {what} between laboratories, in points: {100 * pilot.sd_before:.2f} now, "
+        f"{100 * pilot.sd:.2f} after this list, {100 * average:.2f} after a random list, {100 * pilot.sd_even:.2f} "
+        "after one that presents all icons alike."
+    )
+    if average - pilot.sd < CLEAR * spread:
+        lines.append("The choice hardly matters here: random lists of that length narrow the answer about as much.")
+    return lines

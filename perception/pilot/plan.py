@@ -1,0 +1,275 @@
+"""Plan an experiment: how many participants and trials it needs, and which icons to pilot, by simulating all of it.
+
+Every simulated experiment takes place in another laboratory that the evidence allows. Participants are drawn from its
+people, each names every set, and the mean over participants is reported with Student's 95 % interval; two sets are
+compared within participants by the paired t test.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermicon.circuit.program import own_version
+
+from ..arrays import Array
+from ..observer.channels import USUAL_NORM, check_norm
+from ..observer.observer_model import ObserverModel
+from .observed import LEAST_DRAWS
+from .playing import Confusions, laboratories_for, stage
+from .prediction import SetPrediction, Three, three
+from .states import LaboratoryPrior
+from .trial_list import TrialList, best_list, steps_of
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+
+DRAWS, EXPERIMENTS = 300, 600
+PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
+MOST_PARTICIPANTS, MOST_TRIALS = 500, 5000
+POWER, WIDTH, LENGTH = 0.8, 0.10, 20
+Whole = NDArray[np.int64]
+FEWEST = 2
+"""Participants that an interval over participants needs."""
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """An experiment of so many participants and trials (each, of each set), and what it is expected to give.
+
+    `width` is the mean width of the 95 % interval of the proportion correct; with two sets `found` is the share of
+    experiments that distinguish them in the right direction, `wrong` in the wrong one, and `width` is that of the
+    difference.
+    """
+
+    participants: int
+    trials: int
+    width: float
+    found: float | None = None
+    wrong: float | None = None
+
+    @property
+    def total(self) -> int:
+        """Trials of all participants, of one set."""
+        return self.participants * self.trials
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        own = {"participants": self.participants, "trials": self.trials, "interval_width": self.width}
+        return own if self.found is None else {**own, "found": self.found, "wrong": self.wrong}
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Designs that were simulated, and the one to take.
+
+    Attributes
+    ----------
+    predictions
+        The prediction of each set.
+    difference
+        Proportion correct of the first set less that of the second: mean and 95 % of laboratories (None: one set).
+    designs
+        All of them, by participants and trials.
+    wanted
+        What was asked for: the power of two sets, or the width of the interval of one.
+    pilot
+        The trial list that is expected to narrow the answer most.
+    """
+
+    predictions: tuple[SetPrediction, ...]
+    difference: Three | None
+    designs: tuple[Design, ...]
+    wanted: float
+    pilot: TrialList
+    rig: str
+    rig_changes: tuple[str, ...]
+    norm: str
+    seed: int
+    draws: int
+    version: str
+
+    def enough(self, design: Design) -> bool:
+        """Whether a design gives what was asked for."""
+        return design.width <= self.wanted if design.found is None else design.found >= self.wanted
+
+    @property
+    def cheapest(self) -> Design | None:
+        """The design of the fewest trials that gives what was asked for, of equal ones that of fewer participants."""
+        good = [each for each in self.designs if self.enough(each)]
+        return min(good, key=lambda each: (each.total, each.participants)) if good else None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Every number as plain data."""
+        cheapest = self.cheapest
+        return {
+            "version": self.version,
+            "rig": self.rig,
+            "rig_changes": list(self.rig_changes),
+            "norm": self.norm,
+            "seed": self.seed,
+            "draws": self.draws,
+            "sets": [{"title": each.title, **each.to_dict()} for each in self.predictions],
+            "difference": None if self.difference is None else list(self.difference),
+            "wanted": {"power" if self.difference is not None else "interval_width": self.wanted},
+            "designs": [each.to_dict() for each in self.designs],
+            "cheapest": None if cheapest is None else cheapest.to_dict(),
+            "pilot": self.pilot.to_dict(self.seed),
+        }
+
+    def to_json(self) -> str:
+        """Every number as JSON text."""
+        return json.dumps(self.to_dict(), ensure_ascii=False, indent=1)
+
+    def __repr__(self) -> str:
+        best = self.cheapest
+        how = "none is enough" if best is None else f"{best.participants} participants × {best.trials} trials"
+        return f"Plan({len(self.predictions)} set{'s' * (len(self.predictions) > 1)}: {how})"
+
+
+def plan(
+    icons: IconSet,
+    rig: Rig,
+    other: IconSet | None = None,
+    *,
+    participants: Sequence[int] = PARTICIPANTS,
+    trials: Sequence[int] = TRIALS,
+    wanted: float | None = None,
+    length: int = LENGTH,
+    draws: int = DRAWS,
+    seed: int = 0,
+    norm: str = USUAL_NORM,
+    tracking: str | None = None,
+    observer: ObserverModel | Path | str | None = None,
+    progress: Progress | None = None,
+) -> Plan:
+    """Simulate experiments of several sizes, and choose the icons of a pilot.
+
+    Parameters
+    ----------
+    icons, rig, norm, tracking
+        As in `rank`.
+    other
+        A second set, to be distinguished from the first by its proportion correct.
+    participants, trials
+        Sizes to try: participants, and trials of each participant with each set.
+    wanted
+        Power (two sets, None: 0.8), or width of the 95 % interval of the proportion correct (one set, None: 0.1).
+    length
+        Presentations of the pilot to one participant.
+    draws
+        Draws of the posterior, each with a laboratory around it.
+    seed
+        Seed of all chance.
+    observer
+        A table of posterior draws, such as `observed` keeps, or a model that has one (None: the shipped draws).
+    progress
+        Called with (steps done, steps in all).
+
+    Returns
+    -------
+    Plan
+        The same numbers for the same arguments.
+
+    Raises
+    ------
+    ValueError
+        For sizes, draws or a wish out of range, and for a set of fewer than 2 or more than 64 icons.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> found = plan(read_cue("six-icons"), Rig.load("thenar"), participants=[4, 40], trials=[24], draws=20, length=2)
+    >>> found.designs[1].width < found.designs[0].width, found.pilot.length
+    (True, 2)
+    """
+    _check(participants, trials, wanted, draws)
+    sets = [icons] if other is None else [icons, other]
+    prior = LaboratoryPrior.of(observer, check_norm(norm))
+    number = laboratories_for(max(2, *(len(list(each)) for each in sets), 2), draws)
+    laboratories, done = prior.first(number, seed), 0
+    total = number * len(sets) + len(participants) * len(trials) + steps_of(max(length, 1))
+
+    def step() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, total)
+
+    played = [stage(each, rig, prior, seed=seed, tracking=tracking).confusions(laboratories, step) for each in sets]
+    apart = None if other is None else played[0].correct - played[1].correct
+    designs = []
+    for k, people in enumerate(participants):
+        for j, times in enumerate(trials):
+            designs.append(_simulated(played, people, times, np.random.SeedSequence([seed, 24, k, j])))
+            step()
+    target = played[0].correct if apart is None else apart
+    return Plan(
+        predictions=tuple(SetPrediction.of(each.title, one) for each, one in zip(sets, played, strict=True)),
+        difference=None if apart is None else three(apart),
+        designs=tuple(designs),
+        wanted=wanted if wanted is not None else (WIDTH if other is None else POWER),
+        pilot=best_list(played[0], target, length, seed=seed, step=step),
+        rig=rig.name,
+        rig_changes=tuple(rig.changes),
+        norm=norm,
+        seed=seed,
+        draws=number,
+        version=own_version(),
+    )
+
+
+def _check(participants: Sequence[int], trials: Sequence[int], wanted: float | None, draws: int) -> None:
+    if not participants or not trials:
+        raise ValueError("at least one number of participants and one of trials are needed")
+    if not all(FEWEST <= each <= MOST_PARTICIPANTS for each in participants):
+        raise ValueError(f"participants must be {FEWEST} to {MOST_PARTICIPANTS}, since one alone shows no spread")
+    if not all(1 <= each <= MOST_TRIALS for each in trials):
+        raise ValueError(f"trials of a participant must be 1 to {MOST_TRIALS}")
+    if wanted is not None and not 0.0 < wanted < 1.0:
+        raise ValueError(f"what is wanted, {wanted:g}, must lie between 0 and 1: a power, or a width of proportions")
+    if draws < LEAST_DRAWS:
+        raise ValueError(f"at least {LEAST_DRAWS} draws are needed, not {draws}")
+
+
+def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: np.random.SeedSequence) -> Design:
+    """One size of experiment, simulated in one laboratory after the other."""
+    from scipy.stats import t
+
+    rng = np.random.default_rng(stream)
+    laboratories, crowd = played[0].probability.shape[:2]
+    where = np.arange(EXPERIMENTS) % laboratories
+    invited = rng.integers(crowd, size=(EXPERIMENTS, people))
+    shares = [_shares(one, where, invited, trials, rng) for one in played]
+    each = shares[0] if len(shares) == 1 else shares[0] - shares[1]
+    half = float(t.ppf(0.975, people - 1)) * each.std(axis=1, ddof=1) / np.sqrt(people)
+    if len(shares) == 1:
+        middle = each.mean(axis=1)
+        width = np.minimum(middle + half, 1.0) - np.maximum(middle - half, 0.0)
+        return Design(people, trials, float(width.mean()))
+    truth = (played[0].correct - played[1].correct)[where]
+    shown = np.abs(each.mean(axis=1)) > half
+    right = np.sign(each.mean(axis=1)) == np.sign(truth)
+    return Design(
+        people, trials, float(2.0 * half.mean()), float((shown & right).mean()), float((shown & ~right).mean())
+    )
+
+
+def _shares(one: Confusions, where: Whole, invited: Whole, trials: int, rng: np.random.Generator) -> Array:
+    """Proportion correct (experiments, participants) of presentations as even as possible."""
+    icons = len(one.icons)
+    chances = np.diagonal(one.probability, axis1=2, axis2=3)[where[:, None], invited].astype(np.float64)
+    shown = np.full(chances.shape, trials // icons)
+    if rest := trials % icons:
+        shown += rng.random(chances.shape).argsort(axis=-1) < rest
+    found: Array = rng.binomial(shown, np.minimum(chances, 1.0)).sum(axis=-1) / trials
+    return found

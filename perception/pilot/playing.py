@@ -1,0 +1,140 @@
+"""How people of many laboratories name the icons of a set: confusions of every person of every laboratory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..identification.laboratory_draws import EVERY, people_for_intervals
+from ..identification.measures import information_bits
+from ..identification.population import ReceptorTemperatures, identify, respond
+from ..kernels.parallel import in_order
+from ..observer.people import draw_people
+from ..ranking.batches import PROBES, RATE_HZ
+from ..ranking.rank import TAIL_S
+from .states import Laboratories, LaboratoryPrior
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+
+Small = NDArray[np.float32]
+SAMPLES = 256
+"""Presentations of an icon to a person; a cell of one person has a standard error of at most 0.03."""
+LEAST_PROBABILITY = 1e-4
+"""No answer is less likely than this, whatever the lapses of a person: one odd answer must not rule out a draw."""
+MOST_CELLS = 60_000_000
+"""Cells of all confusions together, four bytes each; of larger sets fewer laboratories are simulated."""
+MOST_ICONS = 64
+"""More names than this nobody learns for an experiment."""
+
+
+@dataclass(frozen=True, slots=True)
+class Confusions:
+    """Confusions `probability` (laboratories, people, icons, icons) in single precision, and the names of the icons."""
+
+    icons: tuple[str, ...]
+    probability: Small
+
+    @property
+    def correct(self) -> Array:
+        """Proportion correct of every laboratory, as the mean over its people."""
+        found: Array = self.each_correct.mean(axis=1)
+        return found
+
+    @property
+    def each_correct(self) -> Array:
+        """Proportion correct of every person (laboratories, people)."""
+        found: Array = np.trace(self.probability, axis1=2, axis2=3, dtype=np.float64) / len(self.icons)
+        return found
+
+    @property
+    def bits(self) -> Array:
+        """Information of every laboratory, as the mean over its people."""
+        return np.array([float(information_bits(each).mean()) for each in self.probability])
+
+    @property
+    def pooled(self) -> Array:
+        """Mean over people (laboratories, icons, icons)."""
+        found: Array = self.probability.mean(axis=1, dtype=np.float64)
+        return found
+
+    def of(self, which: NDArray[np.int64]) -> Confusions:
+        """Those of some laboratories."""
+        return replace(self, probability=self.probability[which])
+
+    def joined(self, other: Confusions) -> Confusions:
+        """These and those of further laboratories."""
+        return replace(self, probability=np.concatenate([self.probability, other.probability]))
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A set played to the skins of some people; `confusions` then asks people of any laboratory."""
+
+    icons: tuple[str, ...]
+    played: ReceptorTemperatures
+    prior: LaboratoryPrior
+    skins: tuple[Array, Array]
+
+    @property
+    def people(self) -> int:
+        """Number of virtual people of each laboratory."""
+        return len(self.played.cold_C)
+
+    def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
+        """How the people of each laboratory name the icons; `step` is called after each."""
+        values, prior = self.prior.values(some), self.prior
+
+        def one(k: int) -> Small:
+            observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.people)
+            people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
+            felt = respond(self.played, people, observer, [prior.norm], detection=False)
+            named = identify(felt, prior.norm, people, observer, int(some.seed[k]), SAMPLES)[1].probability
+            return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
+
+        found = np.empty((len(some), self.people, len(self.icons), len(self.icons)), dtype=np.float32)
+        for k, each in enumerate(in_order(one, range(len(some)))):
+            found[k] = each
+            if step is not None:
+                step()
+        found /= found.sum(axis=-1, keepdims=True)
+        return Confusions(self.icons, found)
+
+
+def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tracking: str | None = None) -> Stage:
+    """Play a set to as many people as the intervals need, each on skin and contact of their own.
+
+    Raises ValueError for fewer than two icons and for more than 64.
+    """
+    from thermicon.circuit import duration_s, simulate_many
+
+    members = list(icons)
+    if not 2 <= len(members) <= MOST_ICONS:
+        raise ValueError(
+            f"an identification experiment needs 2 to {MOST_ICONS} icons, not {len(members)}: put the icons that were "
+            "presented into a set of their own"
+        )
+    crowd = draw_people(people_for_intervals(len(members)), seed)
+    end = math.ceil((max(duration_s(icon, rig) for icon in members) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    batch = simulate_many(
+        members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ / EVERY, tracking=tracking, probes=PROBES
+    )
+    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    names = tuple(icon.name for icon in members)
+    return Stage(names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
+
+
+def laboratories_for(icons: int, wanted: int) -> int:
+    """How many of the wanted laboratories fit into memory for a set of this size.
+
+    >>> laboratories_for(6, 1000)
+    1000
+    """
+    return min(wanted, MOST_CELLS // (people_for_intervals(icons) * icons**2))

@@ -1,0 +1,138 @@
+"""Laboratories that the evidence allows: constants, memory, an offset of the laboratory, and the people in it.
+
+A laboratory is one draw θ of the posterior, memory m drawn from its intervals, an offset δ of its sensitivity, and a
+seed of its people. All but the seed are kept in coordinates in which the prior is standard normal, so that they can be
+moved without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermicon.circuit.records import Table
+
+from ..arrays import Array
+from ..inference.posterior import Posterior
+from ..inference.priors import Prior
+from ..observer.channels import CHANNELS, Norm
+from ..observer.draws import LABORATORIES, PosteriorDraws
+from ..observer.observer import Observer
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People, draw_people
+from ..sensation.memory_parameters import memory_parameters, with_memory
+from ..sensation.parameters import ObserverParameter, latin
+
+LEAST_VARIANCE = 1e-12
+OFFSETS = tuple(f"sensitivity of the laboratory, {channel}" for channel in CHANNELS)
+OUTERMOST = 1e-9
+"""Shares of an interval of memory stay this far within it, so that their normal scores are finite."""
+SEEDS = 2**31
+
+
+@dataclass(frozen=True, slots=True)
+class Laboratories:
+    """Some laboratories: `place` (n, coordinates) in which the prior is standard normal, `seed` (n,) of their people.
+
+    Columns of `place` are constants first, then memory, then the offsets of cold and warm.
+    """
+
+    place: Array
+    seed: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        if self.place.ndim != 2 or self.seed.shape != (len(self.place),):
+            raise ValueError("laboratories need one row of coordinates and one seed each")
+
+    def __len__(self) -> int:
+        return len(self.place)
+
+    def of(self, which: NDArray[np.int64]) -> Laboratories:
+        """Some of them, by number."""
+        return Laboratories(self.place[which], self.seed[which])
+
+
+class LaboratoryPrior:
+    """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
+
+    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones).
+
+    >>> prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
+    >>> some = prior.first(50, seed=0)
+    >>> len(some), prior.constants(some).shape == (50, len(prior.draws.names))
+    (50, True)
+    """
+
+    def __init__(self, draws: PosteriorDraws, norm: Norm, records: Table | None = None) -> None:
+        self.draws, self.norm = draws, norm
+        self.memory: tuple[ObserverParameter, ...] = memory_parameters(norm, records=records)
+        known = {prior.name: prior for prior in Posterior(*draws.variant).priors.each}
+        self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
+        places = np.array([[p.to_place(v) for p, v in zip(self._scales, row, strict=True)] for row in draws.draws])
+        self._middle = places.mean(axis=0)
+        off = places - self._middle
+        values, vectors = np.linalg.eigh(off.T @ off / max(len(off) - 1, 1))
+        values = np.where(values > LEAST_VARIANCE, values, 0.0)
+        turned = np.divide(1.0, np.sqrt(values), out=np.zeros_like(values), where=values > 0.0)
+        # Symmetric roots keep each coordinate near its own constant, which the surrogate of the likelihood relies on.
+        self._spread = (vectors * np.sqrt(values)) @ vectors.T
+        self._whitened = off @ ((vectors * turned) @ vectors.T)
+        self.base = Observer.load(variable=draws.variant[0], model=draws.variant[1])
+
+    @classmethod
+    def of(cls, observer: ObserverModel | Path | str | None, norm: Norm) -> LaboratoryPrior:
+        """From a model, a file of draws, or the shipped draws; a ValueError for an observer without draws."""
+        model = ObserverModel.of(observer)
+        if model.posterior is None:
+            raise ValueError(
+                f"{model.name} has no posterior draws, from which laboratories are made: give a table of draws (.csv)"
+            )
+        return cls(model.posterior, norm, model.records)
+
+    @property
+    def dimensions(self) -> int:
+        """Number of coordinates."""
+        return len(self._scales) + len(self.memory) + len(CHANNELS)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the constants, of memory, and of the offsets, as `values` has them."""
+        return (*self.draws.names, *(parameter.name for parameter in self.memory), *OFFSETS)
+
+    def first(self, n: int, seed: int) -> Laboratories:
+        """The draws themselves, evenly spaced (over and over where n is larger), each with a laboratory around it."""
+        total = len(self.draws)
+        chosen = np.arange(n) % total if n > total else np.linspace(0, total - 1, n).round().astype(np.int64)
+        rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
+        shares = np.clip(latin(len(self.memory), n, seed), OUTERMOST, 1.0 - OUTERMOST)
+        normal = np.array([NormalDist().inv_cdf(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
+        offsets = rng.standard_normal((n, len(CHANNELS)))
+        return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n))
+
+    def constants(self, some: Laboratories) -> Array:
+        """Constants (n, constants) in their own units, in the order of the draws."""
+        places = self._middle + some.place[:, : len(self._scales)] @ self._spread
+        return np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in places.tolist()])
+
+    def values(self, some: Laboratories) -> Array:
+        """Constants, memory in its own units, and offsets (ln), (n, names)."""
+        constants, first = self.constants(some), len(self._scales)
+        scores = some.place[:, first : first + len(self.memory)]
+        memory = np.array(
+            [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]
+        ).reshape(len(some), len(self.memory))
+        spread = constants[:, self.draws.names.index(LABORATORIES)]
+        return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
+
+    def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
+        """The observer of one laboratory, by a row of `values`, and people who come there."""
+        from ..observer.from_draw import observer_with
+
+        named = dict(zip(self.names, values.tolist(), strict=True))
+        observer = with_memory(observer_with(self.base, named), named, self.norm)
+        crowd = draw_people(people, seed, spreads=named)
+        return observer, crowd.less_sensitive(*(-named[name] for name in OFFSETS))

@@ -1,0 +1,144 @@
+"""``thermicon observed`` and ``thermicon plan``: tables for people, files for scripts, and clear refusals."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.perception.observer.draws import PosteriorDraws
+
+Cli = Callable[..., Any]
+QUICK = ("--draws", 24)
+
+
+@pytest.fixture
+def answers(tmp_path: Path) -> Path:
+    path = tmp_path / "trials.csv"
+    rows = ["participant,trial,presented,responded,time_s"]
+    for person in ("ann", "bob", "cem"):
+        for k in range(6):
+            shown = "cool-step" if k % 2 else "warm-step"
+            rows.append(f"{person},{k},{shown},{'warm-step' if person == 'bob' and k == 1 else shown},{1.5 + k}")
+    path.write_text("\n".join([*rows, "dan,1,cool-step,cool-step,"]) + "\n", encoding="utf-8")
+    return path
+
+
+def test_observed_prints_writes_and_keeps(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
+    out, lab, picture = tmp_path / "out.json", tmp_path / "lab.toml", tmp_path / "out.png"
+    said = cli(
+        "observed", answers, two, *QUICK, "--for", "six-icons", "--json", out, "--keep", lab, "--figure", picture
+    )
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert words.startswith("Two for a test trials correct 95 % bits 95 % further trials time ")
+    assert "bob 6 83 % 44–97 %" in words
+    assert "One trial only: dan; it counts, but shows no spread." in words
+    assert "Bits are corrected for bias (Miller–Madow): the plug-in estimate" in words
+    assert "Test of fit (posterior predictive): p = " in words
+    assert "two.cue before" in words and "six-icons before" in words
+    assert "effective sample size " in words and " of 24 draws" in words
+    assert said.stderr == f"wrote {out}\nwrote {picture}\nwrote {lab} and {lab.with_suffix('.csv')}\n"
+    own = json.loads(out.read_text(encoding="utf-8"))
+    assert (own["participants"], own["trials"], own["single_trial"]) == (4, 19, ["dan"])
+    assert len(own["predictions"]) == 2
+    assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 12
+    assert picture.stat().st_size > 10_000
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, answers: Path) -> None:
+    said = [cli("observed", answers, two, *QUICK, "--seed", 4, "--json", "-").stdout for _ in range(2)]
+    assert said[0] == said[1]
+    assert json.loads(said[0])["seed"] == 4
+
+
+def test_an_icon_that_nobody_was_presented_is_named(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text("participant,trial,presented,responded\nP,1,cool-step,cool-step\nP,2,cool-step,warm-step\n")
+    said = cli("observed", path, two, *QUICK)
+    assert said.exit_code == 0
+    assert "Never presented: warm-step. What is said of them is prediction alone" in " ".join(said.stdout.split())
+
+
+def test_a_bad_table_is_bad_input_and_nothing_is_written(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path, out = tmp_path / "t.csv", tmp_path / "out.json"
+    path.write_text("participant,trial,presented,responded\nP,1,cool-step,Cool-step\n", encoding="utf-8")
+    said = cli("observed", path, two, "--json", out)
+    assert said.exit_code == 1
+    assert said.stderr.startswith(f"{path}:2: responded is 'Cool-step', which is not an icon of the set; did you mean")
+    assert not out.exists()
+    assert "no such table of trials" in cli("observed", tmp_path / "none.csv", two).stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--draws", 5), "'--draws': 5 is outside 20 to 20000"),
+        (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
+        (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming, max, rms, integral"),
+        (("--keep", "-"), "'--keep': - is not a file; give a name such as lab.toml"),
+    ],
+)
+def test_bad_options_of_observed(cli: Cli, two: Path, answers: Path, options: tuple[object, ...], told: str) -> None:
+    said = cli("observed", answers, two, *options)
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_outputs_are_checked_before_work_begins(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
+    said = cli("observed", answers, two, "--keep", tmp_path / "lab.csv")
+    assert said.exit_code == 1
+    assert "an observer is written as .toml, not .csv" in said.stderr
+    own = answers.with_suffix(".toml")
+    assert "is read by this command; give another name" in cli("observed", answers, two, "--keep", own).stderr
+
+
+def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "plan.json"
+    said = cli("plan", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--pilot", 3, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert "participants 6 trials 20 trials" in words
+    assert "Mean width of the 95 % interval of the per cent correct, in points; * marks an interval" in words
+    assert "Pilot with one participant, 3 presentations in random order:" in words
+    own = json.loads(out.read_text(encoding="utf-8"))
+    assert [(each["participants"], each["trials"]) for each in own["designs"]] == [(4, 6), (4, 20), (16, 6), (16, 20)]
+    assert sum(own["pilot"]["presented"].values()) == len(own["pilot"]["order"]) == 3
+
+
+def test_plan_of_two_sets(cli: Cli, two: Path) -> None:
+    said = cli("plan", two, "six-icons", *QUICK, "--participants", "6", "--trials", "12", "--pilot", 2)
+    words = " ".join(said.stdout.split())
+    assert "Difference of the two: " in words
+    assert "Share of experiments that distinguish the two sets in the right direction (paired t test at 5 %" in words
+
+
+def test_a_plan_that_nothing_satisfies_says_so(cli: Cli, two: Path) -> None:
+    quick = (*QUICK, "--participants", "4", "--trials", "6", "--pilot", 1)
+    said = cli("plan", two, *quick, "--width", 0.1)
+    assert "None of these sizes is enough: an interval of 0.1 points or less needs more" in " ".join(
+        said.stdout.split()
+    )
+    same = cli("plan", two, two, *quick)
+    assert "cannot be had where the sets hardly differ" in " ".join(same.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--participants", "1,8"), "'--participants': 1 is outside 2 to 500"),
+        (("--participants", "some"), "'--participants': 'some' is not a list of whole numbers such as 8,16,32"),
+        (("--trials", "0"), "'--trials': 0 is outside 1 to 5000"),
+        (("--pilot", 0), "'--pilot': 0 is outside 1 to 1000"),
+        (("--power", 80), "'--power': belongs to two sets; with one, give --width"),
+        (("--width", 0), "'--width': 0 is outside 0 to 100"),
+    ],
+)
+def test_bad_options_of_plan(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
+    said = cli("plan", two, *options)
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert told in " ".join(said.stderr.replace("│", " ").split())

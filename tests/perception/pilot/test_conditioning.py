@@ -1,0 +1,125 @@
+"""Conditioning against mathematics: laboratories whose likelihood is known in one dimension."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from thermicon.perception.pilot.conditioning import condition, systematic
+from thermicon.perception.pilot.fit import compare
+from thermicon.perception.pilot.likelihood import effective, log_likelihoods, normalised_weights, weighted_quantile
+from thermicon.perception.pilot.playing import Confusions
+from thermicon.perception.pilot.pooled_answers import PooledLikelihood, walk
+from thermicon.perception.pilot.states import Laboratories
+from thermicon.perception.pilot.trials import Trials
+
+ICONS, PEOPLE, DIMENSIONS = 3, 24, 6
+
+
+def correct_at(place: np.ndarray, person: np.ndarray) -> np.ndarray:
+    return 1.0 / (1.0 + np.exp(-(1.2 + 0.6 * place + 0.5 * person)))
+
+
+@dataclass(frozen=True)
+class Toy:
+    """People differ in one number, laboratories in the first coordinate; errors are spread evenly."""
+
+    def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
+        person = np.stack([np.random.default_rng(int(seed)).standard_normal(PEOPLE) for seed in some.seed])
+        right = correct_at(some.place[:, :1], person)[:, :, None, None]
+        chance = np.where(np.eye(ICONS, dtype=bool), right, (1.0 - right) / (ICONS - 1))
+        return Confusions(("a", "b", "c"), chance.astype(np.float32))
+
+
+def laboratories(n: int, seed: int) -> Laboratories:
+    rng = np.random.default_rng(seed)
+    return Laboratories(rng.standard_normal((n, DIMENSIONS)), rng.integers(2**31, size=n))
+
+
+def answers(place: float, participants: int, times: int, seed: int) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    right = correct_at(np.full(participants, place), rng.standard_normal(participants))[:, None]
+    hits = rng.binomial(times, np.broadcast_to(right, (participants, ICONS)))
+    counts = np.zeros((participants, ICONS, ICONS))
+    for j in range(participants):
+        for a in range(ICONS):
+            wrong = rng.multinomial(times - hits[j, a], [1 / (ICONS - 1)] * (ICONS - 1))
+            counts[j, a] = np.insert(wrong, a, hits[j, a])
+    return counts
+
+
+def exact(counts: np.ndarray) -> tuple[float, float]:
+    """Mean and SD of the first coordinate by integration over laboratories and people."""
+    place, person = np.linspace(-4, 4, 161), np.linspace(-4, 4, 161)
+    right = correct_at(place[:, None], person[None])
+    hits, total = np.trace(counts, axis1=1, axis2=2), counts.sum(axis=(1, 2))
+    density = np.exp(-0.5 * person**2) / np.exp(-0.5 * person**2).sum()
+    each = hits[:, None, None] * np.log(right) + (total - hits)[:, None, None] * np.log((1 - right) / (ICONS - 1))
+    log = np.log(np.exp(each - each.max(axis=(1, 2), keepdims=True)) @ density).sum(axis=0) - 0.5 * place**2
+    weights = normalised_weights(log)
+    mean = float(weights @ place)
+    return mean, float(np.sqrt(weights @ (place - mean) ** 2))
+
+
+@pytest.mark.parametrize(("participants", "times", "rounds"), [(2, 5, 0), (80, 40, 2)])
+def test_both_ways_agree_with_integration(participants: int, times: int, rounds: int) -> None:
+    counts = answers(0.8, participants, times, seed=4)
+    found = condition(Toy(), counts, laboratories(1000, 1), seed=2)  # type: ignore[arg-type]
+    mean, sd = exact(counts)
+    sample = found.after.place[:, 0]
+    assert found.rounds == rounds
+    assert abs(sample.mean() - mean) < 0.35 * sd
+    assert 0.8 < sample.std() / sd < 1.25
+    assert np.abs(found.after.place[:, 1:].mean(axis=0)).max() < 0.25  # what the answers do not touch stays the prior
+    assert not set(found.after.seed.tolist()) & set(found.before.seed.tolist())
+
+
+def test_the_same_seed_gives_the_same_laboratories() -> None:
+    counts = answers(0.0, 3, 4, seed=1)
+    first, second = (condition(Toy(), counts, laboratories(200, 1), seed=5) for _ in range(2))  # type: ignore[arg-type]
+    assert (first.after.place == second.after.place).all()
+    assert (first.confusions_after.probability == second.confusions_after.probability).all()
+
+
+def test_a_participant_is_a_mixture_over_people() -> None:
+    probability = np.array([[np.diag([0.8, 0.8]) + 0.1, np.diag([0.0, 0.0]) + 0.5]], dtype=np.float32)
+    counts = np.array([[[3.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [1.0, 0.0]]])
+    found = np.exp(log_likelihoods(probability, counts))[0]
+    assert found == pytest.approx([(0.9**3 + 0.5**3) / 2, (0.1 + 0.5) / 2], rel=1e-5)
+
+
+def test_pooled_likelihood_prefers_the_truth_and_the_walk_stays_near_it() -> None:
+    some = laboratories(400, 3)
+    counts = answers(-1.0, 40, 20, seed=2)
+    fitted = PooledLikelihood.fit(some.place, Toy().confusions(some), counts)
+    line = np.zeros((61, DIMENSIONS))
+    line[:, 0] = np.linspace(-3, 3, 61)
+    assert abs(line[fitted(line).argmax(), 0] + 1.0) < 0.5
+    moved = walk(some.place[:200], fitted, np.random.default_rng(0))
+    mean, sd = exact(counts)
+    assert abs(moved[:, 0].mean() - mean) < 0.5 * sd
+
+
+def test_weights_quantiles_and_resampling() -> None:
+    weights = np.array([0.1, 0.2, 0.7])
+    assert effective(weights) == pytest.approx(1.0 / 0.54)
+    assert weighted_quantile(np.array([3.0, 1.0, 2.0]), np.full(3, 1 / 3), (0.5,)) == (2.0,)
+    chosen = np.bincount(systematic(weights, 1000, np.random.default_rng(0)), minlength=3)
+    assert np.abs(chosen - 1000 * weights).max() <= 1
+
+
+def test_fit_finds_a_pair_that_was_missed_and_nothing_where_all_is_as_predicted() -> None:
+    played = Toy().confusions(laboratories(300, 8))
+    fine = Trials(("a", "b", "c"), tuple("PQRST"), answers(0.1, 5, 10, seed=3))
+    assert compare(fine, played).p > 0.05
+    counts = np.zeros((5, 3, 3))
+    counts[:, 0] = [2, 8, 0]
+    counts[:, 1, 1] = counts[:, 2, 2] = 10
+    fit = compare(Trials(("a", "b", "c"), tuple("PQRST"), counts), played)
+    assert fit.p < 0.01
+    assert (fit.missed[0].a, fit.missed[0].b) == ("a", "b")
+    assert fit.missed[0].observed == pytest.approx(0.4)
+    assert fit.p_people is not None and fit.p_people > 0.9  # nobody differs

@@ -1,0 +1,148 @@
+"""The whole of `observed` on a made-up laboratory: answers, predictions, files that other commands read."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, read_cue
+from thermicon.perception.observer.draws import LABORATORIES, PosteriorDraws
+from thermicon.perception.observer.observer import Observer
+from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.pilot.observed import Observed, observed
+from thermicon.perception.pilot.states import LaboratoryPrior
+from thermicon.perception.pilot.synthetic import synthetic_trials, trials_text
+from thermicon.perception.pilot.trials import Trials
+from thermicon.perception.pilot.trials_file import read_trials
+
+
+@pytest.fixture(scope="module")
+def icons() -> IconSet:
+    return read_cue("six-icons")
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def answers(icons: IconSet, rig: Rig) -> Trials:
+    return synthetic_trials(icons, rig, participants=3, trials=18, seed=5)
+
+
+@pytest.fixture(scope="module")
+def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed:
+    return observed(answers, icons, rig, others=[icons], draws=40, seed=1)
+
+
+def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
+    draws = PosteriorDraws.load()
+    prior = LaboratoryPrior(draws, "episodes")
+    some = prior.first(len(draws), 3)
+    assert np.allclose(prior.constants(some), draws.draws, rtol=1e-9)
+    assert np.abs(np.cov(some.place.T) - np.eye(prior.dimensions)).max() < 0.2
+    values = prior.values(some)
+    share = values[:, prior.names.index("share of the scatter of ratings")]
+    assert 0.0 <= share.min() < 0.01 and 0.99 < share.max() <= 1.0
+    spread = values[:, prior.names.index(LABORATORIES)]
+    offset = values[:, prior.names.index("sensitivity of the laboratory, cold")] / spread
+    assert abs(offset.std() - 1.0) < 0.1
+
+
+def test_made_up_answers_are_read_back_and_depend_on_the_seed(
+    icons: IconSet, rig: Rig, answers: Trials, tmp_path: Path
+) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text(trials_text(answers, seed=2), encoding="utf-8")
+    assert (read_trials(path, answers.icons).counts == answers.counts).all()
+    assert (answers.presented == 3).all()
+    again = synthetic_trials(icons, rig, participants=3, trials=18, seed=5)
+    other = synthetic_trials(icons, rig, participants=3, trials=18, seed=6)
+    assert (again.counts == answers.counts).all()
+    assert (other.counts != answers.counts).any()
+
+
+def test_the_result_holds_what_was_asked(found: Observed, answers: Trials) -> None:
+    own = found.to_dict()
+    assert json.loads(found.to_json()) == own
+    assert own["trials"] == answers.total == 54
+    assert own["counts"] == answers.pooled.astype(int).tolist()
+    assert [each["who"] for each in own["each"]] == ["P1", "P2", "P3"]
+    assert 1.0 <= own["effective_sample_size"] <= 40.0
+    same = own["predictions"][0]["before"], own["predictions"][1]["before"]
+    assert same[0]["proportion_correct"] == same[1]["proportion_correct"]
+    assert own["predictions"][0]["after"]["people"] == 24
+    for each in (found.fit, found.fit_after):
+        assert 0.0 < each.p <= 1.0
+        assert len(each.pairs) == 15
+
+
+def test_participants_own_predictions_follow_their_answers(found: Observed) -> None:
+    seen = [score.proportion_correct for score in found.each]
+    predicted = [own[0] for own in found.own]
+    assert np.argmax(seen) == np.argmax(predicted)
+    assert max(predicted) - min(predicted) < max(seen) - min(seen)  # shrunk towards the others
+
+
+def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -> None:
+    observer, table = found.files()
+    (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
+    (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
+    draws = PosteriorDraws.load(tmp_path / "lab.csv")
+    assert len(draws) == 20
+    assert draws.values(LABORATORIES).max() < 1e-5  # these draws are of this laboratory
+    assert "participants: 3; trials: 54" in draws.header.sampler
+    assert draws.header.ess <= found.conditioned.effective + 0.01
+    assert "# effective draws: " in table and "# participants: 3\n" in table
+    person = Observer.load(tmp_path / "lab.toml")
+    assert person.cold.threshold_drive == pytest.approx(draws.values("cold threshold drive")[0], rel=1e-3)
+    values = found.prior.values(found.conditioned.after)
+    share = np.median(values[:, found.prior.names.index("share of the scatter of ratings")])
+    assert person.memory.share == pytest.approx(share, rel=1e-3)
+    assert Observer.load(tmp_path / "lab.csv").a == pytest.approx(person.a, rel=1e-3)
+    assert ObserverModel.load(tmp_path / "lab.toml").nominal == person
+
+
+def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed, tmp_path: Path) -> None:
+    observer, table = found.files()
+    (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
+    (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
+    prior = LaboratoryPrior.of(tmp_path / "lab.csv", "episodes")
+    values = prior.values(prior.first(20, 0))
+    assert np.abs(values[:, prior.names.index("sensitivity of the laboratory, cold")]).max() < 1e-4
+    with pytest.raises(ValueError, match=r"lab.toml has no posterior draws, .*give a table of draws \(.csv\)"):
+        LaboratoryPrior.of(tmp_path / "lab.toml", "episodes")
+
+
+def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed) -> None:
+    values, draws = found.prior.values(found.conditioned.after), found.draws()
+    names = found.prior.names
+    drive = values[:, names.index("warm threshold drive")]
+    offset = values[:, names.index("sensitivity of the laboratory, warm")]
+    assert np.allclose(sorted(draws.values("warm threshold drive")), sorted(drive * np.exp(-offset)))
+
+
+def test_the_first_draw_predicts_what_is_usual_in_this_laboratory(found: Observed) -> None:
+    drive = found.draws().values("cold threshold drive")[0]
+    values, names = found.prior.values(found.conditioned.after), found.prior.names
+    own = values[:, names.index("cold threshold drive")] * np.exp(
+        -values[:, names.index("sensitivity of the laboratory, cold")]
+    )
+    correct = found.conditioned.confusions_after.correct
+    first = int(np.abs(own - drive).argmin())
+    assert abs(correct[first] - np.median(correct)) < correct.std()
+
+
+def test_answers_to_another_set_and_too_few_draws_are_refused(icons: IconSet, rig: Rig, answers: Trials) -> None:
+    other = Trials(("a", "b"), ("P1",), np.ones((1, 2, 2)))
+    with pytest.raises(ValueError, match="the answers are to other icons than those of the set"):
+        observed(other, icons, rig)
+    with pytest.raises(ValueError, match="at least 20 draws, not 5"):
+        observed(answers, icons, rig, draws=5)
+    with pytest.raises(ValueError, match="at least one participant and one trial are needed, not 0 and 3"):
+        synthetic_trials(icons, rig, participants=0, trials=3)
