@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, percent
 
 from ..figures.differences import Aligned, align, differences, quantity, with_unit
+from ..files.cues import pick, read_set
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.compare_inputs import Request, check_request, kind_of_both
 from ..text.messages import load_rig, note, usage
 from ..text.tables import show, table
-from .cues import pick, read_set
 from .simulate import headline
 
 if TYPE_CHECKING:

@@ -10,11 +10,11 @@ import typer
 
 from thermicon.icons.number_text import number
 
+from ..files.cues import pick, read_set, warn_of_site
 from ..files.export_folder import check_export_folder
 from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
 from ..text.messages import REFUSED, note, progress_bar
-from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import DeliveredDrive, Rig

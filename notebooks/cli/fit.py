@@ -11,7 +11,7 @@ import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_rig, note, usage
-from .options import Changes, RigName
+from ..text.options import Changes, RigName
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, RigFit

@@ -12,8 +12,8 @@ from thermicon.icons.number_text import number, percent
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, MostTime, check_totals
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
+from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_tracking
 from ..text.tables import show, table
-from .options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_tracking
 
 if TYPE_CHECKING:
     from thermicon.perception import Frontier
@@ -65,7 +65,7 @@ def frontier_command(
     from thermicon.perception import frontier
     from thermicon.perception.observer.channels import NORMS
 
-    from .cues import read_set, warn_of_frames
+    from ..files.cues import read_set, warn_of_frames
     from .sweep import write_frame
 
     if norm not in NORMS:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..text.messages import Missing, check_changes, load_rig, usage
-from .options import Changes, IconName, RigName, Tail, check_pause, check_tail
+from ..text.options import Changes, IconName, RigName, Tail, check_pause, check_tail
 
 
 def export_command(

@@ -17,21 +17,7 @@ import typer
 from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
-from . import (
-    fit,
-    frontier,
-    hardware_commands,
-    lab,
-    pilot_commands,
-    searching,
-    session,
-    study,
-    text_commands,
-    validation,
-    whatif_commands,
-)
-from .app import Commands
-from .options import (
+from ..text.options import (
     Bias,
     Changes,
     Cluster,
@@ -51,6 +37,20 @@ from .options import (
     check_task,
     check_tracking,
 )
+from . import (
+    fit,
+    frontier,
+    hardware_commands,
+    lab,
+    pilot_commands,
+    searching,
+    session,
+    study,
+    text_commands,
+    validation,
+    whatif_commands,
+)
+from .app import Commands
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS = "Play on hardware", "Notebooks"

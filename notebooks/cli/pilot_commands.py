@@ -12,7 +12,7 @@ import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
-from .options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
+from ..text.options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.observed import Observed
@@ -84,8 +84,8 @@ def observed_command(
     from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
+    from ..files.cues import read_set, warn_of_frames
     from ..text.observed_text import show_observed
-    from .cues import read_set, warn_of_frames
 
     icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
     answers = read_trials(trials, [icon.name for icon in icons])
@@ -202,8 +202,8 @@ def plan_command(
     check_separate(files, [json])
     from thermicon.perception.pilot.plan import plan
 
+    from ..files.cues import read_set, warn_of_frames
     from ..text.plan_text import show_plan
-    from .cues import read_set, warn_of_frames
 
     sets, where = [read_set([name]) for name in files], load_rig(rig, changes or [])
     model = load_observer(observer)

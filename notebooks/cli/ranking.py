@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..files.cache import kept
+from ..files.cues import MOST_ICONS, read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import check_draws, load_observer, note, progress_bar, usage
 from ..text.rank_text import show_ranking
-from .cues import MOST_ICONS, read_set, warn_of_frames
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

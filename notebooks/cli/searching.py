@@ -11,7 +11,7 @@ import typer
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
 from ..text.messages import check_changes, check_draws, load_observer, load_rig, note, progress_bar, usage
-from .options import Changes, NormName, ObserverFile, OneFile, ReportPage, RigName, Tracking, check_tracking
+from ..text.options import Changes, NormName, ObserverFile, OneFile, ReportPage, RigName, Tracking, check_tracking
 from .ranking import check_figures, check_report
 from .search_result import FoundSet, Ranked
 
@@ -108,7 +108,7 @@ def search_command(
     check_separate([file], [output, report])
     from thermicon.perception import Goal, search
 
-    from .cues import read_set, warn_of_frames
+    from ..files.cues import read_set, warn_of_frames
 
     wanted = None if goal is None else Goal.parse(goal)
     objective = objective or _objective(wanted)

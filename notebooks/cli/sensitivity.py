@@ -10,10 +10,10 @@ import typer
 
 from thermicon.icons.number_text import percent
 
+from ..files.cues import read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import check_draws, fail, load_observer, note, progress_bar, usage
 from ..text.tables import show, table
-from .cues import read_set, warn_of_frames
 from .sweep import write_frame
 
 if TYPE_CHECKING:

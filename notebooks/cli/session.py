@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..text.messages import check_changes, load_rig, note, usage
-from .options import Changes, OneFile, RigName
+from ..text.options import Changes, OneFile, RigName
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Session, SessionPlan
@@ -123,9 +123,9 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     from thermicon.circuit import play_session
     from thermicon.circuit.safety.sessionplan import order_text
 
+    from ..files.cues import read_set, warn_of_site
     from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
     from ..text.messages import progress_bar
-    from .cues import read_set, warn_of_site
 
     for path, suffixes, what in (
         (request.json, (), "a report"),

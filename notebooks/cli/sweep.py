@@ -14,9 +14,9 @@ import typer
 
 from thermicon.icons.number_text import span
 
+from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import Progress, fail, note, progress_bar, usage
-from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     import pandas as pd

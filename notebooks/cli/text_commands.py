@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..files.cues import read_set, warn_of_site
 from ..text.messages import check_changes, load_rig, usage
-from .cues import read_set, warn_of_site
-from .options import Changes, IconName, OneFile
+from ..text.options import Changes, IconName, OneFile
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..files.cues import only, read_set, warn_of_site
 from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
-from .cues import only, read_set, warn_of_site
-from .options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
+from ..text.options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cli.cues import MOST_ICONS
+from ..files.cues import MOST_ICONS
 from ..figures.map_drawing import distinct
 from .cue_check import Reading, read_text
 from .frames import CanvasFrame, traces_of

@@ -8,10 +8,10 @@ from thermicon.perception import Observer, draw_people
 from thermicon.perception.procedures.classical import (
     choice_reaction_time,
     forced_choice,
-    method_of_levels,
     method_of_limits,
     yes_no,
 )
+from thermicon.perception.procedures.levels import method_of_levels
 from thermicon.perception.procedures.measured import Measurement, crowd_of
 from thermicon.perception.sensation.bench import Bench
 

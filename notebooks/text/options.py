@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..text.messages import usage
+from .messages import usage
 
 LONGEST_GAP_S, MOST_BIAS = 600.0, 5.0
 """Limits of `thermicon.perception.Task`, repeated here to avoid its imports."""
