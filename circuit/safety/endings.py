@@ -66,7 +66,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
     """The steady state under zero current, checked against the limits of temperature."""
-    tally = Tally(limits, [f"{corner}, then {IN_THE_END}" for corner in ensemble.corners], begun_C=begun_C)
+    tally = Tally(limits, ensemble.corners, f", then {IN_THE_END}", begun_C=begun_C)
     levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
     tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
     return tally

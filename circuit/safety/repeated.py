@@ -132,7 +132,7 @@ class Repeating:
             )  # rates hardly follow the pause
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
-                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
+                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
             tallies.append(drive_tallies)
         return tallies
 
@@ -143,9 +143,8 @@ class Repeating:
     def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
         """The tally of a play from a state with its pause, and the state at the end of the play."""
         plays = plays_in(cycle, self.limits.session_s)
-        again = f"repeated plays with {cycle.pause_s:.4g} s of pause{what}"
-        names = [f"{corner}, {again}" for corner in self.ensemble.corners]
-        tally, now = Tally(self.limits, names, plays=plays, begun_C=begun), state
+        again = f", repeated plays with {cycle.pause_s:.4g} s of pause{what}"
+        tally, now = Tally(self.limits, self.ensemble.corners, again, plays=plays, begun_C=begun), state
         for (rows, values), then in self.ensemble.play(cycle.drive, state):
             tally.add(rows, values, rates=exact)
             now = then
@@ -155,10 +154,10 @@ class Repeating:
             tally.add(float(cycle.drive.time_s[-1]) + pause, rested, rates=False)
         return tally, now
 
-    def _endings(self, cycle: Cycle, ended: State, begun: Array, names: Sequence[str]) -> list[Tally]:
+    def _endings(self, cycle: Cycle, ended: State, begun: Array, what: str) -> list[Tally]:
+        corners = self.ensemble.corners
         endings = {
-            ending: Tally(self.limits, [f"{name}, then {ending}" for name in names], begun_C=begun)
-            for ending in ENDINGS
+            ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS
         }
         end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
         follow_endings(self.ensemble, ended, last, end, endings, sums=False)

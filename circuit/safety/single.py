@@ -43,7 +43,7 @@ class Single:
     def of(ensemble: Ensemble, drive: Drive, rest_A: float, limits: Limits) -> Single:
         """Play a drive; raises RigError where the rig as given has no steady state to start from."""
         start = ensemble.at_rest(rest_A)
-        played, state = Tally(limits, [str(corner) for corner in ensemble.corners]), start
+        played, state = Tally(limits, ensemble.corners), start
         for (rows, values), then in ensemble.play(drive, start):
             played.add(rows, values)
             state = then
