@@ -34,12 +34,12 @@ LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
 
 
 def follow_endings(
-    ensemble: Ensemble, state: State, last_A: float, end_s: float, tallies: dict[str, Tally], sums: bool = True
+    ensemble: Ensemble, state: State, last_A: float | Array, end_s: float, tallies: dict[str, Tally], sums: bool = True
 ) -> dict[str, Array]:
     """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
-    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's; `sums`
-    whether doses count.
+    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's, or one
+    for each corner; `sums` whether doses count.
     """
     after = {}
     for name, current in zip(ENDINGS, (last_A, 0.0, 0.0), strict=True):

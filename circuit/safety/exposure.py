@@ -24,7 +24,10 @@ def constants() -> Array:
     """Constants of both measures in the order that the kernels expect (6,)."""
     table = load_records(resources.files("thermicon.circuit") / "data" / "exposure.toml")
     known = {record.quantity: record.central for record in table}
-    factor, activation_K = known["Henriques pre-exponential"], known["Henriques activation energy"] / known["gas constant"]
+    factor, activation_K = (
+        known["Henriques pre-exponential"],
+        known["Henriques activation energy"] / known["gas constant"],
+    )
     values = np.array([*(known[name] for name in _KEPT), np.log(factor), activation_K])
     values.setflags(write=False)
     return values

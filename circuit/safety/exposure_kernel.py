@@ -58,10 +58,10 @@ def fill_dose(time_s, warm, known, out):
 @compiled
 def burn_rate(middle, rise, known):
     """Mean Henriques rate in 1/s over a small linear rise about a middle, to the fourth order of the rise."""
-    absolute, activation = middle + ZERO_C_IN_K, known[ACTIVATION_K]
-    rate = math.exp(known[LOG_FACTOR] - activation / absolute)
-    first, second = activation / absolute**2, activation / absolute**3
-    return rate * (1.0 + rise**2 * (first**2 / 24.0 - second / 12.0))
+    inverse = 1.0 / (middle + ZERO_C_IN_K)
+    exponent = known[ACTIVATION_K] * inverse
+    first, second = exponent * inverse, exponent * inverse * inverse
+    return math.exp(known[LOG_FACTOR] - exponent) * (1.0 + rise * rise * (first * first / 24.0 - second / 12.0))
 
 
 @compiled
@@ -71,11 +71,11 @@ def fill_burn(time_s, warm, known, out):
     out[0] = 0.0
     for k in range(warm.size - 1):
         rise = warm[k + 1] - warm[k]
-        middle, pieces = warm[k] + 0.5 * rise, math.ceil(abs(rise) / SMALL_K)
-        if pieces <= 1:
+        middle = warm[k] + 0.5 * rise
+        if abs(rise) <= SMALL_K:
             per_s = burn_rate(middle, rise, known)
         else:
-            per_s = 0.0
+            per_s, pieces = 0.0, math.ceil(abs(rise) / SMALL_K)
             for piece in range(pieces):
                 per_s += burn_rate(middle + rise * ((piece + 0.5) / pieces - 0.5), rise / pieces, known)
             per_s /= pieces

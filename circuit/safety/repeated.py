@@ -156,9 +156,7 @@ class Repeating:
 
     def _endings(self, cycle: Cycle, ended: State, begun: Array, what: str) -> list[Tally]:
         corners = self.ensemble.corners
-        endings = {
-            ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS
-        }
+        endings = {ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS}
         end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
         follow_endings(self.ensemble, ended, last, end, endings, sums=False)
         return list(endings.values())

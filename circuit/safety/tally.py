@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
 import numpy.typing as npt
@@ -23,7 +24,7 @@ COLDEST_C, HOTTEST_C = -273.0, 1000.0
 SPAN_C = np.array([COLDEST_C, HOTTEST_C])
 
 SKIN, DISPLAY, RECEPTOR, HOT_PLATE, RATE, DOSE, BURN, WARMER = range(8)
-"""Codes of quantities: first the columns of WATCHED, then what is computed from them, of which the last three add up."""
+"""Codes of quantities: the columns of WATCHED, then what is computed from them; the last three add up."""
 
 _CODE_OF = {
     "display": DISPLAY,
@@ -126,14 +127,17 @@ class Tally:
             setattr(other, name, getattr(self, name).copy())
         return other
 
-    def limits_of(self, rule: Rule) -> Array:
-        """The limit of a rule in each lane (lanes,)."""
-        assert self._begun is not None
-        return self._begun + rule.limit if rule.relative else np.full(len(self._begun), rule.limit)
-
-    def checks(self) -> tuple[Check, ...]:
-        """Every rule once, in its worst lane."""
-        return tuple(self._check(place, rule) for place, rule in enumerate(self.limits.rules))
+    def checks(self, lanes: Index | None = None) -> tuple[Check, ...]:
+        """Every rule once, in its worst lane, or in the lane given for each rule (rules,)."""
+        lanes = self._worst() if lanes is None else lanes
+        every = np.arange(len(lanes))
+        value, at_s = self._value[every, lanes].tolist(), self._at_s[every, lanes].tolist()
+        since_s, limit = self._since_s[every, lanes].tolist(), self._limits()[every, lanes].tolist()
+        rows = zip(self.limits.rules, lanes.tolist(), value, at_s, since_s, limit, strict=True)
+        return tuple(
+            self._check(*row) if present else self._nothing(row[0])
+            for row, present in zip(rows, self._present.tolist(), strict=True)
+        )
 
     def summed(self, quantity: str) -> Array:
         """Sum of a quantity over time in each lane (lanes,)."""
@@ -142,41 +146,55 @@ class Tally:
 
     def worst_lanes(self, severity: str = "hard") -> tuple[int, ...]:
         """Lanes that are worst by some rule of a severity, each once."""
-        rules = [(place, rule) for place, rule in enumerate(self.limits.rules) if rule.severity == severity]
-        return tuple(dict.fromkeys(self._worst(place, rule) for place, rule in rules if self._present[place]))
+        return tuple(dict.fromkeys(self._worst()[self._present & self._of(severity)].tolist()))
+
+    def beyond(self) -> Array:
+        """How far each rule is exceeded in each lane (rules, lanes), as `checks.beyond` of its check."""
+        nothing = np.array([check.value for check in map(self._nothing, self.limits.rules)])
+        limit = np.where(self._present[:, np.newaxis], self._limits(), self._rules.limit[:, np.newaxis])
+        value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])
+        return np.where(self._rules.upper[:, np.newaxis], value - limit, limit - value)
 
     def passes(self, severity: str = "hard") -> bool:
         """Whether no lane exceeds a limit of a severity."""
-        rules = self._rules.hard if severity == "hard" else ~self._rules.hard
-        return bool(np.isnan(self._since_s[rules]).all())
+        return bool(np.isnan(self._since_s[self._of(severity)]).all())
 
-    def _worst(self, place: int, rule: Rule) -> int:
-        side = 1.0 if rule.upper else -1.0
-        return int(np.argmax(side * (self._value[place] - self.limits_of(rule))))
+    def _of(self, severity: str) -> Flags:
+        return self._rules.hard if severity == "hard" else ~self._rules.hard
 
-    def _check(self, place: int, rule: Rule) -> Check:
-        if not self._present[place]:  # nothing that this rule limits was added
-            nothing = 0.0 if rule.upper or self._rules.code[self._rules.rule_of[place]] == RATE else HOTTEST_C
-            return Check(rule.quantity, rule.severity, nothing, rule.limit, rule.unit, 0.0, None, rule.source, "",
-                         rule.upper, self._name(0))  # fmt: skip
-        lane = self._worst(place, rule)
-        since = float(self._since_s[place, lane])
-        return Check(
-            rule.quantity,
-            rule.severity,
-            float(self._value[place, lane]),
-            float(self.limits_of(rule)[lane]),
-            "°C" if rule.relative else rule.unit,
-            float(self._at_s[place, lane]),
-            None if np.isnan(since) else since,
-            rule.source,
-            f", {abs(rule.limit):g} K from where it began," if rule.relative else "",
-            rule.upper,
-            self._name(lane),
-        )
+    def _limits(self) -> Array:
+        """The limit of every rule in each lane (rules, lanes)."""
+        limit, begun = self._rules.limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
+        return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.scenarios)))
 
-    def _name(self, lane: int) -> str:
-        return f"{self.scenarios[lane]}{self.what}"
+    def _worst(self) -> Index:
+        """The lane that is worst by each rule (rules,), the first of equals."""
+        side = np.where(self._rules.upper, 1.0, -1.0)[:, np.newaxis]
+        return np.asarray(np.argmax(side * (self._value - self._limits()), axis=1))
+
+    def _check(self, rule: Rule, lane: int, value: float, at_s: float, since_s: float, limit: float) -> Check:
+        unit = "°C" if rule.relative else rule.unit
+        since = None if isnan(since_s) else since_s
+        note = f", {abs(rule.limit):g} K from where it began," if rule.relative else ""
+        name = f"{self.scenarios[lane]}{self.what}"
+        return Check(rule.quantity, rule.severity, value, limit, unit, at_s, since, rule.source, note, rule.upper, name)
+
+    def _nothing(self, rule: Rule) -> Check:
+        """The check of a rule of which nothing that it limits was added."""
+        value = 0.0 if rule.upper or _code_of(rule) == RATE else HOTTEST_C
+        name = f"{self.scenarios[0]}{self.what}"
+        limit, unit = rule.limit, rule.unit
+        return Check(rule.quantity, rule.severity, value, limit, unit, 0.0, None, rule.source, "", rule.upper, name)
+
+
+def worst_of_lanes(tallies: Sequence[Tally]) -> tuple[Check, ...]:
+    """Every rule in its worst tally and lane: `checks.worst_of` in each lane, and then of all lanes."""
+    every = np.array([tally.beyond() for tally in tallies])
+    which = np.argmax(every >= every.max(axis=0) - LEVEL, axis=0)
+    in_lane = np.take_along_axis(every, which[np.newaxis], axis=0)[0]
+    lanes = np.argmax(in_lane >= in_lane.max(axis=1, keepdims=True) - LEVEL, axis=1)
+    checks = [tally.checks(lanes) for tally in tallies]
+    return tuple(checks[which[rule, lane]][rule] for rule, lane in enumerate(lanes.tolist()))
 
 
 def _code_of(rule: Rule) -> int:

@@ -52,8 +52,17 @@ def fill_warmer(time_s, display, above_C, out):
 
 
 @compiled
+def first_near_last(values, level):
+    """First row of values that never fall whose value is within `level` of the last."""
+    for k in range(values.size - 1, -1, -1):
+        if values[k] < values[values.size - 1] - level:
+            return k + 1
+    return 0
+
+
+@compiled
 def first_near(values, extreme, side, level):
-    """First row whose value is within `level` of the extreme on a side, which is 1 for the greatest, −1 for the least."""
+    """First row whose value is within `level` of the extreme; `side` is 1 for the greatest, −1 for the least."""
     for k in range(values.size):
         if side * values[k] >= side * extreme - level:
             return k
@@ -104,7 +113,11 @@ def count(
                 for k in range(rows):
                     scratch[k] = plays * scratch[k] + totals[q, lane]
                 totals[q, lane] = scratch[rows - 1]
-            least, greatest = extremes(series)
+            adds_up = code > RATE
+            if adds_up:
+                least, greatest = series[0], series[rows - 1]
+            else:
+                least, greatest = extremes(series)
             lowest_at, highest_at = -1, -1
             for r in range(rule_of.size):
                 if rule_of[r] != q or (drift and (relative[r] or not hard[r])):
@@ -112,7 +125,9 @@ def count(
                 counted[r] = True
                 if upper[r]:
                     if highest_at < 0:
-                        highest_at = first_near(series, greatest, 1.0, level)
+                        highest_at = (
+                            first_near_last(series, level) if adds_up else first_near(series, greatest, 1.0, level)
+                        )
                     side, most, when = 1.0, greatest, time_s[highest_at]
                 else:
                     if lowest_at < 0:
