@@ -38,20 +38,25 @@ def follow_endings(
 ) -> dict[str, Array]:
     """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
+    The tallies are in the same state before.
     `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's, or one
     for each corner; `sums` whether doses count.
     """
     after = {}
-    for name, current in zip(ENDINGS, (last_A, 0.0, 0.0), strict=True):
-        if name == ENDINGS[2] and not ensemble.ideal:
-            values = without_power(ensemble, state, ROWS_S)[0]
-        else:
-            values, _ = ensemble.hold(current, state, ROWS_S)
+    last, zero, off = ENDINGS
+    for name, current in ((last, last_A), (zero, 0.0)):
+        values, _ = ensemble.hold(current, state, ROWS_S)
         tallies[name].add(end_s + ROWS_S, values, sums=sums)
         after[name] = values[WATCHED.index("skin_C"), :, -1]
+    if ensemble.ideal:  # without power it is the same
+        tallies[off].copy_from(tallies[zero])
+    else:
+        values = without_power(ensemble, state, ROWS_S)[0]
+        tallies[off].add(end_s + ROWS_S, values, sums=sums)
+    after[off] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:
         later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))
-        tallies[ENDINGS[1]].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
+        tallies[zero].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
     return after
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -117,9 +117,15 @@ class Repeating:
     drives: Sequence[Cycle]
     starts: Sequence[State]
     limits: Limits
+    _known: dict[tuple[float, bool], list[list[Tally]]] = field(default_factory=dict)
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
+        if (pause_s, endings) not in self._known:
+            self._known[pause_s, endings] = self._tallies(pause_s, endings)
+        return self._known[pause_s, endings]
+
+    def _tallies(self, pause_s: float, endings: bool) -> list[list[Tally]]:
         cycles = [replace(cycle, pause_s=pause_s) for cycle in self.drives]
         steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
         warm = bound(cycles, self.starts, steady, warm=True)
@@ -242,7 +248,7 @@ def _with(repeating: Repeating, corners: list[int]) -> Repeating:
         replace(cycle, ensemble=few, played=None if cycle.played is None else cycle.played.only(corners))
         for cycle in repeating.drives
     ]
-    return replace(repeating, ensemble=few, drives=cycles, starts=starts)
+    return Repeating(few, cycles, starts, repeating.limits)
 
 
 def shortest_of(safe: Callable[[float], bool]) -> float | None:

@@ -123,9 +123,14 @@ class Tally:
         """A copy of the state so far under other names: those of the scenarios followed by `what`."""
         other = copy(self)
         other.what = f"{self.what}, {what}"
-        for name in ("_sums", "_present", "_value", "_at_s", "_since_s"):
-            setattr(other, name, getattr(self, name).copy())
+        other.copy_from(self)
         return other
+
+    def copy_from(self, other: Tally) -> None:
+        """Take over the state of another tally with the same rules and lanes; the names stay."""
+        self._begun = other._begun
+        for name in ("_sums", "_present", "_value", "_at_s", "_since_s"):
+            setattr(self, name, getattr(other, name).copy())
 
     def checks(self, lanes: Index | None = None) -> tuple[Check, ...]:
         """Every rule once, in its worst lane, or in the lane given for each rule (rules,)."""
