@@ -32,13 +32,22 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A sidecar with the drive that it names, and what was read back from that drive, if its format is read."""
+    """A sidecar with the drive that it names, and what was read back from that drive, if its format is read.
+
+    `shared`: the files of the set, such as a player, that the sidecar names as well.
+    """
 
     sidecar: str
     drive: str
     icon: str
     figures: Figures | None
     unit: str
+    shared: tuple[str, ...] = ()
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Everything that the drive is played with."""
+        return (self.drive, self.sidecar, *self.shared)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +77,10 @@ def verify(files: Mapping[str, bytes]) -> Verification:
     """
     claims = {name: each for name, content in files.items() if (each := _claims(name, content)) is not None}
     if not claims:
-        return Verification((), (Finding(".", "wrong", "holds no sidecar", "give a folder that was exported"),))
-    pairs, findings = [], []
+        damaged = tuple(_damaged(name) for name, content in sorted(files.items()) if _is_damaged(name, content))
+        none = Finding(".", "wrong", "holds no sidecar", "give a folder that was exported")
+        return Verification((), damaged or (none,))
+    pairs, findings = [], list(_shared(files, claims))
     for name, each in sorted(claims.items()):
         about = table_of(files[name]) or {}
         findings += [*_own(name, files[name], about), *_names(name, each, claims), *_parts(name, about)]
@@ -77,7 +88,9 @@ def verify(files: Mapping[str, bytes]) -> Verification:
         actual, unit, problems = _figures(each.drive, files, about)
         findings += problems
         icon = about.get("icon")
-        pairs.append(Pair(name, each.drive, str(icon.get("name", "")) if isinstance(icon, dict) else "", actual, unit))
+        shared = tuple(file for file in each.digests if file != each.drive)
+        title = str(icon.get("name", "")) if isinstance(icon, dict) else ""
+        pairs.append(Pair(name, each.drive, title, actual, unit, shared))
     findings += _extra(files, claims)
     return Verification(tuple(pairs), tuple(dict.fromkeys(findings)))
 
@@ -110,15 +123,38 @@ def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[
 
 
 def _bound(name: str, claims: Claims, files: Mapping[str, bytes]) -> Iterator[Finding]:
-    """Drive and set files against the digests that the sidecar holds of them."""
+    """The drive against the digest that its sidecar holds, and whether it holds one of each file of its set."""
     for file, known in claims.digests.items():
-        kind = "drive" if file == claims.drive else "set's file"
         if not known:
             yield Finding(name, "wrong", f"contains no digest of {file}", AGAIN)
+        elif file != claims.drive:
+            continue
         elif file not in files:
             yield Finding(file, "wrong", f"is missing; {name} belongs to it", RESTORE)
         elif digest(files[file]) != known:
-            yield Finding(file, "wrong", f"is not the {kind} that {name} was written for: its digest differs", RESTORE)
+            yield Finding(file, "wrong", f"is not the drive that {name} was written for: its digest differs", RESTORE)
+
+
+def _shared(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator[Finding]:
+    """Files of a set, such as its player, against the digests in the sidecars of all its drives."""
+    named: dict[str, dict[str, str]] = {}
+    for name, each in sorted(claims.items()):
+        for file, known in each.digests.items():
+            if known and file != each.drive:
+                named.setdefault(file, {})[name] = known
+    for file, known_by in named.items():
+        here = digest(files[file]) if file in files else None
+        against = [name for name, known in known_by.items() if known != here]
+        if not against:
+            continue
+        several = len(against) == len(known_by) > 1
+        each_name = [f"all {len(against)} sidecars of the folder"] if several else against
+        for name in each_name:
+            if here is None:
+                yield Finding(file, "wrong", f"is missing; {name} belong{'' if several else 's'} to it", RESTORE)
+            else:
+                text = f"is not the set's file that {name} {'were' if several else 'was'} written for"
+                yield Finding(file, "wrong", f"{text}: its digest differs", RESTORE)
 
 
 def _parts(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
@@ -202,15 +238,16 @@ def _extra(files: Mapping[str, bytes], claims: Mapping[str, Claims]) -> Iterator
     known = {*claims, *studied, *(name for each in claims.values() for name in each.digests)}
     ends = _suffixes()
     for name in sorted(set(files) - known):
-        if name.endswith(".json"):
-            if table_of(files[name]) is None:
-                yield Finding(name, "wrong", "cannot be read as JSON, so it describes no drive", RESTORE)
-            else:
-                yield Finding(name, "told", "is not a sidecar and was not checked")
+        if _is_damaged(name, files[name]):
+            yield _damaged(name)
+        elif name.endswith(".json"):
+            yield Finding(name, "told", "is not a sidecar and was not checked")
         elif name.lower().endswith(ends):
-            yield Finding(
-                name, "wrong", "has no sidecar, so its content is unknown", "remove it, or export its icon again"
-            )
+            sidecar = f"{name.partition('.')[0]}.json"
+            why = "has no sidecar"
+            if sidecar in files and _is_damaged(sidecar, files[sidecar]):
+                why = f"has a damaged sidecar, {sidecar}"
+            yield Finding(name, "wrong", f"{why}, so its content is unknown", "remove it, or export its icon again")
         else:
             yield Finding(name, "told", "does not belong to an export and was not checked")
 
@@ -232,6 +269,14 @@ def _changed_of_study(studied: Mapping[str, str], files: Mapping[str, bytes]) ->
             yield Finding(name, "wrong", f"is missing; {STUDY} names it", REMADE)
         elif known and digest(files[name]) != known:
             yield Finding(name, "wrong", "has changed since the study was made", REMADE)
+
+
+def _is_damaged(name: str, content: bytes) -> bool:
+    return name.endswith(".json") and table_of(content) is None
+
+
+def _damaged(name: str) -> Finding:
+    return Finding(name, "wrong", "is damaged: it cannot be read as JSON, so it describes no drive", RESTORE)
 
 
 def _suffixes() -> tuple[str, ...]:

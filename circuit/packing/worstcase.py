@@ -9,6 +9,7 @@ the rig's module is judged both ways: the display exactly at its set-points, and
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -24,14 +25,16 @@ from ..rig.rigfile import RigError
 from ..safety.checks import Check, worst_of
 from ..safety.corners import corners_of
 from ..safety.demands import Demands, SingleFault
-from ..safety.ensemble import Ensemble
+from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.gate import Gate, gate_set
-from ..safety.single import Single
+from ..safety.single import checks_of_lanes
 from ..safety.single_faults import BEYOND_K, Faulty
 from ..safety.tally import WATCHED
 from ..safety.thermode import DisplayCourse, Under
 from ..safety.thermode_gate import gate_shown
 from ..solver.drive import Drive
+from ..solver.network import network_of
+from ..solver.steady import check_sink, state_under_current
 
 AT_ONCE, LAGGED, HELD = "followed at once", "followed with its lag", "every set-point reached"
 
@@ -148,20 +151,26 @@ def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty, tupl
     """Every rule for the rig's module that follows the set-points, in each corner; its single faults as given; and
     between which temperatures in °C the display stands without power.
     """
-    samples, rig, judged, unpowered = samples_of(delivery), delivery.rig, [], []
-    for corner in corners_of(rig):
-        loop_corner = replace(corner, gain_relative=0.0)  # the loop corrects the gain of its current source
-        ensemble = Ensemble.on(rig, (loop_corner,), None)
-        values, _ = ensemble.hold(0.0, ensemble.at_rest(0.0), np.array([0.0, 1.0]))
-        unpowered.append(float(values[WATCHED.index("display_C"), 0, -1]))
-        try:
-            drive = follow_samples(loop_corner.rig, samples)
-            judged.append(Single.of(ensemble, drive, float(drive.current_A[0]), rig.limits))
-        except RigError:  # a corner whose module cannot hold the baseline shows less than is asked of it
-            continue
-    first = judged[0]
-    faulty = Faulty(first.ensemble, first.drive, first.rest_A, first.start, rig.limits)
-    return worst_of(single.checks for single in judged), faulty, (min(unpowered), max(unpowered))
+    samples, rig = samples_of(delivery), delivery.rig
+    corners = tuple(replace(corner, gain_relative=0.0) for corner in corners_of(rig))  # the loop corrects the gain
+    ensemble = Ensemble.on(rig, corners, None)
+    off = ensemble.at_rest(0.0)
+    for nodes in off.nodes_C:
+        check_sink(rig, nodes)
+    values, _ = ensemble.hold(0.0, off, np.array([0.0, 1.0]))
+    unpowered = values[WATCHED.index("display_C"), :, -1]
+    drives: dict[int, Drive] = {}
+    for lane, corner in enumerate(corners):
+        with suppress(RigError):  # a corner whose module cannot hold the baseline shows less than is asked of it
+            drive = follow_samples(corner.rig, samples)
+            check_sink(rig, state_under_current(network_of(corner.rig), float(drive.current_A[0])))
+            drives[lane] = drive
+    drive = drives[0]
+    lanes = LaneDrives(drive.time_s, np.array([each.current_A for each in drives.values()]))
+    checks = checks_of_lanes(ensemble.only(list(drives)), lanes, rig.limits)
+    nominal, rest_A = ensemble.only([0]), float(drive.current_A[0])
+    faulty = Faulty(nominal, drive, rest_A, nominal.at_rest(rest_A), rig.limits)
+    return checks, faulty, (float(unpowered.min()), float(unpowered.max()))
 
 
 def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], rest_s: float | None) -> Demands:

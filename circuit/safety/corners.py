@@ -43,14 +43,19 @@ class Corner:
     rig: Rig
 
     def __str__(self) -> str:
-        parts = ((getattr(self, key), name, scale, unit) for key, (_, name, scale, unit) in WORDS.items())
-        moved = [f"{name} {signed(scale * value, '+g')} {unit}" for value, name, scale, unit in parts if value]
-        return ", ".join(moved) or "the rig as given"
+        return _in_words(*(getattr(self, key) for key in WORDS))
 
     @property
     def nominal(self) -> bool:
         """Whether this is the rig as given."""
         return not any(getattr(self, field.name) for field in fields(self) if field.name != "rig")
+
+
+@lru_cache(maxsize=4096)
+def _in_words(*deviations: float) -> str:
+    parts = zip(deviations, WORDS.values(), strict=True)
+    moved = [f"{name} {signed(scale * value, '+g')} {unit}" for value, (_, name, scale, unit) in parts if value]
+    return ", ".join(moved) or "the rig as given"
 
 
 @lru_cache(maxsize=64)
@@ -75,12 +80,16 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
     if unsure.gain_relative and passes_most_cooling(rig):
         spans[1] = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
     corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    rigs: dict[tuple[float, ...], Rig] = {}  # corners that differ in gain only share one
     for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
         surroundings(rig), itertools.product(*spans)
     ):
         corner = Corner(contact, around[0], gain, around[1], seebeck, conductance, plates, rig)
         if not corner.nominal:
-            corners.append(replace(corner, rig=_there(corner)))
+            deviations = (contact, *around, seebeck, conductance, plates)
+            if deviations not in rigs:
+                rigs[deviations] = _there(corner)
+            corners.append(replace(corner, rig=rigs[deviations]))
     return tuple(corners)
 
 

@@ -34,24 +34,29 @@ LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
 
 
 def follow_endings(
-    ensemble: Ensemble, state: State, last_A: float, end_s: float, tallies: dict[str, Tally], sums: bool = True
+    ensemble: Ensemble, state: State, last_A: float | Array, end_s: float, tallies: dict[str, Tally], sums: bool = True
 ) -> dict[str, Array]:
     """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
-    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's; `sums`
-    whether doses count.
+    The tallies are in the same state before.
+    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's, or one
+    for each corner; `sums` whether doses count.
     """
     after = {}
-    for name, current in zip(ENDINGS, (last_A, 0.0, 0.0), strict=True):
-        if name == ENDINGS[2] and not ensemble.ideal:
-            values = without_power(ensemble, state, ROWS_S)[0]
-        else:
-            values, _ = ensemble.hold(current, state, ROWS_S)
+    last, zero, off = ENDINGS
+    for name, current in ((last, last_A), (zero, 0.0)):
+        values, _ = ensemble.hold(current, state, ROWS_S)
         tallies[name].add(end_s + ROWS_S, values, sums=sums)
         after[name] = values[WATCHED.index("skin_C"), :, -1]
+    if ensemble.ideal:  # without power it is the same
+        tallies[off].copy_from(tallies[zero])
+    else:
+        values = without_power(ensemble, state, ROWS_S)[0]
+        tallies[off].add(end_s + ROWS_S, values, sums=sums)
+    after[off] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:
         later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))
-        tallies[ENDINGS[1]].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
+        tallies[zero].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
     return after
 
 
@@ -66,7 +71,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
     """The steady state under zero current, checked against the limits of temperature."""
-    tally = Tally(limits, [f"{corner}, then {IN_THE_END}" for corner in ensemble.corners], begun_C=begun_C)
+    tally = Tally(limits, ensemble.corners, f", then {IN_THE_END}", begun_C=begun_C)
     levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
     tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
     return tally

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import overload
 
 import numpy as np
 
@@ -28,6 +29,16 @@ ROW_S, FINEST_S = 0.01, 1e-4
 
 AT_ONCE = 400_000
 """Rows times lanes of a stretch: about 13 MB of what is watched."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LaneDrives:
+    """Currents (lanes, k) at times in s (k,), each held until the next: every lane plays its own."""
+
+    time_s: Array
+    current_A: Array
+    held: bool = True
+
 
 Stretch = tuple[Array, Array]
 """Times in s (rows,) and WATCHED (4, lanes, rows) in °C."""
@@ -78,9 +89,14 @@ class Ensemble:
         """One lane per corner."""
         return np.arange(len(self.corners), dtype=np.int64)
 
-    def at_rest(self, rest_A: float) -> State:
-        """Steady states under a current, the hottest where a corner has none; RigError for the rig as given."""
-        states = self.bank.states([self._steady(corner, rest_A) for corner in self.corners])
+    def at_rest(self, rest_A: float | Array) -> State:
+        """Steady states under a current, or each lane's, the hottest where a corner has none; RigError for the rig as
+        given.
+        """
+        rests = np.broadcast_to(rest_A, len(self.corners)).tolist()
+        states = self.bank.states(
+            [self._steady(corner, rest) for corner, rest in zip(self.corners, rests, strict=True)]
+        )
         check_sink(self.rig, states[0])
         return State.settled(states)
 
@@ -97,7 +113,9 @@ class Ensemble:
             hottest[-1] = network.deep_C
             return hottest
 
-    def play(self, drive: Drive, state: State, rigs: Index | None = None) -> Iterator[tuple[Stretch, State]]:
+    def play(
+        self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None
+    ) -> Iterator[tuple[Stretch, State]]:
         """Play a drive from states, in stretches, each with the states at its end; `rigs` (lanes,): a lane's corner."""
         which = self.lanes if rigs is None else rigs
         switched = self.bridge_A is not None and not self.averaged
@@ -110,7 +128,8 @@ class Ensemble:
             rows[-1] = min(rows[-1], end)
             part = between(drive, float(rows[0]), float(rows[-1]))
             intervals = self._cut(rows - rows[0], part)
-            values, state = run_on(self.bank, which, which, intervals, state, WATCHED)
+            alone = isinstance(drive, LaneDrives)  # lanes of a block share their steps, and each here jumps by itself
+            values, state = run_on(self.bank, which, which, intervals, state, WATCHED, alone=alone, few_alone=True)
             yield (rows, values), state
 
     def end_of(self, drive: Drive, state: State, rigs: Index | None = None) -> State:
@@ -118,9 +137,9 @@ class Ensemble:
         which = self.lanes if rigs is None else rigs
         end = float(drive.time_s[-1])
         intervals = self._cut(np.array([0.0, end]), drive)
-        return run_on(self.bank, which, which, intervals, state, WATCHED[:1])[1]
+        return run_on(self.bank, which, which, intervals, state, WATCHED[:1], few_alone=True)[1]
 
-    def _cut(self, rows_s: Array, drive: Drive) -> Intervals:
+    def _cut(self, rows_s: Array, drive: Drive | LaneDrives) -> Intervals:
         """A drive cut into intervals, scaled in each corner; where it has means, with the heat of what switches."""
         intervals = cut(rows_s, drive.time_s, self.gain[:, np.newaxis] * drive.current_A, drive.held)
         if self.bridge_A is None or not self.averaged:
@@ -128,10 +147,12 @@ class Ensemble:
         start, end = switching(intervals.start_A, self.bridge_A * self.gain)
         return Intervals(intervals.edges_s, intervals.row_of, start, end)
 
-    def hold(self, current_A: float, state: State, times_s: Array, rigs: Index | None = None) -> tuple[Array, State]:
+    def hold(
+        self, current_A: float | Array, state: State, times_s: Array, rigs: Index | None = None
+    ) -> tuple[Array, State]:
         """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
 
-        Times begin with 0.
+        Times begin with 0. An array has the current of each corner.
         """
         which = self.lanes if rigs is None else rigs
         if self.ideal:
@@ -148,24 +169,27 @@ class Ensemble:
         times = np.append(np.arange(0.0, time_s - 1e-9, min(1.0, time_s)), time_s)
         return self._stepped(current_A, state, times, which)[1]
 
-    def modes(self, current_A: float) -> ConstantCurrent:
+    def modes(self, current_A: float | Array) -> ConstantCurrent:
         """Modes of all corners under a constant current, or the mean of a bridge's."""
-        if current_A not in self._modes:
-            mean = self.gain * current_A
-            square = mean**2 if self.bridge_A is None else np.abs(mean) * self.bridge_A * self.gain
-            self._modes[current_A] = ConstantCurrent.of(self.networks, mean, square)
-        return self._modes[current_A]
+        if isinstance(current_A, float) and current_A in self._modes:
+            return self._modes[current_A]
+        mean = self.gain * current_A
+        square = mean**2 if self.bridge_A is None else np.abs(mean) * self.bridge_A * self.gain
+        modes = ConstantCurrent.of(self.networks, mean, square)
+        if isinstance(current_A, float):
+            self._modes[current_A] = modes
+        return modes
 
-    def _stepped(self, current_A: float, state: State, times_s: Array, which: Index) -> tuple[Array, State]:
+    def _stepped(self, current_A: float | Array, state: State, times_s: Array, which: Index) -> tuple[Array, State]:
         rows = len(times_s) - 1
         currents = held_currents(
             self.gain * current_A, rows, None if self.bridge_A is None else self.bridge_A * self.gain
         )
         intervals = Intervals(times_s, np.arange(len(times_s)), currents[0], currents[1])
-        return run_on(self.bank, which, which, intervals, state, WATCHED)
+        return run_on(self.bank, which, which, intervals, state, WATCHED, few_alone=True)
 
 
-def row_of(drive: Drive) -> float:
+def row_of(drive: Drive | LaneDrives) -> float:
     """Distance in s of the rows that a drive is watched at: its shortest update or a whole part of it, at most ROW_S.
 
     Rows in step with the updates see each of them whole, and never finer than FINEST_S.
@@ -174,12 +198,18 @@ def row_of(drive: Drive) -> float:
     return float(max(FINEST_S, shortest / max(1.0, np.ceil(shortest / ROW_S - 1e-9))))
 
 
-def between(drive: Drive, begin_s: float, end_s: float) -> Drive:
+@overload
+def between(drive: Drive, begin_s: float, end_s: float) -> Drive: ...
+@overload
+def between(drive: Drive | LaneDrives, begin_s: float, end_s: float) -> Drive | LaneDrives: ...
+def between(drive: Drive | LaneDrives, begin_s: float, end_s: float) -> Drive | LaneDrives:
     """A drive from one time to another, on its own clock."""
     inside = (drive.time_s > begin_s + 1e-12) & (drive.time_s < end_s - 1e-12)
     times = np.concatenate([[begin_s], drive.time_s[inside], [end_s]])
     if drive.held:
         at = np.clip(np.searchsorted(drive.time_s, times + 1e-12, side="right") - 1, 0, len(drive.time_s) - 1)
+        if isinstance(drive, LaneDrives):
+            return LaneDrives(times - begin_s, drive.current_A[:, at])
         currents = drive.current_A[at]
     else:
         currents = np.interp(times, drive.time_s, drive.current_A)

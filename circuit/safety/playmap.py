@@ -32,6 +32,9 @@ MOST_CHOICES = 60
 POWERS = 40
 """Products that distinguish an eigenvalue below 1 from one above; where they fail, all are computed."""
 
+ROUNDING_K = 1e-11
+"""Howard's method has arrived when no node moves by more than this."""
+
 NEAR_K = 1e-6
 """Tolerance for the growth of a bound in one more play: rounding."""
 
@@ -111,8 +114,10 @@ def least_bound(maps: Sequence[PlayMap], starts_C: Sequence[Array], side: float)
         best = np.argmax(np.nan_to_num(options, nan=-np.inf), axis=0)
         if (best == chosen).all():
             break
-        chosen = best
+        chosen, before = best, now
         now = _solved(matrices[chosen, rig, node], constants[chosen, rig, node])
+        if (np.abs(now - before) <= ROUNDING_K).all():  # two that are equally large may go on changing places
+            break
     after = (np.einsum("kcij,cj->kci", matrices, now) + constants).max(axis=0)
     holds = (after <= now + NEAR_K).all(axis=1)
     return side * np.where(holds[:, np.newaxis], now, np.nan)

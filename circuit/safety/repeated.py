@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -117,9 +117,15 @@ class Repeating:
     drives: Sequence[Cycle]
     starts: Sequence[State]
     limits: Limits
+    _known: dict[tuple[float, bool], list[list[Tally]]] = field(default_factory=dict)
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
+        if (pause_s, endings) not in self._known:
+            self._known[pause_s, endings] = self._tallies(pause_s, endings)
+        return self._known[pause_s, endings]
+
+    def _tallies(self, pause_s: float, endings: bool) -> list[list[Tally]]:
         cycles = [replace(cycle, pause_s=pause_s) for cycle in self.drives]
         steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
         warm = bound(cycles, self.starts, steady, warm=True)
@@ -132,7 +138,7 @@ class Repeating:
             )  # rates hardly follow the pause
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
-                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.scenarios) if endings else ())]
+                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
             tallies.append(drive_tallies)
         return tallies
 
@@ -143,9 +149,8 @@ class Repeating:
     def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
         """The tally of a play from a state with its pause, and the state at the end of the play."""
         plays = plays_in(cycle, self.limits.session_s)
-        again = f"repeated plays with {cycle.pause_s:.4g} s of pause{what}"
-        names = [f"{corner}, {again}" for corner in self.ensemble.corners]
-        tally, now = Tally(self.limits, names, plays=plays, begun_C=begun), state
+        again = f", repeated plays with {cycle.pause_s:.4g} s of pause{what}"
+        tally, now = Tally(self.limits, self.ensemble.corners, again, plays=plays, begun_C=begun), state
         for (rows, values), then in self.ensemble.play(cycle.drive, state):
             tally.add(rows, values, rates=exact)
             now = then
@@ -155,11 +160,9 @@ class Repeating:
             tally.add(float(cycle.drive.time_s[-1]) + pause, rested, rates=False)
         return tally, now
 
-    def _endings(self, cycle: Cycle, ended: State, begun: Array, names: Sequence[str]) -> list[Tally]:
-        endings = {
-            ending: Tally(self.limits, [f"{name}, then {ending}" for name in names], begun_C=begun)
-            for ending in ENDINGS
-        }
+    def _endings(self, cycle: Cycle, ended: State, begun: Array, what: str) -> list[Tally]:
+        corners = self.ensemble.corners
+        endings = {ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS}
         end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
         follow_endings(self.ensemble, ended, last, end, endings, sums=False)
         return list(endings.values())
@@ -245,7 +248,7 @@ def _with(repeating: Repeating, corners: list[int]) -> Repeating:
         replace(cycle, ensemble=few, played=None if cycle.played is None else cycle.played.only(corners))
         for cycle in repeating.drives
     ]
-    return replace(repeating, ensemble=few, drives=cycles, starts=starts)
+    return Repeating(few, cycles, starts, repeating.limits)
 
 
 def shortest_of(safe: Callable[[float], bool]) -> float | None:

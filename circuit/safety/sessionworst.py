@@ -46,7 +46,7 @@ def worst_case_of(played: SessionDrive, rig: Rig, limits: Limits, progress: Prog
         ensemble, drive = Ensemble.of(rig), played.drive
         start = state = ensemble.at_rest(played.rest_A)
         end_s = float(drive.time_s[-1])
-        whole = Tally(limits, [str(corner) for corner in ensemble.corners])
+        whole = Tally(limits, ensemble.corners)
         for (rows, values), then in ensemble.play(drive, state):
             whole.add(rows, values)
             state = then

@@ -13,10 +13,10 @@ from ..solver.drive import Drive
 from .checks import Check, worst_of
 from .demands import Demands
 from .endings import ENDINGS, dose_time_s, follow_endings, judge_the_end, zero_current_C
-from .ensemble import Ensemble
+from .ensemble import Ensemble, LaneDrives
 from .repeated import Repeated, recovery_s, skin_C
 from .single_faults import Faulty
-from .tally import WATCHED, Tally
+from .tally import WATCHED, Tally, worst_of_lanes
 
 MOST_CORNERS = 6
 """Corners in which single faults are simulated: the rig as given, and the worst ones."""
@@ -42,16 +42,7 @@ class Single:
     @staticmethod
     def of(ensemble: Ensemble, drive: Drive, rest_A: float, limits: Limits) -> Single:
         """Play a drive; raises RigError where the rig as given has no steady state to start from."""
-        start = ensemble.at_rest(rest_A)
-        played, state = Tally(limits, [str(corner) for corner in ensemble.corners]), start
-        for (rows, values), then in ensemble.play(drive, start):
-            played.add(rows, values)
-            state = then
-        tallies = {ending: played.fork(f"then {ending}") for ending in ENDINGS}
-        end_s = float(drive.time_s[-1])
-        after = follow_endings(ensemble, state, float(drive.current_A[-1]), end_s, tallies)
-        begun = skin_C(ensemble, start)
-        judged = (played, *tallies.values(), judge_the_end(ensemble, limits, end_s, begun))
+        start, state, judged, after = _played(ensemble, drive, rest_A, limits)
         recovery = recovery_s(ensemble, rest_A, start, state)
         return Single(ensemble, drive, rest_A, limits, start, state, judged, after, recovery)
 
@@ -95,3 +86,24 @@ class Single:
     def drift_C(self) -> float:
         """Steady skin temperature in °C under zero current on the rig as given."""
         return float(zero_current_C(self.ensemble)[WATCHED.index("skin_C"), 0])
+
+
+def checks_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> tuple[Check, ...]:
+    """Every rule in its worst scenario where each corner plays a drive of its own, from rest at its first current."""
+    return worst_of_lanes(_played(ensemble, drives, drives.current_A[:, 0], limits)[2])
+
+
+def _played(
+    ensemble: Ensemble, drive: Drive | LaneDrives, rest_A: float | Array, limits: Limits
+) -> tuple[State, State, tuple[Tally, ...], dict[str, Array]]:
+    """Play a drive: the states it starts from and ends with, its tallies, and the skin 60 s later for each ending."""
+    start = ensemble.at_rest(rest_A)
+    played, state = Tally(limits, ensemble.corners), start
+    for (rows, values), then in ensemble.play(drive, start):
+        played.add(rows, values)
+        state = then
+    tallies = {ending: played.fork(f"then {ending}") for ending in ENDINGS}
+    end_s, last_A = float(drive.time_s[-1]), drive.current_A[..., -1]
+    after = follow_endings(ensemble, state, last_A if last_A.ndim else float(last_A), end_s, tallies)
+    begun = skin_C(ensemble, start)
+    return start, state, (played, *tallies.values(), judge_the_end(ensemble, limits, end_s, begun)), after

@@ -99,7 +99,7 @@ class Faulty:
             state = cold
             if rest_s > 0:
                 state = self.ensemble.rest(self.rest_A, cold, rest_s)
-            tally = Tally(self.limits, [str(corner) for corner in self.ensemble.corners])
+            tally = Tally(self.limits, self.ensemble.corners)
             for (rows, values), _ in self.ensemble.play(self.drive, state):
                 tally.add(rows, values)
             return tally
@@ -123,7 +123,7 @@ class Faulty:
     def polarity(self) -> tuple[PolarityCheck, SingleFault]:
         """The effect of swapped poles, and the wiring check that detects them."""
         swapped = Drive(self.drive.time_s, -self.drive.current_A, self.drive.held)
-        tally = Tally(self.limits, [f"{corner}, poles swapped" for corner in self.ensemble.corners])
+        tally = Tally(self.limits, self.ensemble.corners, ", poles swapped")
         low, high = np.inf, -np.inf
         for (rows, values), _ in self.ensemble.play(swapped, self.ensemble.at_rest(0.0)):
             tally.add(rows, values)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import deepcopy
+from copy import copy
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
+import numpy.typing as npt
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..rig.rules import Limits, Rule
 from .checks import LEVEL, Check
-from .exposure import cem43_min, henriques
+from .exposure import constants
 
 WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""
@@ -19,21 +21,50 @@ WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 COLDEST_C, HOTTEST_C = -273.0, 1000.0
 """A run that diverges counts as this hot, so that it fails every limit instead of being lost as NaN."""
 
-_COLUMN_OF = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
-"""Places of temperature limits other than the skin surface."""
+SPAN_C = np.array([COLDEST_C, HOTTEST_C])
 
-RATE = "rate of skin temperature"
-SUMMED = ("thermal dose", "Henriques integral")
-"""Quantities that add up over time, as the time of the display above a limit does."""
+SKIN, DISPLAY, RECEPTOR, HOT_PLATE, RATE, DOSE, BURN, WARMER = range(8)
+"""Codes of quantities: the columns of WATCHED, then what is computed from them; the last three add up."""
+
+_CODE_OF = {
+    "display": DISPLAY,
+    "cold-receptor depth": RECEPTOR,
+    "hot plate": HOT_PLATE,
+    "rate of skin temperature": RATE,
+    "thermal dose": DOSE,
+    "Henriques integral": BURN,
+}
+"""Quantities other than the skin surface, and the time of the display above a temperature."""
+
+Flags = npt.NDArray[np.bool_]
 
 
-@dataclass(slots=True)
-class _Extreme:
-    """Extreme of a rule's quantity in each lane: the value, its time, and since when the limit is exceeded."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Rules:
+    """Rules as the kernel expects them: codes of quantities (q,), and what each rule is about (rules,)."""
 
-    value: Array
-    at_s: Array
-    since_s: Array
+    code: Index
+    above_C: Array
+    rule_of: Index
+    limit: Array
+    relative: Flags
+    upper: Flags
+    hard: Flags
+
+    @staticmethod
+    def of(rules: Sequence[Rule]) -> _Rules:
+        """The rules of limits, in their order."""
+        first = {rule.quantity: rule for rule in reversed(rules)}
+        names = list(first)
+        return _Rules(
+            np.array([_code_of(rule) for rule in first.values()], dtype=np.int64),
+            np.array([rule.above_C or 0.0 for rule in first.values()]),
+            np.array([names.index(rule.quantity) for rule in rules], dtype=np.int64),
+            np.array([float(rule.limit) for rule in rules]),
+            np.array([rule.relative for rule in rules], dtype=np.bool_),
+            np.array([rule.upper for rule in rules], dtype=np.bool_),
+            np.array([rule.severity == "hard" for rule in rules], dtype=np.bool_),
+        )
 
 
 class Tally:
@@ -44,7 +75,9 @@ class Tally:
     limits
         The rules.
     scenarios
-        A few words for each lane.
+        What is written as a few words for each lane.
+    what
+        What follows the words of every lane.
     plays
         Number of plays in a session, by which sums over time are multiplied.
     begun_C
@@ -53,12 +86,21 @@ class Tally:
     """
 
     def __init__(
-        self, limits: Limits, scenarios: Sequence[str], *, plays: int = 1, begun_C: Array | None = None
+        self,
+        limits: Limits,
+        scenarios: Sequence[object],
+        what: str = "",
+        *,
+        plays: int = 1,
+        begun_C: Array | None = None,
     ) -> None:
-        self.limits, self.scenarios, self.plays = limits, tuple(scenarios), plays
-        self._begun = begun_C
-        self._sums: dict[str, Array] = {}
-        self._extremes: dict[int, _Extreme] = {}
+        self.limits, self.scenarios, self.what, self.plays = limits, scenarios, what, plays
+        self._begun, self._rules = begun_C, _Rules.of(limits.rules)
+        rules, lanes = len(limits.rules), len(scenarios)
+        self._sums = np.zeros((len(self._rules.code), lanes))
+        self._present = np.zeros(rules, dtype=np.bool_)
+        self._value, self._at_s = np.zeros((rules, lanes)), np.zeros((rules, lanes))
+        self._since_s = np.full((rules, lanes), np.nan)
 
     def add(self, time_s: Array, watched: Array, *, rates: bool = True, sums: bool = True, drift: bool = False) -> None:
         """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which continue those before.
@@ -66,114 +108,105 @@ class Tally:
         Without `rates` no rate is taken over these rows, and without `sums` nothing is summed over them, since they are
         states far apart. A `drift` is not a stimulus: only hard limits apply, and changes do not count.
         """
-        columns = dict(zip(WATCHED, _finite(watched), strict=True))
+        from .tally_kernel import count
+
         if self._begun is None:
-            self._begun = columns["skin_C"][:, 0].copy()
-        measured: dict[str, Array | None] = {}
-        for place, rule in enumerate(self.limits.rules):
-            if rule.quantity not in measured:
-                skip = (rule.quantity == RATE and not rates) or (_adds_up(rule) and not sums)
-                measured[rule.quantity] = None if skip else self._measured(rule, time_s, columns)
-            values = measured[rule.quantity]
-            if values is not None and not (drift and (rule.relative or rule.severity != "hard")):
-                self._count(place, rule, time_s, values)
+            self._begun = _finite(watched[0, :, 0])
+        rules = self._rules
+        count(
+            time_s, np.ascontiguousarray(watched), rules.code, rules.above_C, constants(), SPAN_C, LEVEL,
+            float(self.plays), rules.rule_of, rules.limit, rules.relative, rules.upper, rules.hard, rates, sums, drift,
+            self._begun, self._sums, self._present, self._value, self._at_s, self._since_s,
+        )  # fmt: skip
 
     def fork(self, what: str) -> Tally:
         """A copy of the state so far under other names: those of the scenarios followed by `what`."""
-        other = deepcopy(self)
-        other.scenarios = tuple(f"{scenario}, {what}" for scenario in self.scenarios)
+        other = copy(self)
+        other.what = f"{self.what}, {what}"
+        other.copy_from(self)
         return other
 
-    def limits_of(self, rule: Rule) -> Array:
-        """The limit of a rule in each lane (lanes,)."""
-        assert self._begun is not None
-        return self._begun + rule.limit if rule.relative else np.full(len(self._begun), rule.limit)
+    def copy_from(self, other: Tally) -> None:
+        """Take over the state of another tally with the same rules and lanes; the names stay."""
+        self._begun = other._begun
+        for name in ("_sums", "_present", "_value", "_at_s", "_since_s"):
+            setattr(self, name, getattr(other, name).copy())
 
-    def checks(self) -> tuple[Check, ...]:
-        """Every rule once, in its worst lane."""
-        return tuple(self._check(place, rule) for place, rule in enumerate(self.limits.rules))
+    def checks(self, lanes: Index | None = None) -> tuple[Check, ...]:
+        """Every rule once, in its worst lane, or in the lane given for each rule (rules,)."""
+        lanes = self._worst() if lanes is None else lanes
+        every = np.arange(len(lanes))
+        value, at_s = self._value[every, lanes].tolist(), self._at_s[every, lanes].tolist()
+        since_s, limit = self._since_s[every, lanes].tolist(), self._limits()[every, lanes].tolist()
+        rows = zip(self.limits.rules, lanes.tolist(), value, at_s, since_s, limit, strict=True)
+        return tuple(
+            self._check(*row) if present else self._nothing(row[0])
+            for row, present in zip(rows, self._present.tolist(), strict=True)
+        )
 
     def summed(self, quantity: str) -> Array:
         """Sum of a quantity over time in each lane (lanes,)."""
-        return self._sums.get(quantity, np.zeros(len(self.scenarios)))
+        place = next(k for k, rule in enumerate(self.limits.rules) if rule.quantity == quantity)
+        return np.asarray(self._sums[self._rules.rule_of[place]])
 
     def worst_lanes(self, severity: str = "hard") -> tuple[int, ...]:
         """Lanes that are worst by some rule of a severity, each once."""
-        rules = [(place, rule) for place, rule in enumerate(self.limits.rules) if rule.severity == severity]
-        return tuple(dict.fromkeys(self._worst(place, rule) for place, rule in rules if place in self._extremes))
+        return tuple(dict.fromkeys(self._worst()[self._present & self._of(severity)].tolist()))
+
+    def beyond(self) -> Array:
+        """How far each rule is exceeded in each lane (rules, lanes), as `checks.beyond` of its check."""
+        nothing = np.array([check.value for check in map(self._nothing, self.limits.rules)])
+        limit = np.where(self._present[:, np.newaxis], self._limits(), self._rules.limit[:, np.newaxis])
+        value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])
+        return np.where(self._rules.upper[:, np.newaxis], value - limit, limit - value)
 
     def passes(self, severity: str = "hard") -> bool:
         """Whether no lane exceeds a limit of a severity."""
-        return all(
-            np.isnan(self._extremes[place].since_s).all()
-            for place, rule in enumerate(self.limits.rules)
-            if rule.severity == severity and place in self._extremes
-        )
+        return bool(np.isnan(self._since_s[self._of(severity)]).all())
 
-    def _measured(self, rule: Rule, time_s: Array, columns: dict[str, Array]) -> Array:
-        """The quantity (lanes, rows) that a rule limits."""
-        skin = columns["skin_C"]
-        if rule.quantity == RATE:
-            rates = np.diff(skin, axis=1) / np.diff(time_s)
-            return np.concatenate([rates[:, :1], rates], axis=1)
-        if not _adds_up(rule):
-            return columns[_COLUMN_OF.get(rule.quantity, "skin_C")]
-        if rule.above_C is not None:
-            warm = columns["display_C"]
-            over = 0.5 * (warm[:, 1:] + warm[:, :-1]) > rule.above_C
-            grown = np.concatenate([np.zeros((len(warm), 1)), np.cumsum(over * np.diff(time_s), axis=1)], axis=1)
-        else:
-            grown = cem43_min(time_s, skin) if rule.quantity == SUMMED[0] else henriques(time_s, skin)
-        grown = self.plays * grown + self._sums.get(rule.quantity, np.zeros(len(skin)))[:, np.newaxis]
-        self._sums[rule.quantity] = grown[:, -1]
-        return np.asarray(grown)
+    def _of(self, severity: str) -> Flags:
+        return self._rules.hard if severity == "hard" else ~self._rules.hard
 
-    def _count(self, place: int, rule: Rule, time_s: Array, values: Array) -> None:
-        side = 1.0 if rule.upper else -1.0
-        most = side * (side * values).max(axis=1)
-        lanes = np.arange(len(most))
-        near = side * values >= (side * most)[:, np.newaxis] - LEVEL
-        at = time_s[near.argmax(axis=1)]
-        limits = self.limits_of(rule)
-        over = side * (values - limits[:, np.newaxis]) > 0
-        since = np.where(over.any(axis=1), time_s[over.argmax(axis=1)], np.nan)
-        extreme = self._extremes.get(place)
-        if extreme is None:
-            self._extremes[place] = _Extreme(most, at, since)
-            return
-        later = side * most > side * extreme.value + LEVEL
-        extreme.at_s[lanes[later]] = at[later]
-        extreme.value = side * np.maximum(side * extreme.value, side * most)
-        extreme.since_s = np.where(np.isnan(extreme.since_s), since, extreme.since_s)
+    def _limits(self) -> Array:
+        """The limit of every rule in each lane (rules, lanes)."""
+        limit, begun = self._rules.limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
+        return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.scenarios)))
 
-    def _worst(self, place: int, rule: Rule) -> int:
-        side = 1.0 if rule.upper else -1.0
-        return int(np.argmax(side * (self._extremes[place].value - self.limits_of(rule))))
+    def _worst(self) -> Index:
+        """The lane that is worst by each rule (rules,), the first of equals."""
+        side = np.where(self._rules.upper, 1.0, -1.0)[:, np.newaxis]
+        return np.asarray(np.argmax(side * (self._value - self._limits()), axis=1))
 
-    def _check(self, place: int, rule: Rule) -> Check:
-        if place not in self._extremes:  # nothing that this rule limits was added
-            nothing = 0.0 if rule.upper or rule.quantity == RATE else HOTTEST_C
-            return Check(rule.quantity, rule.severity, nothing, rule.limit, rule.unit, 0.0, None, rule.source, "",
-                         rule.upper, self.scenarios[0])  # fmt: skip
-        lane, extreme = self._worst(place, rule), self._extremes[place]
-        since = float(extreme.since_s[lane])
-        return Check(
-            rule.quantity,
-            rule.severity,
-            float(extreme.value[lane]),
-            float(self.limits_of(rule)[lane]),
-            "°C" if rule.relative else rule.unit,
-            float(extreme.at_s[lane]),
-            None if np.isnan(since) else since,
-            rule.source,
-            f", {abs(rule.limit):g} K from where it began," if rule.relative else "",
-            rule.upper,
-            self.scenarios[lane],
-        )
+    def _check(self, rule: Rule, lane: int, value: float, at_s: float, since_s: float, limit: float) -> Check:
+        unit = "°C" if rule.relative else rule.unit
+        since = None if isnan(since_s) else since_s
+        note = f", {abs(rule.limit):g} K from where it began," if rule.relative else ""
+        name = f"{self.scenarios[lane]}{self.what}"
+        return Check(rule.quantity, rule.severity, value, limit, unit, at_s, since, rule.source, note, rule.upper, name)
+
+    def _nothing(self, rule: Rule) -> Check:
+        """The check of a rule of which nothing that it limits was added."""
+        value = 0.0 if rule.upper or _code_of(rule) == RATE else HOTTEST_C
+        name = f"{self.scenarios[0]}{self.what}"
+        limit, unit = rule.limit, rule.unit
+        return Check(rule.quantity, rule.severity, value, limit, unit, 0.0, None, rule.source, "", rule.upper, name)
 
 
-def _adds_up(rule: Rule) -> bool:
-    return rule.above_C is not None or rule.quantity in SUMMED
+def worst_of_lanes(tallies: Sequence[Tally]) -> tuple[Check, ...]:
+    """Every rule in its worst tally and lane: `checks.worst_of` in each lane, and then of all lanes."""
+    every = np.array([tally.beyond() for tally in tallies])
+    which = np.argmax(every >= every.max(axis=0) - LEVEL, axis=0)
+    in_lane = np.take_along_axis(every, which[np.newaxis], axis=0)[0]
+    lanes = np.argmax(in_lane >= in_lane.max(axis=1, keepdims=True) - LEVEL, axis=1)
+    checks = [tally.checks(lanes) for tally in tallies]
+    return tuple(checks[which[rule, lane]][rule] for rule, lane in enumerate(lanes.tolist()))
+
+
+def _code_of(rule: Rule) -> int:
+    """The code of the quantity that a rule limits, as the kernel expects it."""
+    if rule.above_C is not None:
+        return WARMER
+    return _CODE_OF.get(rule.quantity, SKIN)
 
 
 def _finite(values: Array) -> Array:

@@ -173,7 +173,7 @@ def tally_once(
 ) -> tuple[list[Tally], list[Array]]:
     """Every rule over one play and its endings, and the states at the end of the play."""
     values, ended = under.play(course, under.steady(float(course.display_C[0])))
-    played = Tally(limits, [f"{corner}, {course.way}" for corner in under.corners])
+    played = Tally(limits, under.corners, f", {course.way}")
     played.add(course.rows_s, values, rates=rates)
     tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
     add_endings(under, course, ended, tallies)
@@ -192,7 +192,7 @@ def add_endings(
 
 def time_to_limit_s(under: Under, limits: Limits, level_C: float, start: Sequence[Array]) -> tuple[float, Tally]:
     """Time in s for which a display may be held at a level before a hard temperature limit is exceeded, 60 at most."""
-    tally = Tally(limits, [str(corner) for corner in under.corners])
+    tally = Tally(limits, under.corners)
     tally.add(ENDING_ROWS_S, under.hold(level_C, start, ENDING_ROWS_S), rates=False, sums=False)
     broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]
     return min(broken, default=ENDING_S), tally

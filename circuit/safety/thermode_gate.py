@@ -151,15 +151,14 @@ def _cycle_checks(
     what: str,
     rates: bool,
 ) -> list[tuple[Check, ...]]:
-    again = f"{course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
-    names = [f"{corner}, {again}" for corner in under.corners]
+    again = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     values, ended = under.play(course, states)
-    tally = Tally(limits, names, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
+    tally = Tally(limits, under.corners, again, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
     tally.add(course.rows_s, values, rates=rates)
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
-    endings = [Tally(limits, [f"{name}, then {ending}" for name in names], begun_C=begun_C) for ending in ENDINGS]
+    endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in ENDINGS]
     add_endings(under, course, ended, endings, sums=False)
     return [tally.checks(), *(ending.checks() for ending in endings)]
 

@@ -131,9 +131,12 @@ class State:
 
 def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
-    extra: tuple[Index, Array] | None = None,
+    extra: tuple[Index, Array] | None = None, *, alone: bool = False, few_alone: bool = False,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from any states; also returns the states at the end."""
+    """`run_forward` from any states; also returns the states at the end.
+
+    `alone`: each lane has steps of its own. `few_alone`: so have a few lanes after the last whole block.
+    """
     from . import kernel, kernel_batch
 
     which = [RECORDED.index(probe) for probe in probes]
@@ -154,7 +157,13 @@ def run_on(
             sinks, out, final,
         )  # fmt: skip
 
-    _on_all_cores(work, len(rig_of), len(intervals.edges_s))
+    lanes = len(rig_of)
+    beyond = lanes % kernel_batch.LANES if few_alone else 0
+    single = lanes if alone else (beyond if beyond < FEWEST else 0)
+    if single < lanes:
+        _on_all_cores(work, lanes - single, len(intervals.edges_s))
+    if single:
+        work(np.arange(lanes - single, lanes, dtype=np.int64))
     return out, State(final, sinks)
 
 

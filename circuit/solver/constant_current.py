@@ -89,14 +89,14 @@ class ConstantCurrent:
 
     def run(self, rigs: Index, nodes_C: Array, times_s: Array, probes: Sequence[str]) -> Array:
         """Return probes (probes, lanes, times) at times from now of lanes on `rigs` (lanes,); nodes (lanes, n + 3)."""
+        from . import kernel_modes
+
         rest = self.rest_C[rigs]
         modes = np.einsum("lmk,lk->lm", self.to_modes[rigs], nodes_C[:, :-1] - rest)
         rows = [READ.index(probe) for probe in probes]
         values = np.empty((len(probes), len(rigs), len(times_s)))
-        for lane, rig in enumerate(rigs.tolist()):
-            decay = np.exp(np.clip(-np.outer(self.rate_per_s[rig], times_s), None, FARTHEST))
-            read = self.reading[rig][rows] * modes[lane]
-            values[:, lane] = self.level_C[rig][rows][:, np.newaxis] + read @ decay
+        reading, level = np.ascontiguousarray(self.reading[:, rows]), np.ascontiguousarray(self.level_C[:, rows])
+        kernel_modes.relax(rigs, times_s, self.rate_per_s, modes, reading, level, values)
         return values
 
     def after(self, rigs: Index, nodes_C: Array, time_s: float) -> Array:

@@ -55,20 +55,14 @@ class SkinModes:
         >>> bool(np.ptp(felt[0]) == 0.0)
         True
         """
-        from scipy.signal import lfilter
+        from . import kernel_modes
 
-        above = display_C - self.deep_C
         keep, now, then = _weights(self.rate_per_s, step_s)
-        values = self.direct[:, np.newaxis] * above + self.offset_C[:, np.newaxis]
-        end = modes.copy()
-        for k in range(len(modes)):
-            forcing = self.drive_per_s[k] * (now[k] * above[:-1] + then[k] * above[1:])
-            mode = np.empty(len(above))
-            mode[0] = modes[k]
-            if len(forcing):
-                mode[1:], _ = lfilter([1.0], [1.0, -keep[k]], forcing, zi=[keep[k] * modes[k]])
-            values += self.reading[:, k, np.newaxis] * mode
-            end[k] = mode[-1]
+        values, end = np.empty((len(self.reading), len(display_C))), modes.copy()
+        kernel_modes.follow_display(
+            display_C - self.deep_C, keep, now, then, self.drive_per_s, self.reading, self.direct, self.offset_C, end,
+            values,
+        )  # fmt: skip
         return values, end
 
     def run_many(self, display_C: Array, step_s: float, rows: Sequence[int]) -> Array:

@@ -11,7 +11,7 @@ import typer
 from thermicon.icons.number_text import number
 
 from ..files.cues import pick, read_set, warn_of_site
-from ..files.export_folder import check_export_folder
+from ..files.export_folder import check_export_folder, check_names_free
 from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
 from ..text.messages import REFUSED, note, progress_bar
@@ -39,13 +39,14 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; exit code 3 if that is refused."""
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.pack import check_names
+    from thermicon.circuit.packing.pack import check_names, known_names
 
     form = load_format(to)
     check_export_folder(folder)
     whole = read_set([file])
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
+    check_names_free(known_names([one.name for one in chosen], form), folder, replace=force)
     warn_of_site(file, whole, rig)
     with progress_bar("simulating") as progress:
         rest = others(whole, chosen)

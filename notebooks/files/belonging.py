@@ -28,10 +28,7 @@ def replaced_with(files: Mapping[str, bytes], there: Mapping[str, Path], folder:
     ours = {*claims, *(name for each in claims.values() for name in each.digests)}
     for name, content in files.items():
         if name in there and name not in ours and there[name].read_bytes() != content:
-            raise OutputError(
-                f"{folder / name} was not written by an export, since no sidecar lists it, and is kept; move it away, "
-                f"or {CURE}"
-            )
+            raise OutputError(not_ours(folder / name))
     kept = {sidecar: each for sidecar, each in claims.items() if sidecar not in files}
     for sidecar, each in kept.items():
         for name, known in each.digests.items():
@@ -53,6 +50,11 @@ def replaced_with(files: Mapping[str, bytes], there: Mapping[str, Path], folder:
                 )
             gone.append(name)
     return tuple(gone)
+
+
+def not_ours(path: Path) -> str:
+    """Why a file is not replaced that no export wrote."""
+    return f"{path} was not written by an export, since no sidecar lists it, and is kept; move it away, or {CURE}"
 
 
 def claims_in(there: Mapping[str, Path]) -> dict[str, Claims]:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from .belonging import replaced_with
+from .belonging import claims_in, not_ours, replaced_with
 from .locking import lock
 from .outputs import OutputError, check_folder, interrupts_wait
 from .swapping import exchange
@@ -49,6 +49,20 @@ def check_export_folder(folder: Path) -> Path:
     if goal.exists():
         _listed(goal, folder)
     return goal
+
+
+def check_names_free(names: Collection[str], folder: Path, replace: bool = False, how: str = HOW) -> None:
+    """Raise OutputError where files of these names, which an export will write, are in its folder and have to stay.
+
+    What a file holds is not known yet: of what may be replaced, only sidecars that are none are refused here, and
+    `publish` checks everything.
+    """
+    goal = check_export_folder(folder)
+    there = _listed(goal, folder) if goal.exists() else {}
+    _keep(names, there, folder, replace, how)
+    sidecars = {name: goal / name for name in names if name in there and name.endswith(".json")}
+    for name in sorted(set(sidecars) - set(claims_in(sidecars))):
+        raise OutputError(not_ours(folder / name))
 
 
 def publish(files: Mapping[str, bytes], folder: Path, replace: bool = False, how: str = HOW) -> tuple[str, ...]:

@@ -73,7 +73,7 @@ def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
 def _show(found: Verification) -> None:
     rows = table("drive", "sidecar", "holds", "belongs", names=("drive", "sidecar"))
     for pair in found.pairs:
-        bad = found.wrong(pair.drive, pair.sidecar)
+        bad = found.wrong(*pair.files)
         rows.add_row(_clean(pair.drive), _clean(pair.sidecar), _held(pair), "NO" if bad else "yes")
     show(rows)
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..files.cues import MOST_ICONS
 from ..figures.map_drawing import distinct
+from ..files.cues import MOST_ICONS
 from .cue_check import Reading, read_text
 from .frames import CanvasFrame, traces_of
 

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
+import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.safety.checks import worst_of
+from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import gate_set
+from thermicon.circuit.safety.single import Single, checks_of_lanes
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -52,6 +58,23 @@ class TestWorstCase:
         assert found.device.most("carrier frequency") >= 100.0, "too fast for a plate to follow"
         (by_means,) = gate_set([(means, 1.5 * float(rest))], RIG, bridge_A=1.5, averaged=True)
         assert worst_case(found) == by_means
+
+    def test_lanes_with_drives_of_their_own_are_judged_as_each_corner_by_itself(self) -> None:
+        corners = [replace(corners_of(RIG)[k], gain_relative=0.0) for k in (0, 5, 40)]
+        time_s = np.arange(41) * 0.1
+        amps = [0.08 + 0.3 * (k + 1) * np.sin(np.pi * time_s / 4.0) for k in range(3)]
+        together = checks_of_lanes(
+            Ensemble.on(RIG, tuple(corners), None), LaneDrives(time_s, np.array(amps)), RIG.limits
+        )
+        each = [
+            Single.of(
+                Ensemble.on(RIG, (corner,), None), Drive(time_s, own, held=True), float(own[0]), RIG.limits
+            ).checks
+            for corner, own in zip(corners, amps, strict=True)
+        ]
+        for one, other in zip(together, worst_of(each), strict=True):
+            assert one.value == pytest.approx(other.value, rel=1e-9)
+            assert replace(one, value=0.0) == replace(other, value=0.0)
 
     def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
         found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").delivery)

@@ -8,6 +8,7 @@ import pytest
 from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate
 from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.repeated import PauseError, Repeating, recovery_s, shortest_pause_s, skin_C
@@ -197,3 +198,19 @@ def test_skin_is_read_off_states() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
     assert skin_C(ensemble, start) == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][0, :, 0])
+
+
+def test_a_bound_that_starts_where_it_ends_is_found_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    ensemble = few()
+    cycles, start = cycles_of(ensemble, 5.0, as_maps=True)
+    steady = [steady_cycle(cycle, start)[0] for cycle in cycles[:1]]
+    solved, plain = [], playmap._solved
+
+    def counted(matrix: np.ndarray, constant: np.ndarray) -> np.ndarray:
+        solved.append(len(matrix))
+        return plain(matrix, constant)
+
+    monkeypatch.setattr(playmap, "_solved", counted)
+    found = bound(cycles[:1], steady, steady, warm=True)
+    assert np.abs(found.nodes_C - steady[0].nodes_C).max() < 1e-9
+    assert len(solved) <= 3

@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Limits
 from thermicon.circuit.safety.checks import Check, worst_of
-from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 LIMITS = Limits.shipped()
 TIME = np.linspace(0.0, 20.0, 2001)
@@ -96,3 +96,43 @@ def test_of_equals_the_first_is_named_and_rounding_is_no_difference() -> None:
 
     assert worst_of([[one(41.0, "once")], [one(41.0 + 1e-9, "again")]])[0].scenario == "once"
     assert worst_of([[one(41.0, "once")], [one(41.01, "again")]])[0].scenario == "again"
+
+
+def test_the_worst_of_lanes_is_the_worst_of_each_lane_by_itself() -> None:
+    rng = np.random.default_rng(5)
+    names = ["a", "b", "c", "d"]
+    courses = 32.0 + np.cumsum(rng.normal(0.0, 0.2, (2, len(WATCHED), len(names), len(TIME))), axis=-1)
+    courses[:, :, 2] = courses[:, :, 1]  # of equals the first is named
+
+    def tallies(lanes: list[int]) -> list[Tally]:
+        both = []
+        for what, values in zip((", once", ", again"), courses, strict=True):
+            tally = Tally(LIMITS, [names[lane] for lane in lanes], what)
+            tally.add(TIME, values[:, lanes], rates=what == ", once")
+            both.append(tally)
+        return both
+
+    each = [worst_of(tally.checks() for tally in tallies([lane])) for lane in range(len(names))]
+    found = worst_of_lanes(tallies([0, 1, 2, 3]))
+    assert found == worst_of(each)
+    assert {check.scenario.partition(",")[0] for check in found} <= {"a", "b", "d"}
+
+
+def test_a_run_that_diverges_fails_as_the_hottest() -> None:
+    values = np.full((4, 1, 3), 32.0)
+    values[0, 0, 1:] = np.nan, np.inf
+    tally = Tally(LIMITS, ["a"])
+    tally.add(np.array([0.0, 1.0, 2.0]), values)
+    assert not tally.passes()
+    assert check_of(tally, "skin surface").value == HOTTEST_C
+    assert check_of(tally, "skin surface").since_s == 1.0
+    assert check_of(tally, "Henriques integral").value > 1.0
+
+
+def test_a_tally_takes_over_the_state_of_another_and_keeps_its_names() -> None:
+    tally, other = Tally(LIMITS, ["a"], ", then nothing"), Tally(LIMITS, ["a"], ", then power off")
+    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 44.0))
+    other.copy_from(tally)
+    tally.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 50.0))
+    check = check_of(other, "skin surface")
+    assert (check.value, check.scenario) == (44.0, "a, then power off")

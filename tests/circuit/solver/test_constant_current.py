@@ -78,3 +78,30 @@ def test_a_pause_is_the_same_as_a_map() -> None:
     free = np.einsum("rij,rj->ri", matrix, state.nodes_C[:, :-1]) + constant
     assert np.abs(free - few.rest(0.08, State(state.nodes_C, state.sink), 12.5).nodes_C[:, :-1]).max() < 1e-9
     assert matrix.min() > -1e-9, "no node gets colder because another is warmer"
+
+
+def test_any_rows_are_exponentials_of_their_own() -> None:
+    few = ensemble()
+    modes, start = few.modes(0.4), few.at_rest(0.1)
+    times = np.concatenate(
+        [np.arange(300) * 0.1, [30.5, 30.7], 31.0 + np.arange(200) * 1.0, np.geomspace(300.0, 900.0, 30)]
+    )
+    found = modes.run(LANES, start.nodes_C, times, READ)
+    for lane in LANES.tolist():
+        away = modes.to_modes[lane] @ (start.nodes_C[lane, :-1] - modes.rest_C[lane])
+        decay = np.exp(-np.outer(modes.rate_per_s[lane], times))
+        plain = modes.level_C[lane][:, np.newaxis] + (modes.reading[lane] * away) @ decay
+        assert np.abs(found[:, lane] - plain).max() < 1e-10
+
+
+def test_a_lane_beyond_the_last_block_is_the_same_alone() -> None:
+    every = Ensemble.of(THENAR)
+    lanes = np.arange(33, dtype=np.int64)
+    times = np.arange(201) * 0.01
+    amps = np.repeat(0.5 * every.gain[np.newaxis, :33], len(times) - 1, axis=0)
+    intervals = Intervals(times, np.arange(len(times)), amps, amps)
+    start = every.at_rest(0.1).take(lanes)
+    padded, _ = run_on(every.bank, lanes, lanes, intervals, start, READ)
+    alone, _ = run_on(every.bank, lanes, lanes, intervals, start, READ, few_alone=True)
+    assert (padded[:, :32] == alone[:, :32]).all()
+    assert np.abs(padded[:, 32] - alone[:, 32]).max() < 1e-9

@@ -17,6 +17,7 @@ import pytest
 from tests.circuit.surerig import SURE
 from thermicon.circuit import Device, Rig, deliver
 from thermicon.icons import read_cue
+from thermicon.notebooks.cli import export as exporting
 
 Cli = Callable[..., Any]
 COLD = """cue 1
@@ -179,6 +180,35 @@ class TestFiles:
         assert cli("export", two, "--to", "csv", "-o", out, "--force", *SURE).exit_code == 0
         assert (out / "cool-step.csv").read_text() != "mine"
         assert json.loads((out / "cool-step.json").read_text())["forced"] is False
+
+    @pytest.mark.parametrize(
+        ("name", "more", "words"),
+        [
+            ("warm-step.csv", (), "warm-step.csv already exists and was kept; --force replaces it"),
+            ("cool-step.json", ("--force",), "cool-step.json was not written by an export, since no sidecar lists it"),
+        ],
+    )
+    def test_a_file_in_the_way_is_reported_before_anything_is_simulated(
+        self,
+        cli: Cli,
+        two: Path,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+        name: str,
+        more: tuple[str, ...],
+        words: str,
+    ) -> None:
+        def simulated(*_: object, **__: object) -> None:
+            raise AssertionError("simulated")
+
+        monkeypatch.setattr(exporting, "prepare_icons", simulated)
+        out = tmp_path / "out"
+        out.mkdir()
+        (out / name).write_text("{}")
+        said = cli("export", two, "--to", "csv", "-o", out, *more)
+        assert said.exit_code == 1
+        assert words in said.stderr
+        assert (out / name).read_text() == "{}"
 
     def test_a_folder_in_no_folder_is_told_at_once(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         said = cli("export", two, "--to", "csv", "-o", tmp_path / "a" / "b")

@@ -180,6 +180,33 @@ class TestTampered:
             {**pair, "warming-step.json": alone["warming-step.json"]}
         )
 
+    def test_another_player_is_named_once_and_every_drive_depends_on_it(self, pair: dict[str, bytes]) -> None:
+        files = {**pair, "play_icons.py": pair["play_icons.py"] + b"#"}
+        assert said(files) == (
+            "play_icons.py: is not the set's file that all 2 sidecars of the folder were written for: its digest "
+            "differs; put the file back as it was exported, or export the icon again"
+        )
+        found = verify(files)
+        assert [found.wrong(*each.files) for each in found.pairs] == [True, True]
+        del files["play_icons.py"]
+        assert said(files).startswith("play_icons.py: is missing; all 2 sidecars of the folder belong to it")
+        other = {**pair, "warming-step.json": exported("psychopy", "warming-step")["warming-step.json"]}
+        assert {each.sidecar for each in verify(other).pairs if verify(other).wrong(*each.files)} == {
+            "cooling-step.json", "warming-step.json",
+        }  # fmt: skip
+
+    def test_a_damaged_sidecar(self, pair: dict[str, bytes]) -> None:
+        cut = pair["warming-step.json"][:-40]
+        text = said({**pair, "warming-step.json": cut})
+        assert (
+            "warming-step.json: is damaged: it cannot be read as JSON, so it describes no drive; put the file back"
+            in text
+        )
+        assert "warming-step.csv: has a damaged sidecar, warming-step.json, so its content is unknown" in text
+        alone = said({"warming-step.json": cut, "warming-step.csv": pair["warming-step.csv"]})
+        assert "warming-step.json: is damaged" in alone
+        assert "holds no sidecar" not in alone
+
     def test_a_sidecar_that_is_only_laid_out_anew(self, pair: dict[str, bytes]) -> None:
         neat = json.dumps(json.loads(pair["warming-step.json"]), ensure_ascii=False).encode()
         assert "has the same content, but not the layout" in said({**pair, "warming-step.json": neat})
@@ -266,6 +293,15 @@ class TestCommand:
             "the file back as it was exported, or export the icon again\n"
         ) in done.stderr
         assert done.stderr.endswith("1 thing does not belong together\n")
+
+    def test_no_drive_belongs_to_another_player(self, cli: Cli, out: Path) -> None:
+        with (out / "play_icons.py").open("a") as player:
+            player.write("# mine")
+        done = cli("export", "--verify", out)
+        assert done.exit_code == 1
+        assert {line.split()[-1] for line in done.stdout.splitlines() if "-step.csv" in line} == {"NO"}
+        assert done.stderr.count("wrong: ") == 1
+        assert "wrong: play_icons.py: is not the set's file" in done.stderr
 
     def test_an_export_verifies_itself(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "drives"
