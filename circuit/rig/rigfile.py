@@ -19,6 +19,7 @@ from ..inputs import (
     quoted,
     read_toml,
 )
+from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
 from .modules import module_faults
 from .rules import faults_of
@@ -64,6 +65,8 @@ Perfusion = Annotated[float, Field(ge=0, le=1)]
 Film = Annotated[float, Field(ge=1e-3, le=1e6)]
 
 Positive = Annotated[float, Field(gt=0)]
+MOST_LEG_NODES = 20
+"""Five nodes are within some millikelvins of the field in the legs; more only cost time."""
 MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 """Skin models have a handful of layers and rigs a few probes; each costs time in every step."""
 
@@ -93,6 +96,8 @@ class ModuleTable(_Table):
     extraction: Literal["three", "four"] | None = None
     hot_plate_J_per_K: Ideal
     cold_plate_J_per_K: Ideal
+    leg_nodes: Annotated[int, Field(ge=0, le=MOST_LEG_NODES)] = 0
+    leg_capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> ModuleTable:
@@ -104,12 +109,20 @@ class ModuleTable(_Table):
 class HeatSinkTable(_Table):
     """The heat sink under the hot plate."""
 
-    temperature_C: Celsius
+    temperature_C: Celsius | None = None
     resistance_K_per_W: Ideal
     capacity_J_per_K: Ideal | None = None
+    air_resistance_K_per_W: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
+    air_C: Celsius | None = None
     kp_W_per_K: Gain | None = None
     ki_W_per_Ks: Gain | None = None
     power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> HeatSinkTable:
+        if faults := heat_sink_faults(self):
+            raise ValueError("\n".join(faults))
+        return self
 
 
 class DriverTable(_Table):
@@ -127,6 +140,8 @@ class ContactTable(_Table):
 
     area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
+    # A hand that lands later than the cue begins would need a second cue; a skin is at rest after some minutes.
+    lands_s: Annotated[float, Field(ge=-600, le=0)] | None = None
 
 
 class ControllerTable(_Table):

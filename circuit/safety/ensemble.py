@@ -93,7 +93,7 @@ class Ensemble:
         except ArithmeticError as problem:
             if corner.nominal:
                 raise RigError(f"rig {corner.rig.name}: {problem}; begin the drive with a smaller current") from None
-            hottest = np.full(len(network.capacity_J_per_K) + 3, HOTTEST_C)
+            hottest = np.full(network.nodes, HOTTEST_C)
             hottest[-1] = network.deep_C
             return hottest
 
