@@ -187,7 +187,9 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     legs = (table.leg_nodes, table.leg_capacity_J_per_K or 0.0)
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)
-        return Peltier(alpha, ohm, theta, *plates, *legs), ModuleOrigin(f"parameters given: {source or 'no source stated'}")
+        return Peltier(alpha, ohm, theta, *plates, *legs), ModuleOrigin(
+            f"parameters given: {source or 'no source stated'}"
+        )
     what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", []
     if table.name is not None:
         try:

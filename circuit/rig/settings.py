@@ -86,7 +86,11 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         raise RigError(
             unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
         )
-    if parts[0] == "module" and not key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K")) and place.get(parts[-1]) != value:
+    if (
+        parts[0] == "module"
+        and not key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K"))
+        and place.get(parts[-1]) != value
+    ):
         document.get("source", {}).pop("module", None)
     place[parts[-1]] = value
 

@@ -14,7 +14,7 @@ from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, cut, run_follow, run_forward, run_regulate
-from .displayed_batch import displays_on
+from .displayed import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from .network import network_of
 from .simulate import rows_until, simulate

@@ -180,6 +180,7 @@ def run_on(
 ) -> tuple[Array, State]:  # fmt: skip
     """`run_forward` from any states; also returns the states at the end."""
     from . import kernel, kernel_batch
+    from .kernel_legs import block_room, leg_room
 
     which = [RECORDED.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
@@ -196,11 +197,11 @@ def run_on(
         sinks[:, 0] = warm
 
     def work(part: Index) -> None:
-        run = kernel.forward if part.ndim == 1 else kernel_batch.forward
+        run, room = (kernel.forward, leg_room) if part.ndim == 1 else (kernel_batch.forward, block_room)
         run(
             part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
             bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, core,
-            sinks, out, final, cells,
+            sinks, out, final, cells, room(cells),
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of), len(intervals.edges_s))
@@ -212,17 +213,19 @@ def run_follow(
 ) -> tuple[Array, Array, Index]:
     """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
     from . import kernel, kernel_batch
+    from .kernel_legs import block_room, leg_room
 
     shape = (len(rig_of), target_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
     core, cells, warm = bank.parted(state, rig_of)
 
     def work(part: Index) -> None:
-        run = kernel.follow if part.ndim == 1 else kernel_batch.follow
+        run, room = (kernel.follow, leg_room) if part.ndim == 1 else (kernel_batch.follow, block_room)
+        ahead = None if cells is None else np.zeros(5)
         run(
             part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
             bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
-            cells, warm,
+            cells, warm, room(cells), room(cells), ahead,
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of))
@@ -241,6 +244,7 @@ def run_regulate(
 ) -> tuple[Array, Array, Index]:
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
     from . import kernel_pid
+    from .kernel_legs import leg_room
 
     shape = (len(rig_of), setpoint_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
@@ -250,7 +254,7 @@ def run_regulate(
         kernel_pid.regulate(
             np.unique(part), rig_of, cue_of, period_s, setpoint_C, gains, bias_A, bank.count, bank.plates,
             bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
-            cells, warm,
+            cells, warm, leg_room(cells),
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of))
@@ -270,7 +274,7 @@ def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SH
     if lanes < FEWEST:
         work(np.arange(lanes, dtype=np.int64))
         return
-    from .kernel_batch import LANES
+    from .kernel_legs import LANES
 
     count = -(-lanes // LANES)
     blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)

@@ -23,7 +23,6 @@ from . import plate
 from .kernel_legs import (
     begin_sink,
     factor_legs,
-    leg_room,
     legs_ahead,
     legs_heat,
     load_legs,
@@ -225,21 +224,20 @@ def load(n, state, p, x):
 @compiled
 def forward(
     lanes, rig_of, cue_of, edges, start_A, end_A, row_of, count, plates, cap, g, perf, places, weights, state, sinks,
-    out, final, cells,
+    out, final, cells, leg,
 ):  # fmt: skip
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
     `start_A`, `end_A` (interval, cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to
     write at an edge, or −1; `state` (lane, n + 3) the start in °C; `out` (probe, lane, row) and `final` (lane, n + 3)
     are filled. `sinks` (lane, 4) holds each lane's heat sink (NaN: start at its set-point), and is left as it ends; so
-    are the cells of its legs, `cells` (lane, m) in °C or None.
+    are the cells of its legs, `cells` (lane, m) in °C or None; `leg` is `kernel_legs.leg_room` for them.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
     y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
     probes = places.shape[1]
     at, offset = np.empty((probes, 3), dtype=np.int64), np.empty(probes)
-    leg = leg_room(cells)
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
@@ -360,19 +358,22 @@ def follow(
     why,
     cells,
     warm,
+    leg,
+    period_leg,
+    ahead,
 ):
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `state` (lane, n + 3) is a steady state; `current`, `reached` and `why` (lane, period)
     get the current A, the controlled temperature °C at the period's end, and the code of what limited the current. The
     current comes from a damped prediction (one implicit step over the period); the state moves by the accurate rule.
-    `cells` (lane, m) are those of the legs and `warm` (lane,) passive heat sinks at the start, in °C; None without them.
+    `cells` (lane, m) are those of the legs and `warm` (lane,) passive heat sinks at the start, in °C; `leg`,
+    `period_leg` and `ahead` (5,) are room for cells. None without them.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
     upper_p, lower_p, whole_p = np.empty((5, most)), np.empty((5, most)), np.empty(5)
     y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
-    leg, period_leg = leg_room(cells), leg_room(cells)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for lane in lanes:
@@ -391,9 +392,10 @@ def follow(
         for k in range(target.shape[1]):
             z0 = weighed(n, upper_p, lower_p, x) + p[DEEP_C] * (1.0 - elim)
             hot, cold = x[HOT] + p[DEEP_C], x[COLD] + p[DEEP_C]
+            legs_ahead(p, leg, period_leg, ahead)
             amperes, code = wanted(
                 target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[TEMPERATURE], amperes, p,
-                legs_ahead(p, leg, period_leg),
+                ahead,
             )  # fmt: skip
             for _ in range(pieces):
                 first = advance(

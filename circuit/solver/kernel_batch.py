@@ -26,20 +26,19 @@ from .kernel import (
     settle,
     wanted,
 )
-from .kernel_legs_batch import (
+from .kernel_legs import (
     ACROSSES,
     COOL,
     LANES,
     NEARS,
     WARM,
-    begin_sinks,
-    factor_legs,
-    leg_room,
-    legs_ahead,
-    legs_heat,
-    load_legs,
-    step_legs,
-    store_legs,
+    block_ahead,
+    block_factor,
+    block_heat,
+    block_load,
+    block_sinks,
+    block_step,
+    block_store,
 )
 from .network import COLD, HOT, SKIN
 from .plate import (
@@ -130,7 +129,7 @@ def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above, leg, mi
             regulate_sink(step, rig[lane], sink[lane])
             sink_store = p[SINK_J_PER_K, lane] / half + p[SINK_W_PER_K, lane] + p[SINK_AIR_W_PER_K, lane]
             sink[lane, SHARE] = p[SINK_W_PER_K, lane] / sink_store
-    legs_heat(squared, p, leg)
+    block_heat(squared, p, leg)
     for lane in range(LANES):
         hot0, cold0, leak = x[HOT, lane], x[COLD, lane], p[CONDUCTANCE, lane]
         pump, joule = p[ALPHA, lane] * current[lane], 0.5 * p[RESISTANCE, lane] * squared[lane]
@@ -152,7 +151,7 @@ def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above, leg, mi
         above[lane] = cold
         if leg is not None:
             middle[lane] = hot
-    step_legs(squared, middle, above, p, leg)
+    block_step(squared, middle, above, p, leg)
     for i in range(n):
         for lane in range(LANES):
             value = z[i, lane] + elim[i, lane] * above[lane]
@@ -192,7 +191,7 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
 @compiled
 def forward(
     blocks, rig_of, cue_of, edges, start_A, end_A, row_of, count, bank_plates, bank_cap, bank_g, bank_perf, places,
-    weights, state, sinks, out, final, cells,
+    weights, state, sinks, out, final, cells, leg,
 ):  # fmt: skip
     """`kernel.forward` for blocks (blocks, LANES) of lanes; the last block is padded by repeating a lane."""
     most = bank_cap.shape[1] + 1
@@ -204,11 +203,11 @@ def forward(
     at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
     same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
     current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    leg, middle = leg_room(cells), np.empty(LANES)
+    middle = np.empty(LANES)
     for b in range(blocks.shape[0]):
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
-        load_legs(cells, block, leg)
+        block_load(cells, block, leg)
         for lane in range(LANES):
             if not math.isnan(sinks[block[lane], TEMPERATURE]):
                 for j in range(SINK_NUMBERS):
@@ -262,12 +261,12 @@ def forward(
                     current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
-                    factor_legs(0.5 * step, p, leg)
+                    block_factor(0.5 * step, p, leg)
                     factored = step
                 advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above, leg, middle)
                 done += step
                 since += step
-        store_legs(cells, block, leg)
+        block_store(cells, block, leg)
         for lane in range(LANES):
             for j in range(SINK_NUMBERS):
                 sinks[block[lane], j] = sink[lane, j]
@@ -279,7 +278,7 @@ def forward(
 @compiled
 def follow(
     blocks, rig_of, cue_of, period, target, skin_control, face_share, count, bank_plates, bank_cap, bank_g, bank_perf,
-    state, current_out, reached, why, cells, warm,
+    state, current_out, reached, why, cells, warm, leg, period_leg, ahead,
 ):  # fmt: skip
     """`kernel.follow` for blocks (blocks, LANES) of lanes."""
     most = bank_cap.shape[1] + 1
@@ -289,7 +288,7 @@ def follow(
     p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
     sink, constant, z0 = np.zeros((LANES, SINK_NUMBERS + 1)), np.empty(LANES), np.empty(LANES)
     current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
-    leg, period_leg, middle = leg_room(cells), leg_room(cells), np.empty(LANES)
+    middle = np.empty(LANES)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for b in range(blocks.shape[0]):
@@ -297,19 +296,20 @@ def follow(
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
         factor(n, period, cap, g, perf, p[DEEP_C], mp)
-        begin_sinks(warm, block, sink)
-        load_legs(cells, block, leg)
-        factor_legs(0.5 * step, p, leg)
-        factor_legs(period, p, period_leg)
+        block_sinks(warm, block, sink)
+        block_load(cells, block, leg)
+        block_factor(0.5 * step, p, leg)
+        block_factor(period, p, period_leg)
         foresee(n, mp, weight, constant)
         for k in range(target.shape[1]):
             weighed(n, weight, constant, x, z0)
             for lane in range(LANES):
+                block_ahead(lane, p, leg, period_leg, ahead)
                 share, elim = face_share[rig_of[block[lane]]], mp[ELIM, 0, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
                     x[HOT, lane], x[COLD, lane], sink[lane, TEMPERATURE], current[lane], rig[lane],
-                    legs_ahead(lane, p, leg, period_leg),
+                    ahead,
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code

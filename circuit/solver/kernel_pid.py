@@ -21,7 +21,7 @@ from .kernel import (
     settle,
     weighed,
 )
-from .kernel_legs import begin_sink, factor_legs, leg_room, load_legs
+from .kernel_legs import begin_sink, factor_legs, load_legs
 from .network import COLD, HOT, SKIN
 from .plate import DEEP_C
 
@@ -32,7 +32,7 @@ LAG_S, KP, KI, KD = range(4)
 @compiled
 def regulate(
     lanes, rig_of, cue_of, period, setpoint, gains, bias, count, plates, cap, g, perf, state, current, reached, why,
-    cells, warm,
+    cells, warm, leg,
 ):  # fmt: skip
     """Find the held current of every period as the controller of each rig gives it.
 
@@ -47,7 +47,6 @@ def regulate(
     y, z, x, sink = np.empty(most), np.empty(most), np.empty(most + 3), np.zeros(SINK_NUMBERS)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
-    leg = leg_room(cells)
     for lane in lanes:
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
