@@ -34,8 +34,8 @@ def perturbed(
 
     Shares: `contact_resistance_relative` (−0.3 is 30 % less), `seebeck_relative` and `conductance_relative` of the
     module (its thermal resistance goes the other way), `plates_relative` of the heat capacities of both plates and of
-    the legs. In K: `ambient_K` of the room air, `heat_sink_K` of the heat sink, of the set point of its controller, or of
-    a passive sink and the air around it.
+    the legs. In K: `ambient_K` of the room air, `heat_sink_K` of the heat sink, of the set point of its controller, or
+    of a passive sink and the air around it.
     Raises RigError where a share leaves nothing (−1 or less), a temperature falls to absolute zero or a factor is not
     finite.
 

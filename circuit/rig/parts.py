@@ -86,7 +86,7 @@ class Thermode:
 class Contact:
     """Where display and skin meet: area m², resistance m²·K/W.
 
-    `lands_s`: when the hand lands on the display, on the clock of the cue (−2: 2 s before it begins); None: long before.
+    `lands_s`: when the hand lands, on the clock of the cue (−2: 2 s before it begins); None: long before.
     """
 
     area_m2: float

@@ -158,8 +158,8 @@ def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, w
         C_h·dT_h/dt = αI·T_h + I²R/2 + (T_c − T_h)/Θ + (T_s − T_h)/R_s,
         C_c·dT_c/dt = −αI·T_c + I²R/2 + (T_h − T_c)/Θ + g_0·(T_1 − T_c),
 
-    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system. With cells in
-    the legs (`leg` is not None) the terms in Θ and R/2 are those of `kernel_legs`, which keeps the form.
+    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system. With
+    cells in the legs (`leg` is not None) the terms in Θ and R/2 are those of `kernel_legs`, which keeps the form.
     """
     middle, share = n // 2, whole[SINK_SHARE]  # the heat sink's share in its own implicit step: 0 where it is ideal
     if share > 0.0:
@@ -340,28 +340,9 @@ def limited(amperes, hot, cold, sink, p):
 
 @compiled
 def follow(
-    lanes,
-    rig_of,
-    cue_of,
-    period,
-    target,
-    skin_control,
-    face_share,
-    count,
-    plates,
-    cap,
-    g,
-    perf,
-    state,
-    current,
-    reached,
-    why,
-    cells,
-    warm,
-    leg,
-    period_leg,
-    ahead,
-):
+    lanes, rig_of, cue_of, period, target, skin_control, face_share, count, plates, cap, g, perf, state, current,
+    reached, why, cells, warm, leg, period_leg, ahead,
+):  # fmt: skip
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `state` (lane, n + 3) is a steady state; `current`, `reached` and `why` (lane, period)
