@@ -15,6 +15,7 @@ from ..inputs import InputError
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.drive import Drive
+from ..solver.landing import refuse_landing
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
 
@@ -70,7 +71,7 @@ def netlist(
     Raises
     ------
     RigError
-        For a thermode, and where there is no steady state to start from.
+        For a thermode, for a hand that lands, and where there is no steady state to start from.
 
     Examples
     --------
@@ -78,6 +79,7 @@ def netlist(
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
     """
+    refuse_landing(rig, "a netlist starts in a steady state")
     net = network_of(rig)
     names, skin = _skin(rig, net)
     end, step = float(drive.time_s[-1]), 1.0 / rows_Hz

@@ -311,6 +311,23 @@ class RigTable(_Table):
             raise ValueError("\n".join(lines))
         return self
 
+    @model_validator(mode="after")
+    def _landing(self) -> RigTable:
+        if self.contact.lands_s is None:
+            return self
+        beside = {
+            "a thermode, whose skin starts at rest under it; remove it or use a rig with a module": self.thermode,
+            "a heat sink with a controller of its own, whose loop starts at rest; remove one of them": (
+                None if self.heat_sink is None else self.heat_sink.power_limit_W
+            ),
+            'a probe on "insulated skin", whose skin starts at rest; remove one of them': next(
+                (probe for probe in self.probe if probe.place == "insulated skin"), None
+            ),
+        }
+        if faults := [what for what, stated in beside.items() if stated is not None]:
+            raise ValueError("\n".join(f"contact.lands_s: cannot be combined with {fault}" for fault in faults))
+        return self
+
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
     """Return the TOML text as a dictionary, or raise RigError that says which line is wrong."""

@@ -61,24 +61,49 @@ def state_under_current(network: Network, current_A: float, in_the_end: bool = F
 
     Raises ArithmeticError where there is none (the module would heat without limit).
     """
-    alpha, ohm, leak, sink, out = _plates(network, in_the_end)
-    z, e = _column(network)
-    skin = float(network.conductance_W_per_K[0])
-    zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
-    per_cold = leak / (out + leak - alpha * current_A)
-    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e[0])
-    if out + leak - alpha * current_A <= 0 or diagonal <= 0:
-        raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
-    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
-    state = _fill(network, cold, zero + per_cold * cold, z, e)
+    plates, (z, e) = _plates(network, in_the_end), _column(network)
+    cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
+    state = _fill(network, cold, hot, z, e)
     if network.extras:
-        state[SKIN + len(z) : -1] = _extras(network, current_A, state, sink, out)
+        state[SKIN + len(z) : -1] = extras_between(network, current_A, hot, cold, in_the_end)
     return state
 
 
-def _extras(network: Network, current_A: float, state: Array, sink: float, out: float) -> Array:
-    """The cells of the legs, then a passive heat sink, in steady state between the plates and over `sink`."""
-    hot, cold, values = float(state[HOT]), float(state[COLD]), np.empty(network.extras)
+def _balance(
+    plates: tuple[float, float, float, float, float], current_A: float, skin: float, z: float, e: float
+) -> tuple[float, float]:
+    """Cold and hot plate in °C over a conductance in W/K to something at z + e · (cold plate)."""
+    alpha, ohm, leak, sink, out = plates
+    zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
+    per_cold = leak / (out + leak - alpha * current_A)
+    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e)
+    if out + leak - alpha * current_A <= 0 or diagonal <= 0:
+        raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
+    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z) / diagonal
+    return cold, zero + per_cold * cold
+
+
+def bare_plates(
+    network: Network, film_W_per_K: float, air_C: float, current_A: float | None, display_C: float | None
+) -> tuple[float, float, float]:
+    """Return current in A, cold and hot plate in °C of a display in air, under a current or held at a temperature.
+
+    Raises ArithmeticError where there is no steady state.
+    """
+    plates = _plates(network)
+    if current_A is None:
+        assert display_C is not None
+        alpha, ohm, leak, sink, out = plates
+        base, total = out * sink + leak * display_C, out + leak
+        greatest = greatest_cooling_A(display_C, base, total, alpha, ohm, leak)
+        heat = film_W_per_K * (air_C - display_C)
+        current_A = current_for_heat_A(heat, display_C, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
+    return (current_A, *_balance(plates, current_A, film_W_per_K, air_C, 0.0))
+
+
+def extras_between(network: Network, current_A: float, hot: float, cold: float, in_the_end: bool = False) -> Array:
+    """The cells of the legs, then a passive heat sink, in steady state between the plates."""
+    values, (*_, sink, out) = np.empty(network.extras), _plates(network, in_the_end)
     place = (np.arange(network.legs) + 0.5) / max(network.legs, 1)  # of a cell, from the hot plate
     ohm, leak = float(network.plates[RESISTANCE]), float(network.plates[CONDUCTANCE])
     # The parabola of evenly spread Joule heat at the middle of a cell, less what its half cell's resistance has.
