@@ -81,18 +81,14 @@ def test_its_air_is_the_rooms_unless_it_is_given() -> None:
 
 @pytest.mark.parametrize("rig", [WARM, STEADY, perturbed(WARM, ambient_K=1.0)], ids=["warm", "steady", "corner"])
 def test_a_passive_sink_survives_a_file(rig: Rig, tmp_path: Path) -> None:
-    path = tmp_path / "sink.toml"
-    without_null = rig.document.replace(', "temperature_C": null', "").replace('"temperature_C": null, ', "")
-    assert ("null" in rig.document) == (rig.heat_sink.passive is not None and rig.heat_sink.passive.steady)
-    if without_null == rig.document:
-        rig.save(path)
-        assert Rig.load(path).heat_sink == rig.heat_sink
+    rig.save(tmp_path / "sink.toml")
+    assert Rig.load(tmp_path / "sink.toml").heat_sink == rig.heat_sink
 
 
 @pytest.mark.parametrize(
     ("change", "fault"),
     [
-        ({"air_resistance_K_per_W": 1.5}, r"heat_sink\.capacity_J_per_K is missing; a passive heat sink needs it, in J/K"),
+        ({"air_resistance_K_per_W": 1.5}, r"capacity_J_per_K is missing; a passive heat sink needs it, in J/K"),
         ({**PASSIVE, "kp_W_per_K": 3.0}, r"a passive heat sink has no controller; remove it or heat_sink\.kp_W_per_K"),
         ({"temperature_C": None}, r"heat_sink\.temperature_C is missing; add it, in °C"),
         ({"air_C": 20.0}, r"heat_sink\.air_C = 20 °C: belongs to a passive heat sink; add heat_sink\.capacity_J_per_K"),

@@ -109,7 +109,7 @@ def test_rigs_of_one_batch_land_together() -> None:
         ("thenar", {"contact.lands_s": -601.0}, r"contact\.lands_s = -601\.0 s: must be at least -600 s"),
         ("thenar", {"contact.lands_s": "soon"}, r"contact\.lands_s = 'soon'.*number in s"),
         ("thenar", {"contact.land_s": -1.0}, r"did you mean contact\.lands_s"),
-        ("tcs2", {"contact.lands_s": -1.0}, r"contact\.lands_s: cannot be combined with a thermode.*use a rig with a mod"),
+        ("tcs2", {"contact.lands_s": -1.0}, r"lands_s: cannot be combined with a thermode.*a rig with a module"),
         ("thenar", {"contact.lands_s": -1.0, "heat_sink.capacity_J_per_K": 50.0, "heat_sink.kp_W_per_K": 10.0,
                     "heat_sink.ki_W_per_Ks": 1.0, "heat_sink.power_limit_W": 40.0},
          r"cannot be combined with a heat sink with a controller of its own"),
