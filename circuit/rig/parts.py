@@ -128,7 +128,7 @@ PLACES = ("display", "interface", "skin", "insulated skin")
 class Probe:
     """A thermistor or a point of interest: depth in the skin m, lag s (first order).
 
-    The last three are for insulated skin: distance to the skin in contact m, width of the patch m, insulation m²·K/W.
+    The last three are for insulated skin under a round pad: distance to skin in contact m, its diameter m, m²·K/W.
     """
 
     name: str
