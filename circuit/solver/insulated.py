@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..rig.parts import Probe
 from ..rig.rig import Rig
 from ..rig.skin import Column, column_of
@@ -71,6 +71,8 @@ def insulated_C(rig: Rig, probe: Probe, time_s: Array, display_C: Array) -> Arra
 @lru_cache(maxsize=16)
 def patch_under(rig: Rig, probe: Probe) -> Patch:
     """Return the modes of what a probe on insulated skin reads."""
+    from threadpoolctl import threadpool_limits
+
     column, radius = column_of(rig.skin, rig.column.blood_capacity_J_per_m3K, *DEPTH_MESH), 0.5 * probe.width_m
     edges = _edges(radius)
     area, centre = np.pi * np.diff(edges**2), 0.5 * (edges[1:] + edges[:-1])
@@ -80,7 +82,7 @@ def patch_under(rig: Rig, probe: Probe) -> Patch:
     place = np.arange(lumps * cells).reshape(lumps, cells)
     matrix, drive = np.zeros((lumps * cells, lumps * cells)), np.zeros(lumps * cells)
 
-    def join(one: Array, other: Array, conductance: Array) -> None:
+    def join(one: Index, other: Index, conductance: Array) -> None:
         matrix[one, one] += conductance
         matrix[other, other] += conductance
         matrix[one, other] -= conductance
@@ -97,7 +99,8 @@ def patch_under(rig: Rig, probe: Probe) -> Patch:
     matrix[place[0], place[0]] += down
     drive[place[0]] = down
     root = np.sqrt(np.outer(column.capacity_J_per_m2K, area).ravel())
-    rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
+    with threadpool_limits(limits=1, user_api="blas"):  # some hundred rows: threads would only wait for each other
+        rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
     weight, direct = _reading(rig, column, probe, centre)
     residue = (weight / root) @ vectors * ((drive / root) @ vectors)
     share = np.abs(residue / rates)
@@ -112,9 +115,8 @@ def _edges(radius_m: float) -> Array:
     inside = np.concatenate([[0.0], np.cumsum(rim * sizes[::-1])])
     reach = max(LEAST_REACH_M, REACH * radius_m)
     count = int(np.ceil(np.log1p(reach / rim * (GROWTH - 1.0)) / np.log(GROWTH)))
-    return np.concatenate(
-        [inside[:-1], radius_m + np.concatenate([[0.0], np.cumsum(rim * GROWTH ** np.arange(count))])]
-    )
+    outside = np.cumsum(rim * GROWTH ** np.arange(count))
+    return np.concatenate([inside[:-1], [radius_m], radius_m + outside])
 
 
 def _reading(rig: Rig, column: Column, probe: Probe, centre: Array) -> tuple[Array, float]:

@@ -78,8 +78,8 @@ def field(rig: Rig, radius_m: float, reading_m: float, display_C: np.ndarray, st
 
 @pytest.mark.parametrize(("radius_mm", "lateral_mm"), [(2.5, 2.5), (2.5, 1.0), (5.0, 5.0)])
 def test_the_probe_is_the_field_of_a_round_patch(radius_mm: float, lateral_mm: float) -> None:
-    trace = simulate(STEP, under(radius_mm, lateral_mm), rate_Hz=25, tail_s=6.0)
-    exact = field(THENAR, radius_mm * 1e-3, (radius_mm - lateral_mm) * 1e-3, trace.display_C, 0.04)
+    trace = simulate(STEP, under(radius_mm, lateral_mm), rate_Hz=12.5, tail_s=4.0)
+    exact = field(THENAR, radius_mm * 1e-3, (radius_mm - lateral_mm) * 1e-3, trace.display_C, 0.08)
     swing = float(np.ptp(exact))
     assert swing > 0.08
     assert np.abs(trace.probe("pad") - exact).max() < 0.04 * max(swing, 0.5)
@@ -105,7 +105,7 @@ def test_a_tiny_patch_is_skin_in_contact_and_a_thin_pad_too() -> None:
 
 
 def test_it_starts_in_a_steady_state_and_ends_in_one() -> None:
-    trace = simulate_current(Drive([0, 3000], [0.08, 0.08]), under(3.0), rate_Hz=1)
+    trace = simulate_current(Drive([0, 300], [0.08, 0.08]), under(3.0), rate_Hz=1)
     assert np.ptp(trace.probe("pad")) < 1e-6
 
 
