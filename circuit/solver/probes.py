@@ -22,6 +22,9 @@ SLOWEST_ROWS_S = 0.01
 
 MOST_VALUES = 200_000_000
 
+INSULATED_VALUES = 48
+"""A probe on insulated skin takes about as long as this many others: it has some 200 modes."""
+
 
 def between(rows_s: Array, rig: Rig) -> int:
     """Number of parts into which the rows of a run are divided, so that no probe with memory steps over 10 ms.
@@ -32,7 +35,8 @@ def between(rows_s: Array, rig: Rig) -> int:
     if not any(probe.lag_s or probe.place == "insulated skin" for probe in rig.probes):
         return 1
     parts = max(1, math.ceil(float(np.diff(rows_s).max(initial=0.0)) / SLOWEST_ROWS_S - 1e-9))
-    values = len(rows_s) * parts * len(rig.probes)
+    insulated = sum(probe.place == "insulated skin" for probe in rig.probes)
+    values = len(rows_s) * parts * (len(rig.probes) + INSULATED_VALUES * insulated)
     if values > MOST_VALUES:
         raise RigError(
             f"rig {rig.name}: its probes need {values:.2g} values over {rows_s[-1]:g} s; the limit is "
