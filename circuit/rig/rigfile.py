@@ -22,6 +22,7 @@ from ..inputs import (
 from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
 from .modules import module_faults
+from .rig_faults import display_faults, landing_faults
 from .rules import faults_of
 from .uncertainty import uncertainty_faults
 
@@ -295,37 +296,9 @@ class RigTable(_Table):
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 
     @model_validator(mode="after")
-    def _one_display(self) -> RigTable:
-        pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
-        stated = [key for key, table in pumped.items() if table is not None]
-        missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
-        if self.thermode is not None and stated:
-            raise ValueError(
-                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(stated)}; remove "
-                f"{', '.join(f'[{key}]' for key in stated)} or [thermode]"
-            )
-        if self.thermode is None and missing:
-            lines = [f"{key} is missing; add it" for key in missing]
-            if len(missing) == 3:
-                lines = ["module is missing; add [module], [heat_sink] and [driver], or a [thermode] in their place"]
-            raise ValueError("\n".join(lines))
-        return self
-
-    @model_validator(mode="after")
-    def _landing(self) -> RigTable:
-        if self.contact.lands_s is None:
-            return self
-        beside = {
-            "a thermode, whose skin starts at rest under it; remove it or use a rig with a module": self.thermode,
-            "a heat sink with a controller of its own, whose loop starts at rest; remove one of them": (
-                None if self.heat_sink is None else self.heat_sink.power_limit_W
-            ),
-            'a probe on "insulated skin", whose skin starts at rest; remove one of them': next(
-                (probe for probe in self.probe if probe.place == "insulated skin"), None
-            ),
-        }
-        if faults := [what for what, stated in beside.items() if stated is not None]:
-            raise ValueError("\n".join(f"contact.lands_s: cannot be combined with {fault}" for fault in faults))
+    def _whole(self) -> RigTable:
+        if faults := display_faults(self) or landing_faults(self):
+            raise ValueError("\n".join(faults))
         return self
 
 
