@@ -1,4 +1,4 @@
-"""Faults of a rig file as a whole: what warms and cools the display, and what cannot be combined with a landing hand."""
+"""Faults of a rig file as a whole: what warms and cools the display, and what a landing hand rules out."""
 
 from __future__ import annotations
 
