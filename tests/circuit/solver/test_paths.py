@@ -180,6 +180,7 @@ STEPPED = {
 }  # fmt: skip
 """What computes a temperature of the circuit."""
 CONSIDERED = {
+    "fitting": {"forward"},
     "delivery": {"deliver", "netlist", "regulated", "spread", "temperatures", "formats/form"},
     "safety": {"corners", "endings", "ensemble", "sessiondrive", "single_faults", "thermode"},
     "solver": {
