@@ -27,7 +27,8 @@ from .selection.edit import cheapest_edit
 from .selection.edit_result import Edit, NoEdit
 from .selection.search import SearchResult, search
 from .selection.robust import SetComparison, compare_sets
-from .ranking.ranking import IconScore, PairScore, Ranking
+from .ranking.ranking import Ranking
+from .ranking.scores import IconScore, PairScore
 from .identification.task import Task
 from .ranking.rank import rank
 from .ranking.frontier import Frontier, frontier

@@ -18,6 +18,7 @@ from ..rig.rig import Rig
 from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
 from ..solver.inverse import Design, design
+from ..solver.landing import refuse_landing
 from ..solver.pwm import steady_of
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import steady_state
@@ -66,6 +67,7 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
     """
+    refuse_landing(rig, "what a device delivers is judged for a hand that rests on the display")
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
     if device.driven_by == "temperatures":

@@ -9,11 +9,13 @@ import re
 import textwrap
 from collections.abc import Iterator
 from importlib.metadata import version
+from itertools import pairwise
 
 from ..inputs import InputError
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.drive import Drive
+from ..solver.landing import refuse_landing
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
 
@@ -25,6 +27,9 @@ LONGEST_STEP_S = 2.5e-3
 
 LEAST_PERFUSION_W_PER_K = 1e-12
 """Perfusion below this has no resistor: it would be larger than either program reads."""
+
+HOLDING_W_PER_K = 1e6
+"""Conductance that holds a passive heat sink where it starts, in the operating point alone."""
 
 WRITTEN_BY_NGSPICE = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in RECORDED))
 """What ngspice writes besides the time: current, voltage at the module, and the RECORDED quantities."""
@@ -66,7 +71,7 @@ def netlist(
     Raises
     ------
     RigError
-        For a thermode, and where there is no steady state to start from.
+        For a thermode, for a hand that lands, and where there is no steady state to start from.
 
     Examples
     --------
@@ -74,6 +79,7 @@ def netlist(
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
     """
+    refuse_landing(rig, "a netlist starts in a steady state")
     net = network_of(rig)
     names, skin = _skin(rig, net)
     end, step = float(drive.time_s[-1]), 1.0 / rows_Hz
@@ -152,21 +158,41 @@ def _electrical(rig: Rig, drive: Drive, rest_A: float | None) -> Iterator[str]:
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    module = rig.module
-    alpha, joule = module.seebeck_V_per_K, f"{module.resistance_ohm / 2!r}*I(Vsense)*I(Vsense)"
+    module, cells = rig.module, rig.module.leg_nodes
+    alpha, square = module.seebeck_V_per_K, "I(Vsense)*I(Vsense)"
+    joule = "" if cells else f"{module.resistance_ohm / 2!r}*{square}"
     yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
-    yield f"Bcold cold 0 I={alpha!r}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense)-{joule}"
-    yield f"Bhot 0 hot I={alpha!r}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense)+{joule}"
-    yield f"Rtheta hot cold {module.thermal_resistance_K_per_W!r}"
+    yield f"Bcold cold 0 I={alpha!r}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
+    yield f"Bhot 0 hot I={alpha!r}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
+    if cells:
+        yield "* the legs: cells that store heat, from the hot plate to the cold one"
+        chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
+        for place, (above, below) in enumerate(pairwise(chain)):
+            part = 2 * cells if place in (0, cells) else cells
+            yield f"Rtheta{place} {above} {below} {module.thermal_resistance_K_per_W / part!r}"
+        for leg in chain[1:-1]:
+            yield f"C{leg} {leg} 0 {module.leg_capacity_J_per_K / cells!r}"
+            yield f"B{leg} 0 {leg} I={module.resistance_ohm / cells!r}*{square}"
+    else:
+        yield f"Rtheta hot cold {module.thermal_resistance_K_per_W!r}"
     yield f"Chot hot 0 {module.hot_plate_J_per_K!r}"
     yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
 
 
 def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
-    """The heat sink: ideal, or a body under its own PI control, whose power at rest balances `start_A`."""
+    """The heat sink: ideal, passive, or a body under its own PI control, whose power at rest balances `start_A`."""
     sink, controller = rig.heat_sink, rig.heat_sink.controller
     yield from _section("heat sink")
     yield f"Rsink sink hot {sink.resistance_K_per_W!r}"
+    if (passive := sink.passive) is not None:
+        yield f"Rair sink air {passive.air_resistance_K_per_W!r}"
+        yield f"Vair air 0 {passive.air_C!r}"
+        yield f"Csink sink 0 {passive.capacity_J_per_K!r}"
+        if not passive.steady:
+            yield "* held at its starting temperature in the operating point, then free"
+            yield f"Bstart sink 0 I=V(held)*(V(sink)-{sink.temperature_C!r})*{HOLDING_W_PER_K!r}"
+            yield f"Vheld held 0 PWL(0 1 {EDGE_S!r} 0)"
+        return
     if controller is None:
         yield f"Vsink sink 0 {sink.temperature_C!r}"
         return

@@ -15,10 +15,10 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.displayed import part_of, trace_of_display
 from ..solver.drive import Drive
-from ..solver.network import COLD, HOT, SKIN, network_of
+from ..solver.landing import start_under
+from ..solver.network import COLD, HOT, SKIN
 from ..solver.prescribed import shown
 from ..solver.simulate import rows_until, simulate_current
-from ..solver.steady import state_under_current
 from ..solver.trace import Trace
 from .runs import Run
 
@@ -97,7 +97,7 @@ def _play(rig: Rig, drive: Drive, start: Start | None) -> Trace:
     if start is None and level == drive.current_A[0]:
         return simulate_current(drive, rig, rate_Hz=RATE_HZ)
     try:
-        state = state_under_current(network_of(rig), level + (0.0 if start is None else start[0]))
+        state = start_under(rig, level + (0.0 if start is None else start[0]))
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
     if start is not None:

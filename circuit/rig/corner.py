@@ -33,8 +33,9 @@ def perturbed(
     module's parameters stay those at the given heat sink temperature, even where they depend on it.
 
     Shares: `contact_resistance_relative` (−0.3 is 30 % less), `seebeck_relative` and `conductance_relative` of the
-    module (its thermal resistance goes the other way), `plates_relative` of both plates' heat capacities. In K:
-    `ambient_K` of the room air, `heat_sink_K` of the heat sink, or of the set point of its controller.
+    module (its thermal resistance goes the other way), `plates_relative` of the heat capacities of both plates and of
+    the legs. In K: `ambient_K` of the room air, `heat_sink_K` of the heat sink, of the set point of its controller, or
+    of a passive sink and the air around it.
     Raises RigError where a share leaves nothing (−1 or less), a temperature falls to absolute zero or a factor is not
     finite.
 
@@ -66,10 +67,12 @@ def perturbed(
     if ambient_K:
         ambient = replace(rig.ambient, temperature_C=rig.ambient.temperature_C + ambient_K)
         document["ambient"]["temperature_C"] = ambient.temperature_C
+        if rig.pump is not None and rig.heat_sink.passive is not None:  # its air does not follow the room's
+            document["heat_sink"]["air_C"] = rig.heat_sink.passive.air_C
         changed = replace(changed, ambient=ambient, deep_C=_deep_C(rig, ambient.temperature_C))
     if heat_sink_K:
-        sink = replace(rig.heat_sink, temperature_C=rig.heat_sink.temperature_C + heat_sink_K)
-        document["heat_sink"]["temperature_C"] = sink.temperature_C
+        sink = _warmer(rig.heat_sink, heat_sink_K)
+        document["heat_sink"] |= _temperatures(sink)
         changed = _pumped(changed, heat_sink=sink)
     if seebeck_relative or conductance_relative or plates_relative:
         module = _module(rig, seebeck_relative, conductance_relative, plates_relative)
@@ -82,6 +85,20 @@ def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | No
     """The rig with another heat sink or module."""
     assert rig.pump is not None
     return replace(rig, pump=replace(rig.pump, heat_sink=heat_sink or rig.heat_sink, module=module or rig.module))
+
+
+def _warmer(sink: HeatSink, shift_K: float) -> HeatSink:
+    """The heat sink at another temperature; a passive one in other air too, since that is what it tends to."""
+    passive = sink.passive and replace(sink.passive, air_C=sink.passive.air_C + shift_K)
+    return replace(sink, temperature_C=sink.temperature_C + shift_K, passive=passive)
+
+
+def _temperatures(sink: HeatSink) -> dict[str, float]:
+    """The keys of a rig file that hold the temperatures of a heat sink."""
+    if sink.passive is None:
+        return {"temperature_C": sink.temperature_C}
+    start = {} if sink.passive.steady else {"temperature_C": sink.temperature_C}
+    return {**start, "air_C": sink.passive.air_C}
 
 
 def _deep_C(rig: Rig, ambient_C: float) -> float:
@@ -101,13 +118,16 @@ def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Pelt
             nominal.thermal_resistance_K_per_W / (1.0 + conductance),
             nominal.hot_plate_J_per_K * (1.0 + plates),
             nominal.cold_plate_J_per_K * (1.0 + plates),
+            nominal.leg_nodes,
+            nominal.leg_capacity_J_per_K * (1.0 + plates),
         )
     except ValueError as problem:  # a share so large that nothing finite is left
         raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
 
 
 def _module_table(module: Peltier) -> dict[str, Any]:
-    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K")}
+    legs = ("leg_nodes", "leg_capacity_J_per_K") if module.leg_nodes else ()
+    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K", *legs)}
 
 
 def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:

@@ -155,9 +155,25 @@ def module_faults(table: ModuleTable) -> str:
         missing = [f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in PARAMETERS if key not in stated]
         if table.extraction is not None:
             missing.append("module.extraction: only for a data sheet or a name; remove the key")
-        return "\n".join(missing)
+        if missing:
+            return "\n".join(missing)
     if sheets is not None and len(sheets) not in (1, 2):
         return f"module.datasheet: {len(sheets)} tables; give one, or two for two hot-side temperatures"
+    return _leg_fault(table)
+
+
+def _leg_fault(table: ModuleTable) -> str:
+    """The fault where only one of the two keys of the legs is given; empty where there is none."""
+    if table.leg_nodes and table.leg_capacity_J_per_K is None:
+        return (
+            "module.leg_capacity_J_per_K is missing; legs that are divided into nodes need it, in J/K: volume of all "
+            "legs times some 1.2e6 J/(m³·K) (127 couples of 1.0 x 1.0 x 2.5 mm legs: 0.76 J/K)"
+        )
+    if table.leg_capacity_J_per_K is not None and not table.leg_nodes:
+        return (
+            f"module.leg_capacity_J_per_K = {table.leg_capacity_J_per_K:g} J/K: has no effect while module.leg_nodes "
+            f"is 0; set module.leg_nodes to 3 or more, or remove it"
+        )
     return ""
 
 
@@ -168,9 +184,12 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     `source` is what the rig's own `[source]` says of its module.
     """
     plates = (table.hot_plate_J_per_K, table.cold_plate_J_per_K)
+    legs = (table.leg_nodes, table.leg_capacity_J_per_K or 0.0)
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)
-        return Peltier(alpha, ohm, theta, *plates), ModuleOrigin(f"parameters given: {source or 'no source stated'}")
+        return Peltier(alpha, ohm, theta, *plates, *legs), ModuleOrigin(
+            f"parameters given: {source or 'no source stated'}"
+        )
     what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", []
     if table.name is not None:
         try:
@@ -200,7 +219,7 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
                 f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … "
                 f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used"
             )
-    return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
+    return Peltier(*at_mean_C(extractions, mean_C), *plates, *legs), ModuleOrigin(sentence + ".", tuple(warnings))
 
 
 def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:

@@ -17,15 +17,30 @@ class SinkController:
 
 
 @dataclass(frozen=True, slots=True)
+class PassiveSink:
+    """A heat sink without control, cooled by air: capacity J/K, resistance to the air K/W, temperature of that air °C.
+
+    `steady`: a run starts where the resting current and the air leave it, not at a given temperature.
+    """
+
+    capacity_J_per_K: float
+    air_resistance_K_per_W: float
+    air_C: float
+    steady: bool
+
+
+@dataclass(frozen=True, slots=True)
 class HeatSink:
     """The heat sink under the hot plate: temperature °C, thermal resistance to the hot plate K/W.
 
-    Ideal (of constant temperature) unless it has a heat capacity and its own controller.
+    Ideal (of constant temperature) unless it has a heat capacity, and either its own controller or air that cools it.
+    The temperature is that of the start where it is passive, and that of its air where it also starts in steady state.
     """
 
     temperature_C: float
     resistance_K_per_W: float
     controller: SinkController | None = None
+    passive: PassiveSink | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +84,14 @@ class Thermode:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Where display and skin meet: area m², resistance m²·K/W."""
+    """Where display and skin meet: area m², resistance m²·K/W.
+
+    `lands_s`: when the hand lands, on the clock of the cue (−2: 2 s before it begins); None: long before.
+    """
 
     area_m2: float
     resistance_m2K_per_W: float
+    lands_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +128,7 @@ PLACES = ("display", "interface", "skin", "insulated skin")
 class Probe:
     """A thermistor or a point of interest: depth in the skin m, lag s (first order).
 
-    The last three are for insulated skin: distance to the skin in contact m, width of the patch m, insulation m²·K/W.
+    The last three are for insulated skin under a round pad: distance to skin in contact m, its diameter m, m²·K/W.
     """
 
     name: str

@@ -44,8 +44,14 @@ def _probe(table: ProbeTable) -> Probe:
     records = insulation_records()
     if insulation is None:
         insulation = records.one("aerogel thickness").central * 1e-3 / records.one("aerogel conductivity").central
-    lateral = records.one("lateral distance").central if lateral is None else lateral
-    width = records.one("patch width").central if width is None else width
+    if lateral is None:
+        lateral = records.one("lateral distance").central if width is None else width / 2
+    width = 2 * lateral if width is None else width
+    if lateral > width / 2 * (1 + 1e-9):
+        raise ValueError(
+            f"probe {table.name}: lateral_mm = {lateral:g} mm: no place under a round pad of width_mm = {width:g} mm "
+            f"is farther than {width / 2:g} mm from skin in contact; use at most that, or remove width_mm"
+        )
     return Probe(
         table.name, table.place, table.depth_mm * 1e-3, table.lag_s, lateral * 1e-3, width * 1e-3, float(insulation)
     )

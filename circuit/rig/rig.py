@@ -13,6 +13,7 @@ from typing import Any
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
+from .heat_sink import heat_sink_of
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import (
@@ -22,7 +23,6 @@ from .parts import (
     Driver,
     HeatSink,
     Probe,
-    SinkController,
     Thermode,
     Uncertainty,
 )
@@ -30,7 +30,7 @@ from .probes import probes_of
 from .rig_summary import rig_summary
 from .rig_text import toml_text
 from .rig_warnings import rig_warnings
-from .rigfile import HeatSinkTable, RigError, RigTable, parse_toml, read_table
+from .rigfile import RigError, RigTable, parse_toml, read_table
 from .rules import Limits
 from .settings import flattened, put_all, read_settings
 from .skin import STRATUM_CORNEUM, Column, Layer, ReceptorDepths, Skin, column_of
@@ -324,28 +324,15 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
-def _heat_sink(sink: HeatSinkTable) -> HeatSink:
-    names = ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")
-    settings = {name: getattr(sink, name) for name in names}
-    missing = [name for name, value in settings.items() if value is None]
-    if not missing:
-        return HeatSink(sink.temperature_C, sink.resistance_K_per_W, SinkController(**settings))
-    if len(missing) < len(names):
-        raise ValueError(
-            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(names)}; "
-            f"without all four it is ideal"
-        )
-    return HeatSink(sink.temperature_C, sink.resistance_K_per_W)
-
-
 def _pump(table: RigTable) -> HeatPump | None:
     module, sink, driver = table.module, table.heat_sink, table.driver
     if module is None or sink is None or driver is None:
         return None
+    hot_side = heat_sink_of(sink, table.ambient.temperature_C)
     lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
     return HeatPump(
-        *module_of(module, (sink.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
-        _heat_sink(sink),
+        *module_of(module, (hot_side.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
+        hot_side,
         Driver(
             driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
         ),
@@ -389,7 +376,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         table.title,
         tuple(table.notes),
         _pump(table),
-        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W),
+        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W, contact.lands_s),
         Ambient(**table.ambient.model_dump()),
         body,
         column,

@@ -19,8 +19,10 @@ from ..inputs import (
     quoted,
     read_toml,
 )
+from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
 from .modules import module_faults
+from .rig_faults import display_faults, landing_faults
 from .rules import faults_of
 from .uncertainty import uncertainty_faults
 
@@ -64,6 +66,8 @@ Perfusion = Annotated[float, Field(ge=0, le=1)]
 Film = Annotated[float, Field(ge=1e-3, le=1e6)]
 
 Positive = Annotated[float, Field(gt=0)]
+MOST_LEG_NODES = 20
+"""Five nodes are within some millikelvins of the field in the legs; more only cost time."""
 MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 """Skin models have a handful of layers and rigs a few probes; each costs time in every step."""
 
@@ -93,6 +97,8 @@ class ModuleTable(_Table):
     extraction: Literal["three", "four"] | None = None
     hot_plate_J_per_K: Ideal
     cold_plate_J_per_K: Ideal
+    leg_nodes: Annotated[int, Field(ge=0, le=MOST_LEG_NODES)] = 0
+    leg_capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> ModuleTable:
@@ -104,12 +110,20 @@ class ModuleTable(_Table):
 class HeatSinkTable(_Table):
     """The heat sink under the hot plate."""
 
-    temperature_C: Celsius
+    temperature_C: Celsius | None = None
     resistance_K_per_W: Ideal
     capacity_J_per_K: Ideal | None = None
+    air_resistance_K_per_W: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
+    air_C: Celsius | None = None
     kp_W_per_K: Gain | None = None
     ki_W_per_Ks: Gain | None = None
     power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> HeatSinkTable:
+        if faults := heat_sink_faults(self):
+            raise ValueError("\n".join(faults))
+        return self
 
 
 class DriverTable(_Table):
@@ -127,6 +141,8 @@ class ContactTable(_Table):
 
     area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
+    # A hand that lands later than the cue begins would need a second cue; a skin is at rest after some minutes.
+    lands_s: Annotated[float, Field(ge=-600, le=0)] | None = None
 
 
 class ControllerTable(_Table):
@@ -280,20 +296,9 @@ class RigTable(_Table):
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 
     @model_validator(mode="after")
-    def _one_display(self) -> RigTable:
-        pumped = {key: getattr(self, key) for key in ("module", "heat_sink", "driver", "controller")}
-        stated = [key for key, table in pumped.items() if table is not None]
-        missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
-        if self.thermode is not None and stated:
-            raise ValueError(
-                f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(stated)}; remove "
-                f"{', '.join(f'[{key}]' for key in stated)} or [thermode]"
-            )
-        if self.thermode is None and missing:
-            lines = [f"{key} is missing; add it" for key in missing]
-            if len(missing) == 3:
-                lines = ["module is missing; add [module], [heat_sink] and [driver], or a [thermode] in their place"]
-            raise ValueError("\n".join(lines))
+    def _whole(self) -> RigTable:
+        if faults := display_faults(self) or landing_faults(self):
+            raise ValueError("\n".join(faults))
         return self
 
 

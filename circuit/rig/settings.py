@@ -61,7 +61,7 @@ def put_all(document: dict[str, Any], changes: Mapping[str, object]) -> None:
 
 
 def put(document: dict[str, Any], key: str, value: object) -> None:
-    """Set a dotted key in the document; an unknown key or layer is an error with the nearest."""
+    """Set a dotted key in the document, or remove it for None; an unknown key or layer is an error with the nearest."""
     parts, place, plain = key.split("."), document, []
     for position, part in enumerate(parts[:-1]):
         if isinstance(place, list):
@@ -86,9 +86,16 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         raise RigError(
             unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
         )
-    if parts[0] == "module" and not key.endswith("plate_J_per_K") and place.get(parts[-1]) != value:
+    if (
+        parts[0] == "module"
+        and not key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K"))
+        and place.get(parts[-1]) != value
+    ):
         document.get("source", {}).pop("module", None)
-    place[parts[-1]] = value
+    if value is None:
+        place.pop(parts[-1], None)
+    else:
+        place[parts[-1]] = value
 
 
 def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:

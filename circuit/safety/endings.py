@@ -64,7 +64,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
     steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
     for lane, network in enumerate(ensemble.networks):
-        state = state_under_current(network, 0.0)
+        state = state_under_current(network, 0.0, in_the_end=True)
         steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
     return steady_C
 

@@ -18,6 +18,7 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, run_on
 from ..solver.constant_current import ConstantCurrent
 from ..solver.drive import Drive, DriveError
+from ..solver.landing import refuse_landing
 from ..solver.network import Network, network_of
 from ..solver.pwm import steady_of
 from ..solver.steady import check_sink, state_under_current
@@ -66,6 +67,7 @@ class Ensemble:
     @staticmethod
     def of(rig: Rig, bridge_A: float | None = None, averaged: bool = False) -> Ensemble:
         """All corners of a rig; raises DriveError for an impossible bridge."""
+        refuse_landing(rig, "the gate of safety judges a hand that rests on the display")
         if bridge_A is not None and not (0 < bridge_A < np.inf):
             raise DriveError(f"a bridge of {bridge_A:g} A is not possible; its current must be above 0 A")
         return Ensemble.on(rig, corners_of(rig), bridge_A, averaged)
@@ -109,7 +111,7 @@ class Ensemble:
         except ArithmeticError as problem:
             if corner.nominal:
                 raise RigError(f"rig {corner.rig.name}: {problem}; begin the drive with a smaller current") from None
-            hottest = np.full(len(network.capacity_J_per_K) + 3, HOTTEST_C)
+            hottest = np.full(network.nodes, HOTTEST_C)
             hottest[-1] = network.deep_C
             return hottest
 

@@ -147,7 +147,7 @@ def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
 def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:
     """Least and most heat from the hot plate into an ideal heat sink, whose temperature is known."""
     sink = rig.heat_sink
-    if sink.controller is not None:
+    if sink.controller is not None or sink.passive is not None:
         return None
     hot = np.array([trace.hot_plate_C.min(), trace.hot_plate_C.max()])
     least, most = (hot - sink.temperature_C) / sink.resistance_K_per_W

@@ -14,8 +14,9 @@ from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, cut, run_follow, run_forward, run_regulate
-from .displayed_batch import displays_on
+from .displayed import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
+from .landing import ahead, common_lead, led, start_after, start_holding, start_under
 from .network import network_of
 from .simulate import rows_until, simulate
 from .steady import state_under_current, steady_state
@@ -120,6 +121,7 @@ def simulate_many(
         raise RigError("rigs of one batch must all have a controller, or none")
     if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
+    common_lead((*rigs, nominal))
     rows = rows_until(end_s, rate_Hz)
     values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
     stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
@@ -211,7 +213,7 @@ class _Stage:
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
         plan = design(icon, self.nominal, self.end_s)
-        states = [state_under_current(network_of(rig), plan.rest_A) for rig in self.rigs]
+        states = [start_under(rig, plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
         bank = Bank.of([network_of(rig) for rig in self.rigs])
@@ -221,6 +223,9 @@ class _Stage:
         """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
         plans = design_many(icons, self.nominal, self.end_s)
         currents = np.array([plan.drive.current_A[:-1] for plan in plans])
+        if self.nominal.contact.lands_s is not None:
+            leads = [plan.lead_A for plan in plans if plan.lead_A is not None]
+            return self._play(currents, icons, [start_after(rig, lead_A) for rig in self.rigs for lead_A in leads])
         states = {
             (r, amperes): state_under_current(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
@@ -241,12 +246,18 @@ class _Stage:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
         steady = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
         lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
-        states = [state for _, state in lanes]
+        lead, owners = common_lead(self.rigs), [rig for rig in self.rigs for _ in bases]
+        states = [start_holding(rig, state) for rig, (_, state) in zip(owners, lanes, strict=True)]
+        targets = ahead(targets, np.array(bases), lead)
         if self.nominal.controller is None:
             currents = self._follow(control, targets, states)
         else:
             currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
-        return self._play(currents, icons, states)
+        if self.nominal.contact.lands_s is not None:
+            bank, rig_of = Bank.of([network_of(rig) for rig in self.rigs]), self._lanes(len(icons))[0]
+            every = np.arange(len(rig_of), dtype=np.int64)
+            states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, bank.states(states)))
+        return self._play(currents[:, lead:], icons, states)
 
     def _lanes(self, cues: int) -> tuple[Index, Index]:
         """Rig and cue of every lane, all cues of a rig together."""

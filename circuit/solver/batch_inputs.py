@@ -11,8 +11,9 @@ import numpy as np
 
 from ..arrays import Array, Index
 from ..rig.rig import Rig
+from ..rig.rigfile import RigError
 from .cores import cores
-from .network import RECORDED, Network, network_of
+from .network import RECORDED, SKIN, Network, network_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,10 +28,17 @@ class Bank:
     probe_start: Index
     probe_weight: Array
     face_share: Array
+    legs: int = 0
+    passive: bool = False
 
     @staticmethod
     def of(networks: Sequence[Network]) -> Bank:
-        """Stack networks."""
+        """Stack networks; RigError where they differ in the nodes of their legs or the kind of their heat sinks."""
+        if len({(network.legs, network.passive) for network in networks}) > 1:
+            raise RigError(
+                "rigs of one batch must share module.leg_nodes, and all have a passive heat sink "
+                "(heat_sink.air_resistance_K_per_W) or none"
+            )
         count = np.array([len(network.capacity_J_per_K) for network in networks], dtype=np.int64)
         most = int(count.max())
 
@@ -50,14 +58,51 @@ class Bank:
             np.array([network.probe_start for network in networks]),
             np.array([network.probe_weight for network in networks]),
             np.array([network.face_share for network in networks]),
+            networks[0].legs,
+            networks[0].passive,
         )
 
+    @property
+    def extras(self) -> int:
+        """Number of states between the last lump and the deep node."""
+        return self.legs + self.passive
+
     def states(self, states: Sequence[Array]) -> Array:
-        """Stack starting states, one per lane, padded to (lanes, n + 3)."""
-        rows = np.zeros((len(states), self.capacity.shape[1] + 3))
+        """Stack starting states, one per lane, padded to (lanes, nodes)."""
+        rows = np.zeros((len(states), self.capacity.shape[1] + self.extras + 3))
         for row, state in zip(rows, states, strict=True):
             row[: len(state)] = state
         return rows
+
+    def parted(self, nodes_C: Array, rig_of: Index) -> tuple[Array, Array | None, Array | None]:
+        """Return states (lanes, nodes) as the kernels take them: without extras, cells of the legs, passive sinks."""
+        if not self.extras:
+            return nodes_C, None, None
+        lane = np.arange(len(nodes_C))[:, np.newaxis]
+        extra = nodes_C[lane, self._extra_at(rig_of)]
+        cells = np.ascontiguousarray(extra[:, : self.legs]) if self.legs else None
+        return nodes_C[lane, self._core_at(rig_of)], cells, extra[:, -1].copy() if self.passive else None
+
+    def joined(self, core_C: Array, cells: Array | None, warm: Array | None, rig_of: Index) -> Array:
+        """The reverse of `parted`."""
+        if not self.extras:
+            return core_C
+        lane = np.arange(len(core_C))[:, np.newaxis]
+        nodes = np.zeros((len(core_C), core_C.shape[1] + self.extras))
+        nodes[lane, self._core_at(rig_of)] = core_C
+        extra = [part for part in (cells, None if warm is None else warm[:, np.newaxis]) if part is not None]
+        nodes[lane, self._extra_at(rig_of)] = np.concatenate(extra, axis=1)
+        return nodes
+
+    def _extra_at(self, rig_of: Index) -> Index:
+        """Places of the extras (lanes, extras) in states."""
+        return np.asarray(self.count[rig_of][:, np.newaxis] + SKIN + np.arange(self.extras), dtype=np.int64)
+
+    def _core_at(self, rig_of: Index) -> Index:
+        """Places of plates, lumps, deep node and padding (lanes, n + 3) in states."""
+        place = np.arange(self.capacity.shape[1] + 3)
+        behind = place >= self.count[rig_of][:, np.newaxis] + SKIN
+        return np.asarray(place + self.extras * behind, dtype=np.int64)
 
 
 @lru_cache(maxsize=64)
@@ -101,7 +146,7 @@ def run_forward(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: Array, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None,
 ) -> Array:  # fmt: skip
-    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, n + 3).
+    """Return the probes (probes, lanes, rows) of every lane; from `state` (lanes, nodes).
 
     `extra` adds further readings after them, the same states and weights for every rig: starts (k,), weights (k, 3).
     """
@@ -110,7 +155,7 @@ def run_forward(
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """The state of lanes: `nodes_C` (lanes, n + 3) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
+    """The state of lanes: `nodes_C` (lanes, nodes) as in `Network`, and `sink` (lanes, 4) of heat sinks with a loop.
 
     A sink is its temperature in °C, the integral of its loop in K·s, and its power now and at rest in W; NaN where it
     has not begun.
@@ -138,6 +183,7 @@ def run_on(
     `alone`: each lane has steps of its own. `few_alone`: so have a few lanes after the last whole block.
     """
     from . import kernel, kernel_batch
+    from .kernel_legs import LANES, block_room, leg_room
 
     which = [RECORDED.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
@@ -147,24 +193,28 @@ def run_on(
         places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
         weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
     out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
-    sinks, final = state.sink.copy(), np.zeros_like(state.nodes_C)
+    sinks, (core, cells, warm) = state.sink.copy(), bank.parted(state.nodes_C, rig_of)
+    final = np.zeros_like(core)
+    if warm is not None:
+        sinks[:] = 0.0
+        sinks[:, 0] = warm
 
     def work(part: Index) -> None:
-        run = kernel.forward if part.ndim == 1 else kernel_batch.forward
+        run, room = (kernel.forward, leg_room) if part.ndim == 1 else (kernel_batch.forward, block_room)
         run(
             part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, state.nodes_C,
-            sinks, out, final,
+            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, core,
+            sinks, out, final, cells, room(cells),
         )  # fmt: skip
 
     lanes = len(rig_of)
-    beyond = lanes % kernel_batch.LANES if few_alone else 0
+    beyond = lanes % LANES if few_alone else 0
     single = lanes if alone else (beyond if beyond < FEWEST else 0)
     if single < lanes:
         _on_all_cores(work, lanes - single, len(intervals.edges_s))
     if single:
         work(np.arange(lanes - single, lanes, dtype=np.int64))
-    return out, State(final, sinks)
+    return out, State(bank.joined(final, cells, None if warm is None else sinks[:, 0].copy(), rig_of), sinks)
 
 
 def run_follow(
@@ -172,15 +222,19 @@ def run_follow(
 ) -> tuple[Array, Array, Index]:
     """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
     from . import kernel, kernel_batch
+    from .kernel_legs import block_room, leg_room
 
     shape = (len(rig_of), target_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+    core, cells, warm = bank.parted(state, rig_of)
 
     def work(part: Index) -> None:
-        run = kernel.follow if part.ndim == 1 else kernel_batch.follow
+        run, room = (kernel.follow, leg_room) if part.ndim == 1 else (kernel_batch.follow, block_room)
+        ahead = None if cells is None else np.zeros(5)
         run(
             part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
-            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+            bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
+            cells, warm, room(cells), room(cells), ahead,
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of))
@@ -199,14 +253,17 @@ def run_regulate(
 ) -> tuple[Array, Array, Index]:
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
     from . import kernel_pid
+    from .kernel_legs import leg_room
 
     shape = (len(rig_of), setpoint_C.shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
+    core, cells, warm = bank.parted(state, rig_of)
 
     def work(part: Index) -> None:
         kernel_pid.regulate(
             np.unique(part), rig_of, cue_of, period_s, setpoint_C, gains, bias_A, bank.count, bank.plates,
-            bank.capacity, bank.conductance, bank.perfusion, state, current, reached, why,
+            bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
+            cells, warm, leg_room(cells),
         )  # fmt: skip
 
     _on_all_cores(work, len(rig_of))
@@ -226,7 +283,7 @@ def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SH
     if lanes < FEWEST:
         work(np.arange(lanes, dtype=np.int64))
         return
-    from .kernel_batch import LANES
+    from .kernel_legs import LANES
 
     count = -(-lanes // LANES)
     blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)

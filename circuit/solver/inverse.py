@@ -14,6 +14,8 @@ from ..arrays import Array, Index
 from ..rig.rig import Rig
 from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
+from .landing import ahead, current_before, lead_of, led, start_holding, start_under
+from .network import COLD
 from .steady import steady_state
 from .trace import Outcome, judge
 
@@ -23,12 +25,17 @@ LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "cur
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C)."""
+    """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C).
+
+    Where a hand lands (`contact.lands_s`), `start_C` is not steady yet, and `rest_A` is what would hold it later;
+    `lead_A` has the current until the hand lands, then one for each update until the cue begins.
+    """
 
     drive: Drive
     rest_A: float
     start_C: Array
     outcome: Outcome | None
+    lead_A: Array | None = None
 
     def __repr__(self) -> str:
         reached = "" if self.outcome is None else f", {'reached' if self.outcome.reached else 'NOT reached'}"
@@ -111,16 +118,20 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
         if end_s > times[-1] + 1e-9:
             times.append(end_s)
             values.append(values[-1])
-        return Design(Drive(times, values), current, state, None)
+        lead_A = None if rig.contact.lands_s is None else np.full(lead_of(rig) + 1, current)
+        return Design(Drive(times, values), current, start_under(rig, current), None, lead_A)
     ends, base = periods(rig, end_s), baseline_C(icon, rig)
     target = target_at(icon, base, ends)
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
-    period = 1.0 / rig.driver.update_Hz
-    currents, reached, why = run_follow(
-        bank, lane, lane, period, target[np.newaxis], control == "skin", bank.states([state])
-    )
+    period, lead = 1.0 / rig.driver.update_Hz, lead_of(rig)
+    begun = bank.states([start_holding(rig, state)])
+    targets = ahead(target[np.newaxis], np.array([base]), lead)
+    every = run_follow(bank, lane, lane, period, targets, control == "skin", begun)
+    start = led(bank, lane, lane, every[0][:, :lead], rig, begun)[0]
+    currents, reached, why = (values[:, lead:] for values in every)
     outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
-    return Design(Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True), current, state, outcome)
+    drive = Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True)
+    return Design(drive, current, start, outcome, _lead(rig, state, every[0][0, :lead]))
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
@@ -135,7 +146,7 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     """
     together = [icon for icon in icons if icon.context.control != "current" and rig.controller is None]
     designs: dict[int, Design] = {}
-    bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
+    bank, ends, period, lead = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz, lead_of(rig)
     for control in ("skin", "display"):
         cues = [icon for icon in together if icon.context.control == control]
         if not cues:
@@ -144,12 +155,18 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
         rest = {base: steady_state(rig, control, base) for base in set(bases)}
         targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
         lanes = np.arange(len(cues), dtype=np.int64)
-        states = bank.states([rest[base][1] for base in bases])
-        results = run_follow(bank, np.zeros_like(lanes), lanes, period, targets, control == "skin", states)
-        for icon, base, target, currents, reached, why in zip(cues, bases, targets, *results, strict=True):
+        begun = bank.states([start_holding(rig, rest[base][1]) for base in bases])
+        before = ahead(targets, np.array(bases), lead)
+        every = run_follow(bank, np.zeros_like(lanes), lanes, period, before, control == "skin", begun)
+        starts = led(bank, np.zeros_like(lanes), lanes, every[0][:, :lead], rig, begun)
+        results = (starts, every[0][:, :lead], *(values[:, lead:] for values in every))
+        for icon, base, target, start, led_A, currents, reached, why in zip(
+            cues, bases, targets, *results, strict=True
+        ):
             outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
             drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
-            designs[id(icon)] = Design(drive, rest[base][0], rest[base][1], outcome)
+            lead_A = _lead(rig, rest[base][1], led_A)
+            designs[id(icon)] = Design(drive, rest[base][0], start, outcome, lead_A)
     return tuple(designs.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
 
 
@@ -169,15 +186,25 @@ def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
-    gains = np.array([gains_of(rig)])
-    currents, reached, why = run_regulate(
-        bank, lane, lane, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), bank.states([plan.start_C])
-    )
+    gains, lead, begun = np.array([gains_of(rig)]), lead_of(rig), bank.states([plan.start_C])
+    level, steady_C = base, plan.start_C
+    if rig.contact.lands_s is not None:
+        steady_C = steady_state(rig, control, base)[1]
+        level, begun = float(steady_C[COLD]), bank.states([start_holding(rig, steady_C)])
+    setpoints = ahead(setpoint[np.newaxis], np.array([level]), lead)
+    every = run_regulate(bank, lane, lane, period, setpoints, gains, np.array([plan.rest_A]), begun)
+    currents, reached, why = (values[:, lead:] for values in every)
     drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
-    loop = Design(drive, plan.rest_A, plan.start_C, None)
+    start = led(bank, lane, lane, every[0][:, :lead], rig, begun)[0]
+    loop = Design(drive, plan.rest_A, start, None, _lead(rig, steady_C, every[0][0, :lead]))
     controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
     outcome = judge(target, controlled, period, _limits(why[0], period), steps_at(icon, base))
     return replace(loop, outcome=outcome)
+
+
+def _lead(rig: Rig, steady_C: Array, since_A: Array) -> Array | None:
+    """Currents before a cue, for `Design.lead_A`; None where the hand rests."""
+    return None if rig.contact.lands_s is None else np.append(current_before(rig, steady_C), since_A)
 
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:

@@ -20,6 +20,15 @@ import numpy as np
 from ..compiled import kernel
 from ..rig.module import ZERO_C_IN_K
 from . import plate
+from .kernel_legs import (
+    begin_sink,
+    factor_legs,
+    legs_ahead,
+    legs_heat,
+    load_legs,
+    step_legs,
+    store_legs,
+)
 from .network import COLD, HOT, SKIN
 from .plate import (
     ALPHA,
@@ -31,6 +40,7 @@ from .plate import (
     HOT_J_PER_K,
     LOWEST_A,
     RESISTANCE,
+    SINK_AIR_W_PER_K,
     SINK_C,
     SINK_J_PER_K,
     SINK_KI,
@@ -102,7 +112,8 @@ def factor(n, half, cap, g, perf, p, upper, lower, whole):
         upper[BACK, i], upper[SLOPE, i] = share, product
     whole[MEET] = 1.0 / (1.0 - lower[BACK, n - middle - 1] * share)
     whole[HOT_STORE], whole[COLD_STORE] = p[HOT_J_PER_K] / half, p[COLD_J_PER_K] / half
-    whole[SINK_SHARE] = p[SINK_W_PER_K] / (p[SINK_J_PER_K] / half + p[SINK_W_PER_K]) if p[SINK_J_PER_K] > 0.0 else 0.0
+    sink_store = p[SINK_J_PER_K] / half + p[SINK_W_PER_K] + p[SINK_AIR_W_PER_K]
+    whole[SINK_SHARE] = p[SINK_W_PER_K] / sink_store if p[SINK_J_PER_K] > 0.0 else 0.0
 
 
 @kernel(nogil=True, fastmath={"contract", "reassoc"})
@@ -138,7 +149,7 @@ def regulate_sink(step, p, sink):
 
 
 @compiled
-def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, whole, y, z, first):
+def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, whole, y, z, first, leg):
     """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
 
     `x` is the state as `load` stores it, `top` and `low` are views of its lumps, `y` and `z` scratch. `first` is
@@ -147,19 +158,25 @@ def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, w
         C_h·dT_h/dt = αI·T_h + I²R/2 + (T_c − T_h)/Θ + (T_s − T_h)/R_s,
         C_c·dT_c/dt = −αI·T_c + I²R/2 + (T_h − T_c)/Θ + g_0·(T_1 − T_c),
 
-    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system.
+    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system. With
+    cells in the legs (`leg` is not None) the terms in Θ and R/2 are those of `kernel_legs`, which keeps the form.
     """
     middle, share = n // 2, whole[SINK_SHARE]  # the heat sink's share in its own implicit step: 0 where it is ideal
     if share > 0.0:
         regulate_sink(step, p, sink)
     hot0, cold0, kelvin, leak = x[HOT], x[COLD], ZERO_C_IN_K + p[DEEP_C], p[CONDUCTANCE]
     pump, joule = p[ALPHA] * current, 0.5 * p[RESISTANCE] * squared
+    if leg is None:
+        near, warm, cool = leak, joule, joule
+    else:
+        near, leak, warm, cool = legs_heat(squared, p, leg)
     hot_store, cold_store, out = whole[HOT_STORE], whole[COLD_STORE], p[SINK_W_PER_K] * (1.0 - share)
-    a11, a22 = hot_store + out + leak - pump, cold_store + leak + pump + g0 * (1.0 - whole[COLD_SHARE])
-    b1 = hot_store * hot0 + out * (sink[TEMPERATURE] - p[DEEP_C]) + share * sink[POWER] + pump * kelvin + joule
-    b2 = cold_store * cold0 - pump * kelvin + joule + g0 * first
-    inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ
+    a11, a22 = hot_store + out + near - pump, cold_store + near + pump + g0 * (1.0 - whole[COLD_SHARE])
+    b1 = hot_store * hot0 + out * (sink[TEMPERATURE] - p[DEEP_C]) + share * sink[POWER] + pump * kelvin + warm
+    b2 = cold_store * cold0 - pump * kelvin + cool + g0 * first
+    inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ, or −ACROSS
     hot, cold = (b1 * a22 + leak * b2) * inverse, (a11 * b2 + leak * b1) * inverse
+    step_legs(squared, hot, cold, p, leg)
     x[HOT], x[COLD] = 2.0 * hot - hot0, 2.0 * cold - cold0
     if share > 0.0:
         sink[TEMPERATURE] += 2.0 * share * (sink[POWER] / p[SINK_W_PER_K] + hot + p[DEEP_C] - sink[TEMPERATURE])
@@ -207,13 +224,14 @@ def load(n, state, p, x):
 @compiled
 def forward(
     lanes, rig_of, cue_of, edges, start_A, end_A, row_of, count, plates, cap, g, perf, places, weights, state, sinks,
-    out, final,
+    out, final, cells, leg,
 ):  # fmt: skip
     """Step every lane in `lanes` through the intervals between `edges`, and write the probes of each row.
 
     `start_A`, `end_A` (interval, cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to
     write at an edge, or −1; `state` (lane, n + 3) the start in °C; `out` (probe, lane, row) and `final` (lane, n + 3)
-    are filled. `sinks` (lane, 4) holds each lane's heat sink (NaN: start at its set-point), and is left as it ends.
+    are filled. `sinks` (lane, 4) holds each lane's heat sink (NaN: start at its set-point), and is left as it ends; so
+    are the cells of its legs, `cells` (lane, m) in °C or None; `leg` is `kernel_legs.leg_room` for them.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -224,6 +242,7 @@ def forward(
         r, c = rig_of[lane], cue_of[lane]
         n, p = count[r], plates[r]
         load(n, state[lane], p, x)
+        load_legs(cells, lane, p, leg)
         top, low = x[SKIN : SKIN + n // 2], x[SKIN + n // 2 : SKIN + n]
         for q in range(probes):
             offset[q] = (weights[r, q, 0] + weights[r, q, 1] + weights[r, q, 2]) * p[DEEP_C]
@@ -254,22 +273,26 @@ def forward(
                     step /= math.ceil(step / longest - 1e-9)
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
+                    factor_legs(0.5 * step, p, leg)
                     factored, first = step, weighed(n, upper, lower, x)
                 mean, square = begin, begin * begin
                 if begin != last:  # means of I and I² over a step in which I is linear
                     a, b = begin + (last - begin) * (done / length), begin + (last - begin) * ((done + step) / length)
                     mean, square = 0.5 * (a + b), (a * a + a * b + b * b) / 3.0
-                first = advance(n, mean, square, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first)
+                first = advance(
+                    n, mean, square, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first, leg
+                )
                 done += step
                 since += step
             before = last
         sinks[lane] = sink
+        store_legs(cells, lane, p, leg)
         for k in range(n + 3):
             final[lane, k] = x[place_of(k, n)] + p[DEEP_C]
 
 
 @compiled
-def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
+def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, guess, p, ahead):
     """Current for the next period and the code of what limits it, from one implicit step over the period.
 
     After that step the first lump is z0 + elim0 · (cold plate), so that a target of the skin becomes one of the cold
@@ -277,6 +300,7 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, 
 
         αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
 
+    `ahead` has what stands in place of the terms in Θ and R where legs store heat (`kernel_legs.legs_ahead`).
     """
     alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
     hot_store, cold_store, out = p[HOT_J_PER_K] / period, p[COLD_J_PER_K] / period, p[SINK_W_PER_K]
@@ -284,6 +308,12 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, 
     if skin_control:
         aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
     heat = g0 * (z0 + (elim0 - 1.0) * aim) - cold_store * (aim - cold)
+    if ahead is not None:
+        near, across, ohm, warm, cool = ahead
+        base, total = hot_store * hot + out * sink + across * aim + warm, hot_store + out + near
+        heat += cool - (near - across) * aim
+        amperes = current_for_heat(heat, aim, base, total, alpha, ohm, across, 1e9, guess, CLOSE_A)
+        return limited(amperes, hot, cold, sink, p)
     base, total = hot_store * hot + out * sink + leak * aim, hot_store + out + leak
     return limited(current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9, guess, CLOSE_A), hot, cold, sink, p)
 
@@ -310,28 +340,16 @@ def limited(amperes, hot, cold, sink, p):
 
 @compiled
 def follow(
-    lanes,
-    rig_of,
-    cue_of,
-    period,
-    target,
-    skin_control,
-    face_share,
-    count,
-    plates,
-    cap,
-    g,
-    perf,
-    state,
-    current,
-    reached,
-    why,
-):
+    lanes, rig_of, cue_of, period, target, skin_control, face_share, count, plates, cap, g, perf, state, current,
+    reached, why, cells, warm, leg, period_leg, ahead,
+):  # fmt: skip
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `state` (lane, n + 3) is a steady state; `current`, `reached` and `why` (lane, period)
     get the current A, the controlled temperature °C at the period's end, and the code of what limited the current. The
     current comes from a damped prediction (one implicit step over the period); the state moves by the accurate rule.
+    `cells` (lane, m) are those of the legs and `warm` (lane,) passive heat sinks at the start, in °C; `leg`,
+    `period_leg` and `ahead` (5,) are room for cells. None without them.
     """
     most = cap.shape[1]
     upper, lower, whole = np.empty((5, most)), np.empty((5, most)), np.empty(5)
@@ -348,16 +366,23 @@ def follow(
         factor(n, period, cap[r], g[r], perf[r], p, upper_p, lower_p, whole_p)
         elim, amperes, first = whole_p[COLD_SHARE], 0.0, weighed(n, upper, lower, x)
         settle(state[lane, 0], p, sink)
+        begin_sink(warm, lane, sink)
+        load_legs(cells, lane, p, leg)
+        factor_legs(0.5 * step, p, leg)
+        factor_legs(period, p, period_leg)
         for k in range(target.shape[1]):
             z0 = weighed(n, upper_p, lower_p, x) + p[DEEP_C] * (1.0 - elim)
             hot, cold = x[HOT] + p[DEEP_C], x[COLD] + p[DEEP_C]
+            legs_ahead(p, leg, period_leg, ahead)
             amperes, code = wanted(
-                target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[TEMPERATURE], amperes, p
-            )
+                target[c, k], skin_control, share, z0, elim, g[r, 0], period, hot, cold, sink[TEMPERATURE], amperes, p,
+                ahead,
+            )  # fmt: skip
             for _ in range(pieces):
                 first = advance(
-                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
-                )
+                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z,
+                    first, leg,
+                )  # fmt: skip
             current[lane, k] = amperes
             controlled = share * x[COLD] + (1.0 - share) * x[place_of(SKIN, n)] if skin_control else x[COLD]
             reached[lane, k] = controlled + p[DEEP_C]

@@ -26,6 +26,20 @@ from .kernel import (
     settle,
     wanted,
 )
+from .kernel_legs import (
+    ACROSSES,
+    COOL,
+    LANES,
+    NEARS,
+    WARM,
+    block_ahead,
+    block_factor,
+    block_heat,
+    block_load,
+    block_sinks,
+    block_step,
+    block_store,
+)
 from .network import COLD, HOT, SKIN
 from .plate import (
     ALPHA,
@@ -34,12 +48,10 @@ from .plate import (
     DEEP_C,
     HOT_J_PER_K,
     RESISTANCE,
+    SINK_AIR_W_PER_K,
     SINK_J_PER_K,
     SINK_W_PER_K,
 )
-
-LANES = 32
-"""Runs in a block: enough to fill the vectors, few enough for the first-level cache."""
 
 KEEP, GAIN, LINK, ELIM = range(4)
 """Rows of the factored skin, see `factor`."""
@@ -102,11 +114,12 @@ def weighed(n, weight, constant, x, z0):
 
 
 @compiled
-def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
+def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above, leg, middle):
     """One trapezoidal step of a block in place; `x` (lumps + 3, lane) is the state in °C, hot plate to deep node.
 
     `p` (parameter, lane) and `rig` (lane, parameter) both hold `Network.plates`; `sink` (lane, 5) is each lane's heat
-    sink as in `kernel.settle`, then SHARE. Plates and heat sinks obey the equations of `kernel.advance`.
+    sink as in `kernel.settle`, then SHARE. Plates and heat sinks obey the equations of `kernel.advance`; `middle`
+    (lane,) is scratch for the cells of the legs.
     """
     half = 0.5 * step
     sweep(n, m[KEEP], m[GAIN], m[LINK], x, z)
@@ -114,23 +127,31 @@ def advance(n, step, current, squared, p, rig, g0, x, sink, m, z, above):
     for lane in range(LANES):
         if p[SINK_J_PER_K, lane] > 0.0:
             regulate_sink(step, rig[lane], sink[lane])
-            sink[lane, SHARE] = p[SINK_W_PER_K, lane] / (p[SINK_J_PER_K, lane] / half + p[SINK_W_PER_K, lane])
+            sink_store = p[SINK_J_PER_K, lane] / half + p[SINK_W_PER_K, lane] + p[SINK_AIR_W_PER_K, lane]
+            sink[lane, SHARE] = p[SINK_W_PER_K, lane] / sink_store
+    block_heat(squared, p, leg)
     for lane in range(LANES):
         hot0, cold0, leak = x[HOT, lane], x[COLD, lane], p[CONDUCTANCE, lane]
         pump, joule = p[ALPHA, lane] * current[lane], 0.5 * p[RESISTANCE, lane] * squared[lane]
+        near, warm, cool = leak, joule, joule
+        if leg is not None:
+            near, leak, warm, cool = leg[2][NEARS, lane], leg[2][ACROSSES, lane], leg[2][WARM, lane], leg[2][COOL, lane]
         hot_store, cold_store = p[HOT_J_PER_K, lane] / half, p[COLD_J_PER_K, lane] / half
         share = sink[lane, SHARE]
         out = p[SINK_W_PER_K, lane] * (1.0 - share)
-        a11 = hot_store + out + leak - pump
-        a22 = cold_store + leak + pump + g0[lane] * (1.0 - elim[0, lane])
-        b1 = hot_store * hot0 + out * sink[lane, TEMPERATURE] + share * sink[lane, POWER] + pump * ZERO_C_IN_K + joule
-        b2 = cold_store * cold0 - pump * ZERO_C_IN_K + joule + g0[lane] * z[0, lane]
+        a11 = hot_store + out + near - pump
+        a22 = cold_store + near + pump + g0[lane] * (1.0 - elim[0, lane])
+        b1 = hot_store * hot0 + out * sink[lane, TEMPERATURE] + share * sink[lane, POWER] + pump * ZERO_C_IN_K + warm
+        b2 = cold_store * cold0 - pump * ZERO_C_IN_K + cool + g0[lane] * z[0, lane]
         determinant = 1.0 / (a11 * a22 - leak * leak)
         hot, cold = (b1 * a22 + leak * b2) * determinant, (a11 * b2 + leak * b1) * determinant
         x[HOT, lane], x[COLD, lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
         sink_C = sink[lane, POWER] / p[SINK_W_PER_K, lane] + hot
         sink[lane, TEMPERATURE] += 2.0 * share * (sink_C - sink[lane, TEMPERATURE])
         above[lane] = cold
+        if leg is not None:
+            middle[lane] = hot
+    block_step(squared, middle, above, p, leg)
     for i in range(n):
         for lane in range(LANES):
             value = z[i, lane] + elim[i, lane] * above[lane]
@@ -170,7 +191,7 @@ def gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state
 @compiled
 def forward(
     blocks, rig_of, cue_of, edges, start_A, end_A, row_of, count, bank_plates, bank_cap, bank_g, bank_perf, places,
-    weights, state, sinks, out, final,
+    weights, state, sinks, out, final, cells, leg,
 ):  # fmt: skip
     """`kernel.forward` for blocks (blocks, LANES) of lanes; the last block is padded by repeating a lane."""
     most = bank_cap.shape[1] + 1
@@ -182,9 +203,11 @@ def forward(
     at, weight = np.empty((probes, LANES), dtype=np.int64), np.empty((probes, 3, LANES))
     same, value = np.empty(probes, dtype=np.bool_), np.empty(LANES)
     current, squared, above = np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    middle = np.empty(LANES)
     for b in range(blocks.shape[0]):
         block = blocks[b]
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
+        block_load(cells, block, leg)
         for lane in range(LANES):
             if not math.isnan(sinks[block[lane], TEMPERATURE]):
                 for j in range(SINK_NUMBERS):
@@ -238,10 +261,12 @@ def forward(
                     current[lane], squared[lane] = 0.5 * (a + e), (a * a + a * e + e * e) * THIRD
                 if abs(step - factored) > 1e-12:
                     factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
+                    block_factor(0.5 * step, p, leg)
                     factored = step
-                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above, leg, middle)
                 done += step
                 since += step
+        block_store(cells, block, leg)
         for lane in range(LANES):
             for j in range(SINK_NUMBERS):
                 sinks[block[lane], j] = sink[lane, j]
@@ -253,7 +278,7 @@ def forward(
 @compiled
 def follow(
     blocks, rig_of, cue_of, period, target, skin_control, face_share, count, bank_plates, bank_cap, bank_g, bank_perf,
-    state, current_out, reached, why,
+    state, current_out, reached, why, cells, warm, leg, period_leg, ahead,
 ):  # fmt: skip
     """`kernel.follow` for blocks (blocks, LANES) of lanes."""
     most = bank_cap.shape[1] + 1
@@ -263,6 +288,7 @@ def follow(
     p, rig = np.empty((bank_plates.shape[1], LANES)), np.empty((LANES, bank_plates.shape[1]))
     sink, constant, z0 = np.zeros((LANES, SINK_NUMBERS + 1)), np.empty(LANES), np.empty(LANES)
     current, squared, above = np.zeros(LANES), np.empty(LANES), np.empty(LANES)
+    middle = np.empty(LANES)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for b in range(blocks.shape[0]):
@@ -270,19 +296,25 @@ def follow(
         n = gather(block, rig_of, count, bank_plates, bank_cap, bank_g, bank_perf, state, p, rig, cap, g, perf, x, sink)
         factor(n, 0.5 * step, cap, g, perf, p[DEEP_C], m)
         factor(n, period, cap, g, perf, p[DEEP_C], mp)
+        block_sinks(warm, block, sink)
+        block_load(cells, block, leg)
+        block_factor(0.5 * step, p, leg)
+        block_factor(period, p, period_leg)
         foresee(n, mp, weight, constant)
         for k in range(target.shape[1]):
             weighed(n, weight, constant, x, z0)
             for lane in range(LANES):
+                block_ahead(lane, p, leg, period_leg, ahead)
                 share, elim = face_share[rig_of[block[lane]]], mp[ELIM, 0, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], skin_control, share, z0[lane], elim, g[0, lane], period,
                     x[HOT, lane], x[COLD, lane], sink[lane, TEMPERATURE], current[lane], rig[lane],
+                    ahead,
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code
             for _ in range(pieces):
-                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above)
+                advance(n, step, current, squared, p, rig, g[0], x, sink, m, z, above, leg, middle)
             for lane in range(LANES):
                 share = face_share[rig_of[block[lane]]] if skin_control else 1.0
                 reached[block[lane], k] = share * x[COLD, lane] + (1.0 - share) * x[SKIN, lane]

@@ -21,6 +21,7 @@ from .kernel import (
     settle,
     weighed,
 )
+from .kernel_legs import begin_sink, factor_legs, load_legs
 from .network import COLD, HOT, SKIN
 from .plate import DEEP_C
 
@@ -30,14 +31,15 @@ LAG_S, KP, KI, KD = range(4)
 
 @compiled
 def regulate(
-    lanes, rig_of, cue_of, period, setpoint, gains, bias, count, plates, cap, g, perf, state, current, reached, why
-):
+    lanes, rig_of, cue_of, period, setpoint, gains, bias, count, plates, cap, g, perf, state, current, reached, why,
+    cells, warm, leg,
+):  # fmt: skip
     """Find the held current of every period as the controller of each rig gives it.
 
     At the start of a period I = I_bias + kp·e + ki·∫e dt + kd·dT_felt/dt, with e = T_felt − set-point and T_felt the
     display as the thermistor feels it: dT_felt/dt = (T_display − T_felt)/lag. `setpoint` (cue, period) is in °C,
     `gains` (rig, 4) have the places LAG_S to KD, `bias` (lane,) is the current A that holds the start.
-    `state`, `current`, `reached` and `why` are those of `kernel.follow`. The integral is not advanced while the current
+    `state` and what follows it are those of `kernel.follow`. The integral is not advanced while the current
     is at a limit and the error would push it further (anti-windup).
     """
     most = cap.shape[1]
@@ -53,6 +55,9 @@ def regulate(
         lag, kp, ki, kd = gains[r, LAG_S], gains[r, KP], gains[r, KI], gains[r, KD]
         factor(n, 0.5 * step, cap[r], g[r], perf[r], p, upper, lower, whole)
         settle(state[lane, 0], p, sink)
+        begin_sink(warm, lane, sink)
+        load_legs(cells, lane, p, leg)
+        factor_legs(0.5 * step, p, leg)
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
         mean = (1.0 - decay) * lag / step  # mean weight over a step in which the display is linear
         felt, before, total, first = x[COLD] + p[DEEP_C], x[COLD] + p[DEEP_C], 0.0, weighed(n, upper, lower, x)
@@ -64,8 +69,9 @@ def regulate(
             for _ in range(pieces):
                 display = x[COLD] + p[DEEP_C]
                 first = advance(
-                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z, first
-                )
+                    n, amperes, amperes * amperes, step, p, g[r, 0], x, top, low, sink, upper, lower, whole, y, z,
+                    first, leg,
+                )  # fmt: skip
                 felt = decay * felt + (mean - decay) * display + (1.0 - mean) * (x[COLD] + p[DEEP_C])
             if code == FREE or (demanded - amperes) * error < 0.0:
                 total += error * period

@@ -1,6 +1,7 @@
 """The circuit as numbers: plates, skin lumps and probes of a rig, ready for stepping.
 
-State vector: hot plate, cold plate (the display), skin lumps from the surface down, deep node (constant), all in °C.
+State vector: hot plate, cold plate (the display), skin lumps from the surface down, then the `extras` of a rig that has
+them (cells of the legs from the hot plate to the cold one, a passive heat sink), deep node (constant), all in °C.
 """
 
 from __future__ import annotations
@@ -23,14 +24,17 @@ from .plate import (
     DEEP_C,
     HIGHEST_A,
     HOT_J_PER_K,
+    LEG_J_PER_K,
     LOWEST_A,
     PLATE_NUMBERS,
     RESISTANCE,
+    SINK_AIR_W_PER_K,
     SINK_C,
     SINK_J_PER_K,
     SINK_KI,
     SINK_KP,
     SINK_POWER_W,
+    SINK_START_C,
     SINK_W_PER_K,
 )
 
@@ -58,8 +62,8 @@ class Network:
     """A rig as lumps; n skin lumps, arrays read-only.
 
     `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
-    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED; `plates` (15,) for the kernel,
-    in the order that `plate` names.
+    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED, as if there were no extras;
+    `plates` (18,) for the kernel, in the order that `plate` names; `legs` is the number of cells of the legs.
     """
 
     capacity_J_per_K: Array
@@ -68,6 +72,7 @@ class Network:
     probe_start: npt.NDArray[np.int64]
     probe_weight: Array
     plates: Array
+    legs: int = 0
 
     def __post_init__(self) -> None:
         for array in (self.capacity_J_per_K, self.conductance_W_per_K, self.perfusion_W_per_K):
@@ -81,15 +86,32 @@ class Network:
         return float(self.plates[DEEP_C])
 
     @property
+    def passive(self) -> bool:
+        """Whether the heat sink is passive, so that its temperature is part of the state."""
+        return bool(self.plates[SINK_AIR_W_PER_K] > 0)
+
+    @property
+    def extras(self) -> int:
+        """Number of states between the last lump and the deep node."""
+        return self.legs + self.passive
+
+    @property
+    def nodes(self) -> int:
+        """Length of the state vector."""
+        return len(self.capacity_J_per_K) + self.extras + 3
+
+    @property
     def face_share(self) -> float:
         """Weight of the cold plate in the face temperature; the first lump has the rest."""
         start, weight = int(self.probe_start[2]), self.probe_weight[2]
         return float(weight[COLD - start]) if start <= COLD else 0.0
 
     def read(self, state_C: Array, probe: str) -> float:
-        """Value of one of the RECORDED quantities at a state (n + 3,) in °C."""
+        """Value of one of the RECORDED quantities at a state (nodes,) in °C."""
         row = RECORDED.index(probe)
         start = int(self.probe_start[row])
+        if self.extras:
+            state_C = np.append(state_C[: SKIN + len(self.capacity_J_per_K)], state_C[-1])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
 
 
@@ -119,7 +141,13 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
     if controller is not None:
         plates[[SINK_J_PER_K, SINK_POWER_W]] = controller.capacity_J_per_K, controller.power_limit_W
         plates[[SINK_KP, SINK_KI]] = controller.kp_W_per_K, controller.ki_W_per_Ks
-    return _network(rig, column, plates)
+    if (passive := rig.heat_sink.passive) is not None:  # to the kernel, a controller whose gain is that of the air
+        conductance = 1 / passive.air_resistance_K_per_W
+        plates[[SINK_J_PER_K, SINK_C, SINK_KP]] = passive.capacity_J_per_K, passive.air_C, conductance
+        plates[[SINK_AIR_W_PER_K, SINK_POWER_W]] = conductance, np.inf
+        plates[SINK_START_C] = np.nan if passive.steady else rig.heat_sink.temperature_C
+    plates[LEG_J_PER_K] = module.leg_capacity_J_per_K
+    return replace(_network(rig, column, plates), legs=module.leg_nodes)
 
 
 def unpowered(network: Network, sink_C: float) -> Network:

@@ -22,7 +22,11 @@ LOWEST_A, HIGHEST_A, COMPLIANCE_V = range(8, 11)
 SINK_J_PER_K, SINK_KP, SINK_KI, SINK_POWER_W = range(11, 15)
 """Places of a heat sink's own controller: heat capacity (0: the sink is ideal), W/K, W/(K·s), greatest power."""
 
-PLATE_NUMBERS = 15
+SINK_AIR_W_PER_K, SINK_START_C, LEG_J_PER_K = range(15, 18)
+"""Places of a passive heat sink's conductance to air (0: it is not passive; SINK_C is then the air's temperature), of
+its temperature at the start (NaN: where the current and the air leave it), and of the heat capacity of all legs."""
+
+PLATE_NUMBERS = 18
 
 
 def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:

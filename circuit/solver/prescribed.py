@@ -57,7 +57,7 @@ class SkinModes:
         """
         from . import kernel_modes
 
-        keep, now, then = _weights(self.rate_per_s, step_s)
+        keep, now, then = step_weights(self.rate_per_s, step_s)
         values, end = np.empty((len(self.reading), len(display_C))), modes.copy()
         kernel_modes.follow_display(
             display_C - self.deep_C, keep, now, then, self.drive_per_s, self.reading, self.direct, self.offset_C, end,
@@ -75,7 +75,7 @@ class SkinModes:
         from scipy.signal import lfilter
 
         above = display_C - self.deep_C
-        keep, now, then = _weights(self.rate_per_s, step_s)
+        keep, now, then = step_weights(self.rate_per_s, step_s)
         chosen = list(rows)
         modes = np.empty((len(self.rate_per_s), *above.shape))
         for k in range(len(modes)):
@@ -110,7 +110,7 @@ class SkinModes:
         """
         row = FELT.index("skin_C")
         weight, direct = self.reading[row], float(self.direct[row])
-        keep, now, then = _weights(self.rate_per_s, step_s)
+        keep, now, then = step_weights(self.rate_per_s, step_s)
         damped, gain = 1.0 / (1.0 + self.rate_per_s * step_s), step_s * self.drive_per_s
         per_display = float(weight @ (damped * gain)) + direct
         modes, level, most = self.steady(start_C), start_C - self.deep_C, slew_K_per_s * step_s
@@ -178,7 +178,7 @@ def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: fl
         return setpoint_C.copy()
     keep, now, then = (0.0, 0.0, 1.0)
     if lag_s > 0:
-        weights = _weights(np.array([1.0 / lag_s]), step_s)
+        weights = step_weights(np.array([1.0 / lag_s]), step_s)
         keep, now, then = float(weights[0][0]), float(weights[1][0]) / lag_s, float(weights[2][0]) / lag_s
     level, before, reached = float(setpoint_C[0]), float(setpoint_C[0]), []
     for target_C in setpoint_C.tolist():
@@ -188,7 +188,7 @@ def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: fl
     return np.array(reached)
 
 
-def _weights(rate_per_s: Array, step_s: float) -> tuple[Array, Array, Array]:
+def step_weights(rate_per_s: Array, step_s: float) -> tuple[Array, Array, Array]:
     """What a mode keeps over a step, and the weights in s of a linear forcing at its beginning and its end."""
     x = rate_per_s * step_s
     keep = np.exp(-x)

@@ -18,9 +18,12 @@ from .insulated import insulated_C
 from .network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
 
 SLOWEST_ROWS_S = 0.01
-"""A probe with memory (a lag or a second column) is stepped at least this finely, whatever the rows."""
+"""A probe with memory (a lag, or skin of its own) is stepped at least this finely, whatever the rows."""
 
 MOST_VALUES = 200_000_000
+
+INSULATED_VALUES = 48
+"""A probe on insulated skin takes about as long as this many others: it has some 200 modes."""
 
 
 def between(rows_s: Array, rig: Rig) -> int:
@@ -32,7 +35,8 @@ def between(rows_s: Array, rig: Rig) -> int:
     if not any(probe.lag_s or probe.place == "insulated skin" for probe in rig.probes):
         return 1
     parts = max(1, math.ceil(float(np.diff(rows_s).max(initial=0.0)) / SLOWEST_ROWS_S - 1e-9))
-    values = len(rows_s) * parts * (len(rig.probes) + (len(rig.column.depth_m) if _second(rig) else 0))
+    insulated = sum(probe.place == "insulated skin" for probe in rig.probes)
+    values = len(rows_s) * parts * (len(rig.probes) + INSULATED_VALUES * insulated)
     if values > MOST_VALUES:
         raise RigError(
             f"rig {rig.name}: its probes need {values:.2g} values over {rows_s[-1]:g} s; the limit is "
@@ -53,10 +57,6 @@ def divided(rows_s: Array, parts: int) -> Array:
     return np.append(inside.ravel(), rows_s[-1])
 
 
-def _second(rig: Rig) -> bool:
-    return any(probe.place == "insulated skin" for probe in rig.probes)
-
-
 def lump_rows(rig: Rig) -> list[Weights]:
     """Readings of every skin lump, face first."""
     count = len(rig.column.depth_m)
@@ -68,7 +68,7 @@ def lump_rows(rig: Rig) -> list[Weights]:
 
 
 def readings_of(rig: Rig) -> tuple[Index, Array] | None:
-    """Return the readings that a run must record for a rig's probes: one each, then all lumps where needed."""
+    """Return the readings that a run must record for a rig's probes, one each; None where it has none."""
     if not rig.probes:
         return None
     place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
@@ -80,7 +80,7 @@ def readings_of(rig: Rig) -> tuple[Index, Array] | None:
             rows.append(temperature_weights(contact + rig.skin.resistance_to_m2K_per_W(probe.depth_m), place))
         else:
             rows.append((COLD, (1.0, 0.0, 0.0)))
-    return stacked(rows + (lump_rows(rig) if _second(rig) else []))
+    return stacked(rows)
 
 
 def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None) -> tuple[Index, Array] | None:
@@ -92,12 +92,11 @@ def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None
 
 def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[str, Array], ...]:
     """Return (name, °C) of every probe at every `parts`-th time, from the readings (k, times) of `readings_of`."""
-    lumps = recorded[len(rig.probes) :]
     readings = []
     for probe, read in zip(rig.probes, recorded, strict=False):
         value = np.ascontiguousarray(read)
         if probe.place == "insulated skin":
-            value = insulated_C(rig, probe, time_s, value, lumps)
+            value = insulated_C(rig, probe, time_s, value)
         readings.append((probe.name, _lagged(probe, time_s, value)[::parts].copy()))
     return tuple(readings)
 

@@ -15,7 +15,9 @@ from .plate import (
     ALPHA,
     CONDUCTANCE,
     RESISTANCE,
+    SINK_AIR_W_PER_K,
     SINK_C,
+    SINK_START_C,
     SINK_W_PER_K,
     current_for_heat_A,
     greatest_cooling_A,
@@ -24,6 +26,19 @@ from .plate import (
 
 PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)
 """Places of the plate numbers that decide a steady state."""
+
+
+def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, float, float, float]:
+    """α, R, 1/Θ, and temperature and conductance of what the hot plate rests on in steady state.
+
+    A passive heat sink stays at the temperature where it starts; `in_the_end`, or where that is not given, it is itself
+    in balance with its air, so that the hot plate rests on the air through two resistances in series.
+    """
+    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
+    if network.passive:
+        start, air = float(network.plates[SINK_START_C]), float(network.plates[SINK_AIR_W_PER_K])
+        sink, out = (sink, out * air / (out + air)) if in_the_end or np.isnan(start) else (start, out)
+    return alpha, ohm, leak, sink, out
 
 
 @lru_cache(maxsize=512)
@@ -41,25 +56,67 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
-def state_under_current(network: Network, current_A: float) -> Array:
-    """Return the steady state (n + 3,) in °C under a constant current.
+def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
+    """Return the steady state (nodes,) in °C under a constant current; see `_plates` for `in_the_end`.
 
     Raises ArithmeticError where there is none (the module would heat without limit).
     """
-    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
-    z, e = _column(network)
-    skin = float(network.conductance_W_per_K[0])
+    plates, (z, e) = _plates(network, in_the_end), _column(network)
+    cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
+    state = _fill(network, cold, hot, z, e)
+    if network.extras:
+        state[SKIN + len(z) : -1] = extras_between(network, current_A, hot, cold, in_the_end)
+    return state
+
+
+def _balance(
+    plates: tuple[float, float, float, float, float], current_A: float, skin: float, z: float, e: float
+) -> tuple[float, float]:
+    """Cold and hot plate in °C over a conductance in W/K to something at z + e · (cold plate)."""
+    alpha, ohm, leak, sink, out = plates
     zero = hot_plate_C(current_A, out * sink, out + leak, alpha, ohm)
     per_cold = leak / (out + leak - alpha * current_A)
-    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e[0])
+    diagonal = leak * (1.0 - per_cold) + alpha * current_A + skin * (1.0 - e)
     if out + leak - alpha * current_A <= 0 or diagonal <= 0:
         raise ArithmeticError(f"{current_A:g} A has no steady state on this rig: it heats without limit")
-    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z[0]) / diagonal
-    return _fill(network, cold, zero + per_cold * cold, z, e)
+    cold = (leak * zero - alpha * current_A * ZERO_C_IN_K + 0.5 * ohm * current_A**2 + skin * z) / diagonal
+    return cold, zero + per_cold * cold
+
+
+def bare_plates(
+    network: Network, film_W_per_K: float, air_C: float, current_A: float | None, display_C: float | None
+) -> tuple[float, float, float]:
+    """Return current in A, cold and hot plate in °C of a display in air, under a current or held at a temperature.
+
+    Raises ArithmeticError where there is no steady state.
+    """
+    plates = _plates(network)
+    if current_A is None:
+        assert display_C is not None
+        alpha, ohm, leak, sink, out = plates
+        base, total = out * sink + leak * display_C, out + leak
+        greatest = greatest_cooling_A(display_C, base, total, alpha, ohm, leak)
+        heat = film_W_per_K * (air_C - display_C)
+        current_A = current_for_heat_A(heat, display_C, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
+    return (current_A, *_balance(plates, current_A, film_W_per_K, air_C, 0.0))
+
+
+def extras_between(network: Network, current_A: float, hot: float, cold: float, in_the_end: bool = False) -> Array:
+    """The cells of the legs, then a passive heat sink, in steady state between the plates."""
+    values, (*_, sink, out) = np.empty(network.extras), _plates(network, in_the_end)
+    place = (np.arange(network.legs) + 0.5) / max(network.legs, 1)  # of a cell, from the hot plate
+    ohm, leak = float(network.plates[RESISTANCE]), float(network.plates[CONDUCTANCE])
+    # The parabola of evenly spread Joule heat at the middle of a cell, less what its half cell's resistance has.
+    raised = 0.5 * ohm * current_A**2 / leak * (place * (1.0 - place) + 0.25 / max(network.legs, 1) ** 2)
+    values[: network.legs] = hot + (cold - hot) * place + raised
+    if network.passive:
+        to_sink = float(network.plates[SINK_W_PER_K])
+        values[-1] = hot - out * (hot - sink) / to_sink
+    return values
 
 
 def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Array:
-    state = np.empty(len(z) + 3)
+    state = np.empty(network.nodes)
     state[HOT], state[COLD], state[-1] = hot, cold, network.deep_C
     for i in range(len(z)):
         state[SKIN + i] = z[i] + e[i] * state[COLD + i]
@@ -71,7 +128,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
 
     Where the module cannot cool that far, the result is the current of greatest cooling; check its steady state.
     """
-    alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
+    alpha, ohm, leak, sink, out = _plates(network)
     z, e = _column(network)
     cold = level_C
     if control == "skin":

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
 
+POWER = "power_W"
+"""Column of the electrical power at the module, on demand."""
+
 CSV_FORMAT = "%.9g"
 
 CLOSE_K = 0.1
@@ -202,6 +205,14 @@ class Trace:
             return self.outcome.reason
         return "; ".join(self.beyond) or None
 
+    @property
+    def power_W(self) -> Array:
+        """Electrical power of the module (rows,) in W, voltage times current; NaN on a thermode.
+
+        Negative where the module returns power, as it does while a current ends that has cooled it.
+        """
+        return np.asarray(self.voltage_V * self.current_A)
+
     def probe(self, name: str) -> Array:
         """Temperature (rows,) in °C that a probe of the rig reads; raises KeyError with the probes there are."""
         for other, values in self.probes:
@@ -209,18 +220,21 @@ class Trace:
                 return values
         raise KeyError(f"no probe {name!r} in this trace; there is {', '.join(dict(self.probes)) or 'none'}")
 
-    def to_frame(self) -> pd.DataFrame:
-        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe."""
+    def to_frame(self, power: bool = False) -> pd.DataFrame:
+        """Return the trace as a table with the columns of a trace file, then one `probe_<name>_C` for each probe.
+
+        `power` adds the column `power_W` after the columns of a trace file.
+        """
         import pandas as pd
 
         columns: dict[str, Any] = {"icon": pd.Series([self.icon] * len(self.time_s), dtype="string")}
-        columns.update({name: getattr(self, name) for name in COLUMNS[1:]})
+        columns.update({name: getattr(self, name) for name in (*COLUMNS[1:], *([POWER] if power else []))})
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
-    def to_csv(self, path: str | Path) -> None:
+    def to_csv(self, path: str | Path, power: bool = False) -> None:
         """Write the columns of `to_frame` as a CSV file; numbers have nine digits, NaN is an empty cell."""
-        self.to_frame().to_csv(path, index=False, float_format=CSV_FORMAT)
+        self.to_frame(power).to_csv(path, index=False, float_format=CSV_FORMAT)
 
     def plot(self, ax: Axes | None = None, probes: bool = False, measured: Log | None = None) -> Axes:
         """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes.
@@ -236,7 +250,7 @@ class Trace:
         return ax
 
 
-def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
+def write_trace(traces: Trace | list[Trace], path: str | Path, power: bool = False) -> None:
     r"""Write traces to one table, one after the other; NaN becomes an empty cell.
 
     Parameters
@@ -245,6 +259,8 @@ def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
         One trace or several.
     path
         Name of the file; it is written as Parquet if it ends in ``.parquet``, else as CSV.
+    power
+        Whether to add the column `power_W`, the electrical power of the module in W.
 
     Raises
     ------
@@ -264,7 +280,7 @@ def write_trace(traces: Trace | list[Trace], path: str | Path) -> None:
     """
     import pandas as pd
 
-    frames = [trace.to_frame() for trace in (traces if isinstance(traces, list) else [traces])]
+    frames = [trace.to_frame(power) for trace in (traces if isinstance(traces, list) else [traces])]
     table = pd.concat(frames, ignore_index=True)
     if str(path).endswith(".parquet"):
         require_pyarrow(path)

@@ -106,7 +106,7 @@ class Likeness:
     def __repr__(self) -> str:
         return (
             f"Likeness(probe {self.probe!r} is most like {self.depth_m * 1e3:.2f} mm, "
-            f"residual {self.residual_K:.3f} K rms of {abs(self.largest_change_K):.2f} K; a 1-D stand-in)"
+            f"residual {self.residual_K:.3f} K rms of {abs(self.largest_change_K):.2f} K)"
         )
 
 
@@ -141,15 +141,15 @@ def resembles(
     Notes
     -----
     The depth with the least rms difference of the changes from the first row; changes, since the start of a trace does
-    not depend on depth. A lag of the probe is part of its reading. The insulated skin is a 1-D substitute for lateral
-    conduction, and so is the result.
+    not depend on depth. A lag of the probe is part of its reading. The insulated skin is that under a round pad, with
+    heat flowing sideways; the skin under the display has depth alone.
 
     Examples
     --------
     >>> from thermicon.icons import load_library
     >>> rig = Rig.load("thenar").with_(probe=[{"name": "pad", "place": "insulated skin"}])
     >>> resembles(load_library("six-icons")["cooling-step"], rig)
-    Likeness(probe 'pad' is most like 2.35 mm, residual 0.067 K rms of 0.15 K; a 1-D stand-in)
+    Likeness(probe 'pad' is most like 2.49 mm, residual 0.059 K rms of 0.11 K)
     """
     names = [other.name for other in rig.probes if other.place == "insulated skin"]
     if probe is None and not names:

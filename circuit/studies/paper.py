@@ -161,12 +161,12 @@ def _change(values: Array) -> float:
 def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, control: str = "skin") -> Thermistors:
     """Put the paper's three thermistors on a rig and play the cue (Figs. 5 and 6).
 
-    `lateral_m` is both the distance of the insulated patch to skin in contact and its width; None uses the assumed
+    `lateral_m` is the distance from the middle of the round insulated patch to skin in contact; None uses the assumed
     values. The paper gives neither, nor the thermistors' lag: here they have none.
     """
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
     if lateral_m is not None:
-        probes[2] |= {"lateral_mm": lateral_m * 1e3, "width_mm": lateral_m * 1e3}
+        probes[2] |= {"lateral_mm": lateral_m * 1e3}
     rig, cue = _rig(rig).with_(probe=probes), cooling_step(control)
     likeness = resembles(cue, rig, "3", tail_s=TAIL_S)
     depths = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)

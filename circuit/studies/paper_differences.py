@@ -160,7 +160,7 @@ def _insulated(rig: Rig) -> PaperDifference:
         f"{assumed.likeness.depth_m * 1e3:.2f} mm (residual {assumed.likeness.residual_K:.2f} K); to swing "
         f"{other:.1f} K it must lie {near.lateral_m * 1e3:.1f} mm from skin in contact, and is then most like "
         f"{near.likeness.depth_m * 1e3:.2f} mm (residual {near.likeness.residual_K:.2f} K).",
-        "The paper gives no distance, and the answer depends on it. Ours is a 1-D stand-in, with one path per depth.",
+        "The paper gives no distance, and the answer depends on it. Ours is the field under a round pad.",
     )
 
 

@@ -67,7 +67,7 @@ def plot_thermistors(thermistors: Thermistors, ax: Axes | None = None) -> Axes:
         thermistors.trace.time_s, thermistors.depth_C - thermistors.depth_C[0], color=COOL, lw=1.2, ls=":", label=depth
     )
     ax.axhline(0, color="#cccccc", lw=0.8, zorder=0)
-    title = f"insulated patch {thermistors.lateral_m * 1e3:.2g} mm from skin in contact, as wide (a 1-D stand-in)"
+    title = f"insulated patch {thermistors.lateral_m * 1e3:.2g} mm from skin in contact"
     ax.set_title(title, fontsize="small", loc="left")
     return tidy(ax, thermistors.trace.time_s, "change (K)")
 

@@ -169,6 +169,9 @@ def simulate_command(
             help="Draw an overview; several icons give one file each, OUT-NAME.png.",
         ),
     ] = None,
+    power: Annotated[
+        bool, typer.Option("--power", help="With -o: add the electrical power of the module, power_W.")
+    ] = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -185,15 +188,17 @@ def simulate_command(
         raise usage("belongs to a cue FILE; a drive has no icons", "--icon")
     if current is not None and tail is not None:
         raise usage("belongs to a cue FILE; a drive ends at its last row", "--tail")
+    if power and output is None:
+        raise usage("adds a column to the trace; name its file with -o, or - for stdout", "--power")
     if not (math.isfinite(rate) and rate > 0):
         raise usage(f"{rate:g} is not a number of samples per second above 0", "--rate")
     check_tail(tail)
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
-        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure)
+        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power)
     elif file is not None:
-        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure)
+        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power)
 
 
 @app.command("rank", rich_help_panel=PREDICT)

@@ -29,6 +29,7 @@ def simulate_file(
     tail_s: float | None,
     output: Path | None,
     figure: Path | None,
+    power: bool = False,
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import simulate
@@ -39,14 +40,17 @@ def simulate_file(
     _check(file, output, pictures)
     warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
-    _write(traces, output)
+    _write(traces, output, power)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
         draw_overview(played, picture, rig.changes)
-    _report(traces, rig, output, pictures, [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)])
+    cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
+    _report(traces, rig, output, pictures, cures, power)
 
 
-def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None) -> None:
+def simulate_drive(
+    drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None, power: bool = False
+) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit import read_drive, simulate_current
 
@@ -54,10 +58,10 @@ def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Pa
     _check(drive, output, pictures)
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
-    _write([trace], output)
+    _write([trace], output, power)
     for picture in pictures:
         draw_overview(simulate_current(played, rig), picture, rig.changes)
-    _report([trace], rig, output, pictures, [None])
+    _report([trace], rig, output, pictures, [None], power)
 
 
 def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
@@ -86,14 +90,19 @@ def _check(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> N
         check_output(picture, FIGURE_SUFFIXES, "a figure")
 
 
-def _write(traces: Sequence[Trace], output: Path | None) -> None:
+def _write(traces: Sequence[Trace], output: Path | None, power: bool) -> None:
     """Write the traces to their file before printing, since the reader of a pipe may not wait."""
     if output is not None and output != STDOUT:
-        write_traces(traces, output)
+        write_traces(traces, output, power)
 
 
 def _report(
-    traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
+    traces: Sequence[Trace],
+    rig: Rig,
+    output: Path | None,
+    pictures: Sequence[Path],
+    cures: Sequence[str | None],
+    power: bool,
 ) -> None:
     """Report warnings and written files on stderr, then print a summary or the traces on stdout."""
     for trace in traces:
@@ -110,7 +119,7 @@ def _report(
         for trace, better in zip(traces, cures, strict=True):
             typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
     elif output == STDOUT:
-        write_traces(traces, output)
+        write_traces(traces, output, power)
 
 
 def unsafe(trace: Trace) -> list[str]:
@@ -121,18 +130,18 @@ def unsafe(trace: Trace) -> list[str]:
     return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
 
 
-def write_traces(traces: Sequence[Trace], output: Path) -> None:
-    """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout."""
+def write_traces(traces: Sequence[Trace], output: Path, power: bool = False) -> None:
+    """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout. `power`: with `power_W`."""
     from thermicon.circuit import write_trace
 
     if output == STDOUT:
         with tempfile.TemporaryDirectory() as folder:
             draft = Path(folder) / "trace.csv"
-            write_trace(list(traces), draft)
+            write_trace(list(traces), draft, power)
             typer.echo(draft.read_text(encoding="utf-8"), nl=False)
         return
     with complete_or_absent(output) as draft:
-        write_trace(list(traces), draft)
+        write_trace(list(traces), draft, power)
 
 
 def headline(trace: Trace) -> str:

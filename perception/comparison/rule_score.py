@@ -15,7 +15,7 @@ from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
 from .rules import OURS, RuleResult, passes
 
 if TYPE_CHECKING:
-    from ..ranking.ranking import IconScore, PairScore
+    from ..ranking.scores import IconScore, PairScore
 
 
 def counted(results: Iterable[RuleResult]) -> list[RuleResult]:

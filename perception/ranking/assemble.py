@@ -19,7 +19,7 @@ from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept
 from .batches import PooledResult
-from .ranking import IconScore, PairScore
+from .scores import IconScore, PairScore
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -17,7 +17,8 @@ from ..selection.edit_result import Edit, NoEdit
 
 if TYPE_CHECKING:
     from ..identification.laboratory import Interval, NewLaboratory
-    from .ranking import IconScore, PairScore, Ranking
+    from .ranking import Ranking
+    from .scores import IconScore, PairScore
 
 
 NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_laboratory_s")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
-    from ..ranking.ranking import PairScore
+    from ..ranking.scores import PairScore
 
 
 def with_edits(

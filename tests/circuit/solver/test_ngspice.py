@@ -89,6 +89,22 @@ def test_a_20_s_drive_agrees(name: str, drive: Drive, tool: Tool, tmp_path: Path
     assert found.small(), found
 
 
+BODIES = {
+    "legs": {"module.leg_nodes": 4, "module.leg_capacity_J_per_K": 0.8},
+    "warm sink": {"heat_sink.temperature_C": 28.0, "heat_sink.capacity_J_per_K": 40.0,
+                  "heat_sink.air_resistance_K_per_W": 1.5},
+    "steady sink and legs": {"heat_sink.temperature_C": None, "heat_sink.capacity_J_per_K": 40.0,
+                             "heat_sink.air_resistance_K_per_W": 1.5, "module.leg_nodes": 3,
+                             "module.leg_capacity_J_per_K": 0.8},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_bodies_that_store_heat_agree(body: str, tool: Tool, tmp_path: Path) -> None:
+    found = played(Rig.load("thenar").with_(**BODIES[body]), CORNERS, tool("ngspice"), tmp_path)
+    assert found.small(), found
+
+
 @pytest.mark.parametrize(
     ("cue", "name"),
     [

@@ -37,6 +37,19 @@ def test_columns_and_rows(trace: Trace) -> None:
     assert trace.heat_flow_skin_W_per_m2[0] == pytest.approx(-78.7, abs=0.1)
 
 
+def test_power_is_what_the_module_turns_into_heat(trace: Trace) -> None:
+    rig = Rig.load("thenar")
+    assert "power_W" not in trace.to_frame()
+    frame = trace.to_frame(power=True)
+    assert list(frame.columns) == [*COLUMNS, "power_W"]
+    for row in (0, 150, 700):
+        plates = float(trace.current_A[row]), float(trace.display_C[row]), float(trace.hot_plate_C[row])
+        heat = rig.module.heat_rejected_W(*plates) - rig.module.heat_absorbed_W(*plates)
+        assert frame["power_W"][row] == pytest.approx(heat, abs=1e-9)
+    thermode = simulate(load_library("six-icons").icons[0], Rig.load("tcs2"))
+    assert thermode.to_frame(power=True)["power_W"].isna().all()
+
+
 def test_a_tail_at_baseline_and_another_rate(trace: Trace) -> None:
     longer = simulate(STEP, THENAR, rate_Hz=40, tail_s=10)
     assert (len(longer.time_s), longer.time_s[-1]) == (721, 18.0)

@@ -1,12 +1,9 @@
-"""Any depth at any instant, insulated skin against the matrix exponential, and the depth a probe resembles."""
+"""Any depth at any instant, and the depth that a probe on insulated skin resembles."""
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
-from thermicon.circuit import Drive, Rig, RigError, simulate_current
-from thermicon.circuit.rig.module import ZERO_C_IN_K
-from thermicon.circuit.solver.network import network_of
+from thermicon.circuit import Rig, RigError
 from thermicon.circuit.studies.depths import probe_depths, resembles
 from thermicon.icons import load_library
 
@@ -62,78 +59,9 @@ def test_a_depth_outside_the_skin_is_refused() -> None:
         probe_depths(STEP, THENAR, [0.02])
 
 
-@pytest.mark.parametrize("rig", [PAPER, THENAR], ids=lambda rig: rig.name)
-@pytest.mark.parametrize("depth_mm", [0.0, 0.7])
-def test_insulated_skin_agrees_with_the_matrix_exponential(rig: Rig, depth_mm: float) -> None:
-    # Plates, first and second column in one dense system, written out anew; 0.1 A at rest, then 0.5 A held.
-    lateral, width, pad = 1.0e-3, 2.0e-3, 0.05
-    rig = rig.with_(
-        **{
-            "skin.elements": [2] * len(rig.skin.layers),
-            "probe": [
-                {
-                    "name": "pad",
-                    "place": "insulated skin",
-                    "depth_mm": depth_mm,
-                    "lateral_mm": lateral * 1e3,
-                    "width_mm": width * 1e3,
-                    "insulation_m2K_per_W": pad,
-                }
-            ],
-        }
-    )
-    trace = simulate_current(Drive([0, 0.01, 20.01], [0.1, 0.5, 0.5], held=True), rig)
-    heights = np.repeat([layer.thickness_m / 2 for layer in rig.skin.layers], 2)
-    k = np.repeat([layer.conductivity_W_per_mK for layer in rig.skin.layers], 2)
-    store = np.repeat([layer.density_kg_per_m3 * layer.heat_capacity_J_per_kgK for layer in rig.skin.layers], 2)
-    blood = np.repeat([layer.perfusion_per_s * 1060 * 3770 for layer in rig.skin.layers], 2)
-    half, n = heights / k / 2, len(k)
-    between = 1 / np.concatenate([half[:1], half[:-1] + half[1:], half[-1:]])
-    through_pad = between.copy()
-    through_pad[0] = 1 / (half[0] + pad)
-    between[0] = 1 / (half[0] + rig.contact.resistance_m2K_per_W)
-    area = rig.contact.area_m2
-    alpha, ohm, leak, hot_J, cold_J, sink, out, deep = network_of(rig).plates[:8]
-
-    def system(current: float) -> tuple[np.ndarray, np.ndarray]:
-        matrix, source = np.zeros((2 + 2 * n, 2 + 2 * n)), np.zeros(2 + 2 * n)
-        matrix[0, :2] = np.array([-(out + leak - alpha * current), leak]) / hot_J
-        matrix[1, :3] = np.array([leak, -(leak + alpha * current + area * between[0]), area * between[0]]) / cold_J
-        source[0] = (out * sink + alpha * current * ZERO_C_IN_K + ohm * current**2 / 2) / hot_J
-        source[1] = (-alpha * current * ZERO_C_IN_K + ohm * current**2 / 2) / cold_J
-        for column, g in enumerate((between, through_pad)):
-            for i in range(n):
-                row = 2 + column * n + i
-                across = k[i] * heights[i] / (lateral * width) if column else 0.0
-                matrix[row, row] = -(g[i] + g[i + 1] + blood[i] * heights[i] + across)
-                matrix[row, row - 1 if i else 1] = g[i]
-                if i < n - 1:
-                    matrix[row, row + 1] = g[i + 1]
-                if column:
-                    matrix[row, row - n] += across
-                source[row] = blood[i] * heights[i] * deep + (g[n] * deep if i == n - 1 else 0.0)
-                matrix[row] /= store[i] * heights[i]
-                source[row] /= store[i] * heights[i]
-        return matrix, source
-
-    matrix, source = system(0.1)
-    state = -np.linalg.solve(matrix, source)
-    matrix, source = system(0.5)
-    steady, decay = -np.linalg.solve(matrix, source), expm(matrix * 0.01)
-    place = np.concatenate([[0.0], np.cumsum(1 / through_pad)])
-    at = pad + rig.skin.resistance_to_m2K_per_W(depth_mm * 1e-3)
-    wrong = 0.0
-    for row in range(1, len(trace.time_s)):
-        second = np.concatenate([[state[1]], state[2 + n :], [deep]])
-        wrong = max(wrong, abs(float(np.interp(at, place, second)) - trace.probe("pad")[row]))
-        state = steady + decay @ (state - steady)
-    assert np.ptp(trace.probe("pad")) > 0.5
-    assert wrong < 5e-4
-
-
 def test_closely_joined_skin_resembles_its_own_depth() -> None:
     for depth_mm in (0.4, 1.1, 3.0):
-        pad = {"name": "pad", "place": "insulated skin", "lateral_mm": 0.05, "width_mm": 0.05, "depth_mm": depth_mm}
+        pad = {"name": "pad", "place": "insulated skin", "lateral_mm": 0.02, "depth_mm": depth_mm}
         like = resembles(STEP, THENAR.with_(probe=[pad]), tail_s=10)
         assert like.depth_m == pytest.approx(depth_mm * 1e-3, rel=0.02)
         assert like.residual_K < 0.02
@@ -143,7 +71,7 @@ def test_likeness_is_said_with_its_residual() -> None:
     probes = [{"name": "pad", "place": "insulated skin"}, {"name": "plate", "place": "display"}]
     rig = THENAR.with_(probe=probes)
     assert repr(resembles(STEP, rig)).startswith("Likeness(probe 'pad' is most like 2.")
-    assert repr(resembles(STEP, rig)).endswith("K; a 1-D stand-in)")
+    assert repr(resembles(STEP, rig)).endswith(" K)")
     assert resembles(STEP, rig, "plate").depth_m == 0.0
     with pytest.raises(RigError, match="rig thenar has no probe 'pat'; it has pad, plate"):
         resembles(STEP, rig, "pat")

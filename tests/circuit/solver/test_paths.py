@@ -1,0 +1,217 @@
+"""Every path that simulates takes every key of the rig that changes the circuit, or refuses it: none ignores one."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import (
+    Device,
+    Drive,
+    Rig,
+    RigError,
+    design,
+    gate,
+    netlist,
+    play_session,
+    simulate,
+    simulate_current,
+    simulate_many,
+    steady_state,
+)
+from thermicon.circuit.delivery.deliver import deliver
+from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.sessionplan import SessionPlan
+from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.solver.simulate import simulate_all
+from thermicon.circuit.solver.steady import state_under_current
+from thermicon.icons import Icon, load_library, parse
+
+CIRCUIT = Path(__file__).resolve().parents[3] / "circuit"
+THENAR = Rig.load("thenar")
+KEYS: dict[str, dict[str, object]] = {
+    "legs": {"module.leg_nodes": 3, "module.leg_capacity_J_per_K": 0.8},
+    "passive sink": {
+        "heat_sink.temperature_C": 28.0,
+        "heat_sink.capacity_J_per_K": 40.0,
+        "heat_sink.air_resistance_K_per_W": 1.5,
+    },
+    "landing": {"contact.lands_s": -2.0},
+}
+PID = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.2, "lag_s": 0.1}
+PROBES = ("hot_plate_C", "skin_C")
+END_S = 8.0
+
+
+def cue(control: str) -> Icon:
+    shipped = load_library("cooling-step-skin" if control == "skin" else "six-icons").icons[0]
+    if control != "current":
+        return shipped
+    text = "cue 1\nset amps { control current }\nicon a {\n  to 0.5 A at 1 A/s\n  hold for 7 s\n}\n"
+    return parse(text)["a"]
+
+
+def alone(rig: Rig, icon: Icon) -> np.ndarray:
+    trace = simulate(icon, rig, tail_s=max(0.0, END_S - simulate(icon, rig).time_s[-1]))
+    return np.array([getattr(trace, probe)[:801] for probe in PROBES])
+
+
+def replayed(rig: Rig, icon: Icon) -> np.ndarray:
+    plan = design(icon, rig, END_S)
+    trace = simulate_current(plan.drive, rig, start_C=plan.start_C)
+    return np.array([getattr(trace, probe) for probe in PROBES])
+
+
+def all_at_once(rig: Rig, icon: Icon) -> np.ndarray:
+    trace = simulate_all([icon] * 5, rig, end_s=END_S)[4]
+    return np.array([getattr(trace, probe) for probe in PROBES])
+
+
+def many(tracking: str, count: int) -> Callable[[Rig, Icon], np.ndarray]:
+    def run(rig: Rig, icon: Icon) -> np.ndarray:
+        rigs = [rig] * count
+        batch = simulate_many([icon], rigs, nominal=rig, end_s=END_S, tracking=tracking, probes=PROBES)
+        return np.asarray(batch.values[:, -1, 0])
+
+    return run
+
+
+PATHS: dict[str, Callable[[Rig, Icon], np.ndarray]] = {
+    "replay": replayed,
+    "all of a set": all_at_once,
+    **{f"{tracking}, {kind}": many(tracking, count) for tracking in ("replay", "display", "ideal")
+       for kind, count in (("one lane", 1), ("block", 5))},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("control", ["display", "skin", "current"])
+@pytest.mark.parametrize("key", KEYS)
+def test_paths_agree_with_a_single_run_which_the_key_changes(key: str, control: str) -> None:
+    rig, icon = THENAR.with_(**KEYS[key]), cue(control)
+    reference, plain = alone(rig, icon), alone(THENAR, icon)
+    assert np.abs(reference[:, :100] - plain[:, :100]).max() > 5e-4
+    for name, path in PATHS.items():
+        if control == "skin" and name.startswith("display"):
+            continue  # tracks the display of the nominal rig by its own control: another current
+        assert np.abs(path(rig, icon)[:, :801] - reference).max() < 2e-4, name
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_the_loop_of_a_pid_controller_takes_the_key(key: str) -> None:
+    icon = cue("display")
+    rig, plain = THENAR.with_(**KEYS[key], controller=PID), THENAR.with_(controller=PID)
+    reference = alone(rig, icon)
+    assert np.abs(reference - alone(plain, icon)).max() > 0.004
+    for name in ("replay", "all of a set", "display, one lane", "display, block"):
+        assert np.abs(PATHS[name](rig, icon) - reference).max() < 2e-4, name
+
+
+@pytest.mark.parametrize("key", ["legs", "passive sink"])
+def test_the_gate_plays_holds_and_repeats_with_the_key(key: str) -> None:
+    rig = THENAR.with_(**KEYS[key])
+    drive = Drive([0, 1, 3], [0.3, 0.9, 0.9], held=True)
+    every = Ensemble.of(rig)
+    start = every.at_rest(0.3)
+    (rows, played), then = next(every.play(drive, start))
+    trace = simulate_current(drive, rig)
+    skin = WATCHED.index("skin_C")
+    assert np.abs(played[skin, 0] - np.interp(rows, trace.time_s, trace.skin_C)).max() < 1e-4
+    held, after = every.hold(0.9, then, np.array([0.0, 5.0]))
+    longer = simulate_current(Drive([0, 1, 8], [0.3, 0.9, 0.9], held=True), rig)
+    assert held[skin, 0, -1] == pytest.approx(longer.skin_C[-1], abs=1e-3)
+    assert after.nodes_C.shape == start.nodes_C.shape
+    moved = every.rest(0.9, then, 5.0)
+    assert np.abs(moved.nodes_C - after.nodes_C).max() < 1e-6
+
+
+@pytest.mark.parametrize("key", ["legs", "passive sink"])
+def test_corners_keep_the_key(key: str) -> None:
+    rig = THENAR.with_(**KEYS[key])
+    for corner in corners_of(rig):
+        assert corner.rig.module.leg_nodes == rig.module.leg_nodes
+        assert (corner.rig.heat_sink.passive is None) == (rig.heat_sink.passive is None)
+    if rig.heat_sink.passive is not None:
+        air = {corner.rig.heat_sink.passive.air_C for corner in corners_of(rig) if corner.rig.heat_sink.passive}
+        starts = {corner.rig.heat_sink.temperature_C for corner in corners_of(rig)}
+        assert (air, starts) == ({23.0, 24.0, 25.0}, {27.0, 28.0, 29.0})
+    else:
+        capacity = {round(corner.rig.module.leg_capacity_J_per_K, 6) for corner in corners_of(rig)}
+        assert capacity == {0.64, 0.8, 0.96}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("key", ["legs", "passive sink"])
+def test_a_verdict_takes_the_key(key: str) -> None:
+    rig, icon = THENAR.with_(**KEYS[key]), cue("display")
+    plan = design(icon, rig, END_S)
+    ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
+    verdict = gate(ended, rig, rest_A=plan.rest_A)
+    network_end = state_under_current(Ensemble.of(rig).networks[0], 0.0, in_the_end=True)
+    assert verdict.drift_C == pytest.approx(Ensemble.of(rig).networks[0].read(network_end, "skin_C"))
+    session = play_session(load_library("six-icons"), SessionPlan(("cooling-step",) * 2, gap_s=5.0), rig)
+    assert (session.heat_to_sink_W is None) == (key == "passive sink")
+
+
+def refusals(rig: Rig) -> dict[str, Callable[[], object]]:
+    icon, drive = cue("display"), Drive([0, 1], [0.1, 0.1])
+    return {
+        "gate of safety": lambda: gate(drive, rig),
+        "a session": lambda: play_session([icon], SessionPlan((icon.name,), gap_s=1.0), rig),
+        "what a device delivers": lambda: deliver(icon, rig, Device.load("dac-16")),
+        "a netlist starts": lambda: netlist(rig, drive),
+    }
+
+
+@pytest.mark.parametrize("what", list(refusals(THENAR)))
+def test_what_is_about_a_hand_that_rests_refuses_one_that_lands(what: str) -> None:
+    rig = THENAR.with_(**KEYS["landing"])
+    with pytest.raises(RigError, match=rf"contact\.lands_s = -2 s: .*{what}.*; remove contact\.lands_s"):
+        refusals(rig)[what]()
+
+
+STEPPED = {
+    "state_under_current", "steady_state", "run_forward", "run_on", "run_follow", "run_regulate", "ConstantCurrent",
+    "steady_of", "modes_of", "modes_on", "start_under", "start_after",
+}  # fmt: skip
+"""What computes a temperature of the circuit."""
+CONSIDERED = {
+    "fitting": {"forward"},
+    "delivery": {"deliver", "netlist", "regulated", "spread", "temperatures", "formats/form"},
+    "packing": {"worstcase"},
+    "safety": {"corners", "endings", "ensemble", "sessiondrive", "single_faults", "thermode"},
+    "solver": {
+        "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
+        "simulate", "static", "steady",
+    },
+    "studies": {"meshstudy", "paper", "paper_differences"},
+}  # fmt: skip
+"""Modules that call one of them, each looked at for the keys above: they pass the rig on whole, or refuse the key."""
+
+
+def test_no_other_module_steps_the_circuit() -> None:
+    there: dict[str, set[str]] = {}
+    for path in sorted(CIRCUIT.rglob("*.py")):
+        called = {
+            node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Call)
+        }
+        if called & STEPPED:
+            room, _, module = path.relative_to(CIRCUIT).with_suffix("").as_posix().partition("/")
+            there.setdefault(room, set()).add(module)
+    assert there == CONSIDERED
+
+
+def test_steady_states_take_the_key() -> None:
+    current, state = steady_state(THENAR.with_(**KEYS["passive sink"]), "skin", 32.0)
+    assert state[-2] == pytest.approx(28.0)
+    steady = THENAR.with_(**{**KEYS["passive sink"], "heat_sink.temperature_C": None})
+    current, state = steady_state(steady, "skin", 32.0)
+    rejected = steady.module.heat_rejected_W(current, float(state[1]), float(state[0]))
+    assert state[-2] == pytest.approx(24.0 + 1.5 * rejected, abs=1e-9)
+    assert state[0] == pytest.approx(state[-2] + 0.2 * rejected, abs=1e-9)
