@@ -82,13 +82,12 @@ class Kept {
 }
 
 /** The text on the clipboard; true if it is there. Where pages may not write to it, it is selected and copied the old way. */
-async function copyText(area) {
+async function copyText(editor) {
   try {
-    await navigator.clipboard.writeText(area.value);
+    await navigator.clipboard.writeText(editor.text);
     return true;
   } catch {
-    area.focus();
-    area.select();
+    editor.selectAll();
     return document.execCommand("copy");
   }
 }

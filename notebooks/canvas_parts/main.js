@@ -40,7 +40,7 @@ class Workbench {
   }
 
   async copyText() {
-    const copied = await copyText(this.view.editor.area);
+    const copied = await copyText(this.view.editor);
     setText(this.copy, copied ? "Copied" : "Copy text");
     this.say(copied ? "Text copied" : "The text is selected: copy it with Ctrl+C");
   }
@@ -108,7 +108,14 @@ class Workbench {
   }
 }
 
-function render({ model, el }) {
+async function render({ model, el }) {
+  const text = model.get?.("view") === "design";
+  try {
+    if (text) await loadCodeMirror();
+  } catch (problem) {
+    el.append(make("p", { role: "alert" }, `The editor cannot be loaded; a newer browser may help (${problem.message})`));
+    throw problem;
+  }
   const workbench = new Workbench(model, el);
   return () => workbench.stop();
 }

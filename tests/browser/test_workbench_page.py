@@ -7,6 +7,7 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import Server
@@ -36,12 +37,20 @@ def test_the_page_starts_and_shows_the_curve_of_what_is_typed(
     type_drag_and_err(page)
 
 
+@pytest.mark.parametrize("width", [1280, 900])
+def test_text_below_the_first_screen_can_be_edited(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, width: int
+) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    open_page(page, serve_page, tmp_path)
+    type_below_the_first_screen(page)
+
+
 def test_the_page_designs_compares_and_exports(
     page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
 ) -> None:
     open_page(page, serve_page, tmp_path)
     shot("page-design")
-    type_below_the_first_screen(page)
     type_drag_and_err(page)
     click_a_confusion(page)
     shot("page-set")
