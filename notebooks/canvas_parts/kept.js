@@ -31,9 +31,9 @@ function markOf(text) {
 }
 
 class Kept {
-  /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say. */
-  constructor(id, onTake, onForget, say) {
-    Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say });
+  /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say, `tell` the kernel. */
+  constructor(id, onTake, onForget, say, tell) {
+    Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say, tell });
     const button = (name, act) => make("button", { type: "button", class: "tm-button", onclick: act }, name);
     this.element = make(
       "div", { class: "tm-kept", role: "group", "aria-label": "Earlier text", hidden: true },
@@ -65,6 +65,7 @@ class Kept {
   offer(text) {
     this.offered = text;
     this.element.hidden = false;
+    this.tell("kept"); // the kernel may offer what it kept itself, which is older
     const said = "An earlier text was saved. Buttons above the editor restore or discard it.";
     setTimeout(() => this.offered !== null && this.say(said), 0); // after what the first frame says
   }
@@ -76,6 +77,7 @@ class Kept {
   }
 
   close() {
+    if (this.offered !== null) this.tell("decided");
     this.offered = null;
     this.element.hidden = true;
   }

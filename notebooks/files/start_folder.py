@@ -4,11 +4,29 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TypeVar
 
 from .outputs import OutputError
 
 VARIABLE = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
+
+
+FILE, RIG = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG"
+"""Set for the kernels of ``thermicon lab --page FILE --rig RIG``: what a workbench shows that is asked for nothing."""
+
+Source = TypeVar("Source")
+OwnRig = TypeVar("OwnRig")
+
+
+def started_with(source: Source | None, rig: OwnRig | None) -> tuple[Source | str | None, OwnRig | str]:
+    """Return what a workbench shows, and on which rig: as given, else as the page was started, else the usual.
+
+    >>> started_with("alerts.cue", None)
+    ('alerts.cue', 'thenar')
+    """
+    shown = os.environ.get(FILE) if source is None else source
+    return shown, (os.environ.get(RIG) or "thenar") if rig is None else rig
 
 
 def below_start(folder: Path) -> Path:

@@ -82,7 +82,7 @@ def _words() -> dict[str, Any]:
     from thermicon.icons.language.highlight import KEYWORDS, SPELLINGS
     from thermicon.icons.model.words import CONTROLS, STARTS
 
-    from .completions import completions
+    from ..editing.completions import completions
 
     keywords = sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"})
     return {"keywords": keywords, "units": list(SPELLINGS), "next": completions()}

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
+from ..editing.cue_check import read_text
 from ..files.exporting import FORMAT, PreparedExport, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
 from ..pages.blocks import fragment
 from .background import Job
-from .cue_check import read_text
 from .export_tables import delivered_html, gate_html, written_html
 from .live_view import LiveView
 from .set_model import MOST_RANKED

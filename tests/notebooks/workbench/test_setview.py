@@ -9,7 +9,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.workbench.apply_edit import CannotApply, with_edit
+from thermicon.notebooks.editing.apply_edit import CannotApply, with_edit
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from thermicon.icons.language.recover import grammar
-from thermicon.notebooks.workbench.completions import CONTEXTS, completions
+from thermicon.notebooks.editing.completions import CONTEXTS, completions
 
 PLAIN = {"NUMBER": "2", "NAME": "a", "STRING": '"a"', "TITLE": '"a"'}
 
