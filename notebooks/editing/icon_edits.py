@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 from .cue_check import read_text
 
@@ -148,7 +149,7 @@ def _free(text: str, wanted: str) -> str:
 def _plays(text: str, name: str) -> list[int]:
     """Offsets at which a text plays an icon, outside of comments and quotes."""
     words = [piece for piece in _PIECE.finditer(text) if piece[0][0] not in '"#']
-    pairs = zip(words, words[1:], strict=False)
+    pairs = pairwise(words)
     return [word.start() for before, word in pairs if before[0] == "play" and word[0] == name]
 
 

@@ -42,11 +42,9 @@ class Unsaved:
         minutes = max(0.0, time.time() - self.since_s) / 60
         if minutes < 1.5:
             return "a moment ago"
-        return (
-            f"{minutes:.0f} minutes ago"
-            if minutes < 90
-            else time.strftime("%d %B, %H:%M", time.localtime(self.since_s))
-        )
+        if minutes < 90:
+            return f"{minutes:.0f} minutes ago"
+        return time.strftime("on %d %B at %H:%M", time.localtime(self.since_s))
 
 
 class Autosave:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TypeVar
 
 from .outputs import OutputError
 
@@ -15,18 +14,19 @@ VARIABLE = "THERMICON_PAGE_FOLDER"
 FILE, RIG = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG"
 """Set for the kernels of ``thermicon lab --page FILE --rig RIG``: what a workbench shows that is asked for nothing."""
 
-Source = TypeVar("Source")
-OwnRig = TypeVar("OwnRig")
+
+def started_with() -> str | None:
+    """Return the cue file that the page was started with; None for none."""
+    return os.environ.get(FILE) or None
 
 
-def started_with(source: Source | None, rig: OwnRig | None) -> tuple[Source | str | None, OwnRig | str]:
-    """Return what a workbench shows, and on which rig: as given, else as the page was started, else the usual.
+def started_rig() -> str:
+    """Return the rig that the page was started with, or the usual one.
 
-    >>> started_with("alerts.cue", None)
-    ('alerts.cue', 'thenar')
+    >>> started_rig()
+    'thenar'
     """
-    shown = os.environ.get(FILE) if source is None else source
-    return shown, (os.environ.get(RIG) or "thenar") if rig is None else rig
+    return os.environ.get(RIG) or "thenar"
 
 
 def below_start(folder: Path) -> Path:

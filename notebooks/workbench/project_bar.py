@@ -31,6 +31,7 @@ class ProjectBar:
                 ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
+                ("Download", "text, rig and pictures", lambda: self._toggle("download")),
                 ("Icon", "new, duplicate, rename, delete", lambda: self._toggle("icon")),
                 ("Undo", "Ctrl+Z in the text", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in the text", lambda: self._step("redo")),
@@ -42,11 +43,13 @@ class ProjectBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel(), "icon": self._icon_panel()}
+        self.links = widgets.HTML()
+        self._panels["download"] = self.links
         self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Icon")]
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.bar, self.offer, self.said, self.panel]).add_class("thermicon-project")
@@ -123,7 +126,6 @@ class ProjectBar:
         self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
         self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
         go = self._button("Save it", "write the file", self._save_as)
-        self.name.on_submit(lambda _: self._safely(self._save_as))
         return widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
 
     def _icon_panel(self) -> widgets.Widget:
@@ -229,7 +231,21 @@ class ProjectBar:
             self.name.value = self.project.name if self.project.name.endswith(".cue") else f"{self.project.name}.cue"
         elif name == "icon":
             self._about()
+        elif name == "download":
+            self._offer_downloads()
         self.panel.children = () if name is None else (self._panels[name],)
+
+    def _offer_downloads(self) -> None:
+        """Links to the text, the rig and the picture of the icon that is shown."""
+        from .downloads import figure_files, link, rig_text
+        from .scene_plot import scene_figure
+
+        design = self.project.design
+        stem = Path(self.project.name).stem
+        files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": rig_text(design.rig).encode()}
+        if design.scene.drawing is not None:
+            files |= figure_files(f"{design.scene.icon}-on-{design.rig.name}", scene_figure(design.scene))
+        self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
 
     def _about(self) -> None:
         icon = self.project.design.scene.icon

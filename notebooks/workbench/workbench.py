@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
 
 from ..files.cue_document import open_document
-from ..files.start_folder import started_with
+from ..files.start_folder import started_rig, started_with
 from .design_model import DesignModel
 from .project import Project
 
@@ -72,8 +72,9 @@ class Workbench:
     ) -> None:
         from thermicon.circuit import Rig
 
-        source, rig = started_with(text, rig)
-        loaded = rig if isinstance(rig, Rig) else Rig.load(rig)
+        source = text if text is not None else started_with()
+        chosen = rig if rig is not None else started_rig()
+        loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
         self._design = DesignModel(text_of(source), loaded, icon)
         self._check_icon(icon)
         document = open_document(found) if (found := file_of(source)) is not None else None
