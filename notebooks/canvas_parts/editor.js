@@ -29,7 +29,7 @@ class Editor {
       CM.tooltips({ parent: this.root, position: "absolute" }), cueColours(),
       CM.EditorView.editorAttributes.of({ "data-lm-suppress-shortcuts": "true" }),
       CM.EditorView.contentAttributes.of(() => ({
-        "aria-label": "Cue text", "aria-describedby": this.troubles.status.id, "aria-invalid": String(this.troubles.list.length > 0),
+        tabindex: "0", "aria-label": "Cue text", "aria-describedby": this.troubles.status.id, "aria-invalid": String(this.troubles.list.length > 0),
       })),
       CM.Prec.high(CM.keymap.of([{ key: "Enter", run: (view) => this.breakLine(view) }])),
       CM.keymap.of(keys),

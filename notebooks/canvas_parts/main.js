@@ -22,6 +22,7 @@ class Workbench {
     this.key = model.get?.("key") || model.model_id || model;
     this.onMessage = (meta, buffers) => this.receive(meta, buffers);
     el.append(this.root);
+    followSystem();
     model.on("msg:custom", this.onMessage);
     if (!siblings.has(this.key)) siblings.set(this.key, new Set());
     siblings.get(this.key).add(this);
@@ -66,6 +67,7 @@ class Workbench {
     this.view.show(frame);
     if (frame.troubles) this.sayTroubles(frame.troubles);
     this.root.dataset.seq = frame.seq;
+    if (kind === "design") nameControls(this.root);
     this.repeatText();
     const drawn = performance.now();
     measure(kind, { seq: frame.seq, sent_ms: sent, arrived_ms: arrived, drawn_ms: drawn, kernel_ms: frame.ms, draw_ms: drawn - began });

@@ -52,9 +52,10 @@ class ProjectBar:
         buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
-        self.box = widgets.VBox([self.bar, self.offer, self.said, self.panel]).add_class("thermicon-project")
+        self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
         project.design.on_change(self.renew)
         self.renew()
+        self.beside(design=True)
         self._show_offer()
 
     def renew(self) -> None:
@@ -78,6 +79,11 @@ class ProjectBar:
             return
         path = self.project.save()
         self._after(f"saved {path.name}")
+
+    def beside(self, design: bool) -> None:
+        """Show undo and redo here where the design view, which has its own, is not shown."""
+        for name in ("Undo", "Redo"):
+            self.buttons[name].layout.display = "none" if design else ""
 
     def saved_by_key(self) -> None:
         """Ctrl+S in the text: where there is no file, the notebook's own saving is enough."""
@@ -114,9 +120,11 @@ class ProjectBar:
         self.rig.value = nominal
 
     def _open_panel(self) -> widgets.Widget:
-        self.files = widgets.Select(options=[], rows=7, layout={"width": "300px"})
+        self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
         self.preview = widgets.HTML(layout={"flex": "1 1 260px", "min_width": "0"})
-        self.path = widgets.Text(placeholder="or the path of a cue file", layout={"width": "300px"})
+        self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
+        for control in (self.files, self.path):
+            control.style.description_width = "36px"
         self.files.observe(lambda change: self._safely(lambda: self._preview(change["new"])), "value")
         go = self._button("Open it", "open what is selected or typed", self._open_selected)
         left = widgets.VBox([self.files, widgets.Box([self.path, go])])
@@ -129,7 +137,8 @@ class ProjectBar:
         return widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
 
     def _icon_panel(self) -> widgets.Widget:
-        self.icon_name = widgets.Text(placeholder="new name", description="name", layout={"width": "260px"})
+        self.icon_name = widgets.Text(placeholder="new name", description="name", layout={"width": "210px"})
+        self.icon_name.style.description_width = "auto"
         verbs = {name: self._button(name, "", lambda name=name: self._icon(name)) for name in ICON_VERBS}  # type: ignore[misc]
         self.verbs = verbs
         self.about = widgets.HTML()

@@ -84,7 +84,7 @@ class SetView(LiveView[SetRequest]):
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
         self.keep: Callable[[tuple[str, ...]], None] | None = None
-        self.take = widgets.Button(description="Keep these", disabled=True, layout={"width": "100px"})
+        self.take = widgets.Button(description="Keep these", layout={"width": "100px", "display": "none"})
         self.take.tooltip = "take the other icons out of the text, as one step that can be undone"
         self.take.on_click(lambda _: self._safely(self.keep_chosen))
         top = _row(said["scores"], said["status"]).add_class("thermicon-top")
@@ -169,7 +169,7 @@ class SetView(LiveView[SetRequest]):
         chosen = None if self.made is None else self.made.ranking.chosen
         if chosen is None or self.keep is None:
             raise ValueError("no icons are chosen yet: say above how many")
-        self.take.disabled = True
+        self.take.layout.display = "none"
         self.keep(tuple(chosen.icons))
         self.count.value = 0
         self._show_text(self.design.text)
@@ -227,7 +227,7 @@ class SetView(LiveView[SetRequest]):
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
-        self.take.disabled = ranking.chosen is None
+        self.take.layout.display = "none" if ranking.chosen is None else ""
         people = f"{ranking.people} people"
         self._say(f"{people}" if well else f"preliminary: {people}; refining …")
         self._offer(len(made.icons))

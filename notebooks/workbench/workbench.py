@@ -201,6 +201,7 @@ class Workbench:
         tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
 
         def shown(change: Any) -> None:
+            bar.beside(design=change["new"] == 0)
             ranked.shown = change["new"] == 1
             export.shown = change["new"] == 2
             for view in (ranked, export):
