@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.jupyter import Server, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
+from tests.browser.jupyter import Server, command, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
@@ -50,6 +50,19 @@ def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
     shot("lab-design-dark")
     dark(bench, False)
     type_drag_and_err(bench)
+
+
+def test_knobs_and_curves_fit_beside_the_side_bar(bench: Page, shot: Shot) -> None:
+    command(bench, "filebrowser:activate")
+    bench.wait_for_timeout(1500)
+    bench.locator(".thermicon").first.evaluate("bench => bench.scrollIntoView({ block: 'start' })")
+    bench.wait_for_timeout(500)
+    shot("lab-side-bar")
+    cut = """() => { const place = document.querySelector('.jp-Notebook').getBoundingClientRect();
+      const parts = [...document.querySelectorAll('.thermicon-knob, .thermicon-bar button, .tm-timeline, .tm-editor')];
+      return parts.filter((part) => { const box = part.getBoundingClientRect();
+        return box.width && (box.right > place.right || box.bottom > place.bottom + 1); }).map((part) => part.className); }"""
+    assert bench.evaluate(cut) == []
 
 
 @pytest.mark.parametrize("width", [1280, 900])
