@@ -60,8 +60,8 @@ def test_knobs_and_curves_fit_beside_the_side_bar(bench: Page, shot: Shot) -> No
     shot("lab-side-bar")
     cut = """() => { const place = document.querySelector('.jp-Notebook').getBoundingClientRect();
       const parts = [...document.querySelectorAll('.thermicon-knob, .thermicon-bar button, .tm-timeline, .tm-editor')];
-      return parts.filter((part) => { const box = part.getBoundingClientRect();
-        return box.width && (box.right > place.right || box.bottom > place.bottom + 1); }).map((part) => part.className); }"""
+      const out = (box) => box.width && (box.right > place.right || box.bottom > place.bottom + 1);
+      return parts.filter((part) => out(part.getBoundingClientRect())).map((part) => part.className); }"""
     assert bench.evaluate(cut) == []
 
 
