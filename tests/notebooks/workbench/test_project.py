@@ -75,7 +75,8 @@ def test_a_shipped_set_asks_for_a_name_and_a_name_that_is_there_for_consent(path
 def test_files_and_shipped_sets_are_opened_and_undo_stays_within_one(path: Path) -> None:
     bench, bar = opened(None)
     bar.buttons["Open"].click()
-    assert bar.files.options[:2] == ("alerts.cue", "shipped: cooling-step-skin")
+    assert bar.files.options[0] == "alerts.cue"
+    assert "shipped: six-icons" in bar.files.options
     bar.files.value = "shipped: wave-shapes"
     assert "sine" in bar.preview.value
     bar.files.value = "alerts.cue"
