@@ -11,11 +11,12 @@ class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
     Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {}, onForget: () => {} });
-    this.kept = new Kept(id, (text) => this.takeBack(text), () => this.forget(), say);
-    this.editor = new Editor({
+    this.kept = new Kept(id, (text) => this.takeBack(text), () => this.forget(), say, (type) => flow.tell({ type }));
+    this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
       onUndo: () => flow.post({ type: "undo" }),
       onRedo: () => flow.post({ type: "redo" }),
+      onSave: () => flow.post({ type: "save" }),
       onApply: (line) => flow.post({ type: "apply", line }),
     });
     this.timeline = new Timeline(root, (message) => flow.post(message), say);
@@ -49,14 +50,14 @@ class DesignView {
   takeBack(text) {
     this.editor.replace(text);
     this.edited(text);
-    this.editor.area.focus({ preventScroll: true });
+    this.editor.focus();
     this.say("The earlier text is back in the editor.");
   }
 
   forget() {
     this.kept.forget();
     this.onForget();
-    this.editor.area.focus({ preventScroll: true });
+    this.editor.focus();
     this.say("The earlier text was discarded.");
   }
 

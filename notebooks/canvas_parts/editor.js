@@ -1,172 +1,168 @@
-// The cue text: a plain textarea, so that caret, selection, input methods and screen readers work as everywhere, over a
-// coloured copy of the same text. Lines are far enough apart for an error in small print under its line.
-
-const LINE_PX = 26;
-const TOP_PX = 4;
+// The cue text: CodeMirror with the colours, errors and completion of the language. Undo and redo belong to the kernel,
+// since a step may be a drag or an edit taken over in the set view.
 
 class Editor {
-  /** `onText`, `onUndo`, `onRedo` and `onApply(line)` are told what the person does. */
-  constructor({ onText, onUndo, onRedo, onApply }) {
-    Object.assign(this, { onText, onUndo, onRedo, lines: [], numbers: 0, livePlace: 0 });
+  /** `onText`, `onUndo`, `onRedo`, `onSave` and `onApply(line)` are told what the person does; tooltips go into `root`. */
+  constructor(root, { onText, onUndo, onRedo, onSave, onApply }) {
+    Object.assign(this, { root, onText, onUndo, onRedo, onSave, livePlace: 0 });
+    this.outside = CM.Annotation.define(); // marks changes that are not typed here
     this.troubles = new Troubles(this, onApply);
-    this.build();
-    this.observer = new ResizeObserver(() => this.troubles.place());
-    this.observer.observe(this.scroller);
+    const host = make("div", { class: "tm-code" });
+    this.element = make("div", { class: "tm-editor" }, host, this.troubles.status);
+    this.view = new CM.EditorView({ parent: host, state: CM.EditorState.create({ doc: "", extensions: this.extensions() }) });
+    this.element.editor = this; // for tests, and for whoever looks into the page
   }
 
-  build() {
-    this.status = make("div", { class: "tm-status", id: uniqueId("status") });
-    this.area = make("textarea", {
-      class: "tm-area", "aria-label": "Cue text", "aria-describedby": this.status.id, spellcheck: "false",
-      autocomplete: "off", autocapitalize: "off", autocorrect: "off", wrap: "off", "data-lm-suppress-shortcuts": "true",
-      oninput: () => this.edited(),
-      onkeydown: (event) => this.onKey(event),
-      onkeyup: () => this.stayLeft(),
-    });
-    // A click on a line number keeps the focus in the text: elsewhere, JupyterLab takes letters as commands on cells.
-    this.gutter = make("div", {
-      class: "tm-numbers", "aria-hidden": true,
-      onmousedown: (event) => { event.preventDefault(); this.area.focus({ preventScroll: true }); },
-    });
-    this.backdrop = make("div", { class: "tm-backdrop", "aria-hidden": true });
-    const page = make("div", { class: "tm-page" }, this.backdrop, this.area, this.troubles.element);
-    this.scroller = make("div", { class: "tm-scroller" }, this.gutter, page);
-    this.element = make("div", { class: "tm-editor" }, this.scroller, this.status);
-    this.troubles.sayStatus();
-    this.paint();
+  extensions() {
+    const keys = [
+      { key: "Mod-.", run: () => this.troubles.cureHere(), preventDefault: true },
+      { key: "Tab", run: CM.acceptCompletion },
+      ...CM.closeBracketsKeymap, ...CM.defaultKeymap, ...CM.searchKeymap, ...CM.completionKeymap, ...CM.lintKeymap,
+    ];
+    return [
+      CM.lineNumbers({ domEventHandlers: { mousedown: (view, line) => this.onNumber(line) } }), this.liveLine(), CM.lintGutter(),
+      CM.highlightActiveLine(), CM.highlightSpecialChars(), CM.drawSelection(), CM.dropCursor(),
+      CM.bracketMatching(), CM.closeBrackets(), CM.highlightSelectionMatches(), CM.search({ top: true }),
+      CM.EditorState.allowMultipleSelections.of(true), CM.EditorState.tabSize.of(4), CM.indentUnit.of("  "),
+      CM.EditorState.languageData.of(() => [{ commentTokens: { line: "#" }, closeBrackets: { brackets: ["(", "[", "{", '"'] } }]),
+      CM.autocompletion({ override: [cueCompletions], icons: false, maxRenderedOptions: 40 }),
+      CM.tooltips({ parent: this.root, position: "absolute" }), cueColours(),
+      CM.EditorView.editorAttributes.of({ "data-lm-suppress-shortcuts": "true" }),
+      CM.EditorView.contentAttributes.of(() => ({
+        tabindex: "0", "aria-label": "Cue text", "aria-describedby": this.troubles.status.id, "aria-invalid": String(this.troubles.list.length > 0),
+      })),
+      CM.Prec.high(CM.keymap.of([{ key: "Enter", run: (view) => this.breakLine(view) }])),
+      CM.keymap.of(keys),
+      CM.Prec.highest(CM.EditorView.domEventHandlers({ keydown: (event) => this.onKey(event) })),
+      CM.EditorView.updateListener.of((change) => this.onChange(change)),
+    ];
   }
 
   get text() {
-    return this.area.value;
+    return this.view.state.doc.toString();
   }
 
-  edited() {
-    this.paint();
-    this.stayLeft();
-    this.onText(this.area.value);
+  focus() {
+    this.view.focus();
   }
 
-  /** The text stands at its left end whenever the caret can be seen there: browsers scroll further than needed. */
-  stayLeft() {
-    if (!this.scroller.scrollLeft) return;
-    const { value, selectionEnd } = this.area;
-    const column = selectionEnd - value.lastIndexOf("\n", selectionEnd - 1);
-    if (column * 8.5 < this.scroller.clientWidth - this.gutter.offsetWidth - 16) this.scroller.scrollLeft = 0;
+  selectAll() {
+    this.view.dispatch({ selection: { anchor: 0, head: this.view.state.doc.length } });
+    this.focus();
+  }
+
+  onChange(change) {
+    if (change.docChanged && !change.transactions.some((each) => each.annotation(this.outside))) this.onText(this.text);
+    if (change.docChanged || change.selectionSet) this.troubles.sayStatus();
   }
 
   /** Puts in a text from the kernel; caret and scrolling stay with the words around them. */
   replace(text) {
-    const old = this.area.value;
-    if (text === old) return;
-    const head = commonHead(old, text);
-    const tail = commonTail(old, text, head);
-    const { scrollTop, scrollLeft } = this.scroller;
-    this.area.setRangeText(text.slice(head, text.length - tail), head, old.length - tail, "preserve");
-    this.paint();
-    if (document.activeElement === this.area) Object.assign(this.scroller, { scrollTop, scrollLeft });
+    const old = this.text;
+    const fresh = text.replace(/\r\n?/g, "\n"); // as CodeMirror holds it
+    if (fresh === old) return;
+    const head = commonHead(old, fresh);
+    const tail = commonTail(old, fresh, head);
+    const changes = { from: head, to: old.length - tail, insert: fresh.slice(head, fresh.length - tail) };
+    this.view.dispatch({ changes, annotations: this.outside.of(true) });
   }
 
   show(troubles) {
-    this.troubles.take(troubles);
-    this.paint();
+    this.troubles.takeList(troubles);
   }
 
-  /** Renews the coloured copy, but only of lines that changed. */
-  paint() {
-    const lines = this.area.value.split("\n");
-    const wrong = this.troubles.byLine();
-    const looks = lines.map((line, k) => line + (wrong.has(k + 1) ? `\n${JSON.stringify(wrong.get(k + 1))}` : ""));
-    const head = commonHead(this.lines, looks);
-    const tail = commonTail(this.lines, looks, head);
-    const fresh = lines.slice(head, lines.length - tail).map((line, k) => lineElement(line, wrong.get(head + k + 1) ?? []));
-    const old = [...this.backdrop.children].slice(head, this.lines.length - tail);
-    const after = this.backdrop.children[this.lines.length - tail] ?? null;
-    old.forEach((element) => element.remove());
-    for (const element of fresh) this.backdrop.insertBefore(element, after);
-    this.lines = looks;
-    this.backdrop.querySelectorAll(".tm-live").forEach((element) => element.classList.remove("tm-live"));
-    this.backdrop.children[this.livePlace - 1]?.classList.add("tm-live");
-    this.paintNumbers(lines.length, wrong);
-    this.troubles.place();
-  }
-
-  paintNumbers(count, wrong) {
-    while (this.gutter.children.length > count) this.gutter.lastChild.remove();
-    while (this.gutter.children.length < count) this.gutter.append(make("div", {}, String(this.gutter.children.length + 1)));
-    for (const [k, element] of [...this.gutter.children].entries()) {
-      element.className = wrong.has(k + 1) ? "tm-wrong-number" : k + 1 === this.livePlace ? "tm-live-number" : "";
-    }
+  /** The line that a corner on the time line belongs to, marked in text and gutter. */
+  liveLine() {
+    this.setLive = CM.StateEffect.define();
+    const mark = CM.Decoration.line({ class: "tm-live" });
+    return CM.StateField.define({
+      create: () => CM.Decoration.none,
+      update: (marks, change) => {
+        const told = change.effects.find((effect) => effect.is(this.setLive));
+        if (!told) return marks.map(change.changes);
+        const { doc } = change.state;
+        return told.value >= 1 && told.value <= doc.lines ? CM.Decoration.set(mark.range(doc.line(told.value).from)) : CM.Decoration.none;
+      },
+      provide: (field) => CM.EditorView.decorations.from(field),
+    });
   }
 
   /** Shows which line a corner belongs to (0: none), and scrolls there if `follow`. */
   pointAt(line, follow) {
     if (line !== this.livePlace) {
-      for (const list of [this.backdrop, this.gutter]) list.children[this.livePlace - 1]?.classList.remove("tm-live", "tm-live-number");
       this.livePlace = line;
-      this.backdrop.children[line - 1]?.classList.add("tm-live");
-      this.gutter.children[line - 1]?.classList.add("tm-live-number");
+      this.view.dispatch({ effects: this.setLive.of(line) });
     }
-    if (follow && line) this.reveal(line);
+    if (follow && line) this.reveal(line, "nearest");
   }
 
-  reveal(line) {
-    const top = (line - 1) * LINE_PX;
-    const { scrollTop, clientHeight } = this.scroller;
-    if (top < scrollTop || top + 2 * LINE_PX > scrollTop + clientHeight) this.scroller.scrollTop = top - clientHeight / 3;
+  reveal(line, y = "center") {
+    const { doc } = this.view.state;
+    const from = doc.line(clamp(line, 1, doc.lines)).from;
+    this.view.dispatch({ effects: CM.EditorView.scrollIntoView(from, { y, yMargin: 20 }) });
   }
 
   /** Scrolls to where an icon, or the family that it belongs to, begins. */
   revealIcon(name) {
     const words = this.text.split("\n").map((line) => /^\s*icon\s+([^\s({]+)/.exec(line)?.[1]);
-    const own = words.indexOf(name);
-    const line = own < 0 ? words.findIndex((word) => word && name?.startsWith(`${word}_`)) : own;
-    if (line >= 0) this.scroller.scrollTop = Math.max(0, line - 2) * LINE_PX;
+    const exact = words.indexOf(name);
+    const line = exact < 0 ? words.findIndex((word) => word && name?.startsWith(`${word}_`)) : exact;
+    if (line >= 0) this.reveal(line + 1, "start");
   }
 
-  /** Puts the caret at a place of the text, counted from 1. */
+  /** Offset of a place counted from 1, in characters as Python counts them. */
+  placeOf(line, column) {
+    const { doc } = this.view.state;
+    const row = doc.line(clamp(line, 1, doc.lines));
+    return row.from + Math.min(offsetOf(row.text, column), row.length);
+  }
+
   goTo(line, column) {
-    const before = this.area.value.split("\n").slice(0, line - 1).join("\n");
-    const own = this.area.value.split("\n")[line - 1] ?? "";
-    const at = before.length + (line > 1 ? 1 : 0) + offsetOf(own, column);
-    this.area.focus({ preventScroll: true });
-    this.area.setSelectionRange(at, at);
-    this.reveal(line);
+    const anchor = this.placeOf(line, column);
+    this.view.dispatch({ selection: { anchor }, effects: CM.EditorView.scrollIntoView(anchor, { y: "center" }) });
+    this.focus();
   }
 
+  /** A click on a line number keeps the focus in the text: elsewhere, JupyterLab takes letters as commands on cells. */
+  onNumber(line) {
+    this.view.dispatch({ selection: { anchor: this.view.state.doc.lineAt(line.from).from } });
+    this.focus();
+    return true;
+  }
+
+  /** Undo, redo and saving are the workbench's; the page around, a notebook, is saved by the same keystroke. */
   onKey(event) {
-    if (event.isComposing) return;
-    const command = (event.ctrlKey || event.metaKey) && !event.altKey;
     const key = event.key.toLowerCase();
-    if (command && (key === "z" || key === "y")) {
-      event.preventDefault();
-      if (key === "y" || event.shiftKey) this.onRedo();
-      else this.onUndo();
-    } else if (command && key === "s") passOn(event, this.element);
-    else if (event.key === "Enter" && !command && !event.shiftKey) this.breakLine(event);
+    if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y", "s"].includes(key)) return false;
+    event.preventDefault();
+    if (key === "s") {
+      this.onSave();
+      passOn(event, this.element);
+    } else if (key === "y" || event.shiftKey) this.onRedo();
+    else this.onUndo();
+    return true;
   }
 
   /** A new line begins where the line before began, two further inside of a block. */
-  breakLine(event) {
-    event.preventDefault();
-    const { value, selectionStart, selectionEnd } = this.area;
-    const line = value.slice(value.lastIndexOf("\n", selectionStart - 1) + 1, selectionStart);
-    const indent = /^[ \t]*/.exec(line)[0] + (/\{\s*(#.*)?$/.test(line) ? "  " : "");
-    this.area.setRangeText(`\n${indent}`, selectionStart, selectionEnd, "end");
-    this.edited();
-    this.reveal(this.area.value.slice(0, this.area.selectionStart).split("\n").length);
+  breakLine(view) {
+    const { state } = view;
+    const { from, to } = state.selection.main;
+    if (state.selection.ranges.length > 1 || CM.completionStatus(state) === "active") return false;
+    const before = state.doc.lineAt(from).text.slice(0, from - state.doc.lineAt(from).from);
+    const indent = /^[ \t]*/.exec(before)[0];
+    const deeper = /\{\s*(#.*)?$/.test(before) ? "  " : "";
+    const closes = deeper && state.sliceDoc(to, to + 1) === "}" ? `\n${indent}` : "";
+    const insert = `\n${indent}${deeper}`;
+    view.dispatch({ changes: { from, to, insert: insert + closes }, selection: { anchor: from + insert.length }, scrollIntoView: true, userEvent: "input" });
+    return true;
   }
 
   stop() {
-    this.observer.disconnect();
-    this.troubles.stop();
+    this.view.destroy();
   }
 }
 
-function lineElement(line, troubles) {
-  return make("div", { class: "tm-line" }, ...lineElements(line, troubles));
-}
-
-/** Saving belongs to the page around: the shortcut, which the editor keeps from it otherwise, is given to it. */
+/** A keystroke for the notebook around, outside of JupyterLab for nobody. */
 function passOn(event, element) {
   const outside = element.closest(".tm-root")?.parentElement;
   if (!outside?.closest(".jp-Notebook")) return;

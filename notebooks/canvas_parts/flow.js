@@ -38,6 +38,15 @@ class Flow {
     return numbered.seq;
   }
 
+  /** Sends a message that needs no answer. */
+  tell(message) {
+    try {
+      Promise.resolve(this.send({ ...message, seq: 0 })).catch(() => {});
+    } catch {
+      // the banner says it when the next message gets no answer
+    }
+  }
+
   next() {
     if (this.inFlight !== null || this.waiting.size === 0) return;
     const [kind, message] = this.waiting.entries().next().value;

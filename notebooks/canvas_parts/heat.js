@@ -10,6 +10,7 @@ class HeatView {
     this.element = make("div", { class: "tm-heat" }, this.maps, this.reading);
     this.observer = new ResizeObserver(() => this.fit());
     this.observer.observe(this.maps);
+    this.unwatch = watchTheme(() => requestAnimationFrame(() => this.ink()));
   }
 
   show(frame) {
@@ -75,8 +76,6 @@ class HeatView {
       const text = cellText(value, matrix);
       setText(cell, text);
       cell.style.setProperty("--tm-part", Number.isFinite(part) ? part.toFixed(3) : 0);
-      cell.classList.toggle("tm-middle", part > 0.52); // where letters must turn depends on the theme
-      cell.classList.toggle("tm-deep", part > 0.72);
       cell.setAttribute("aria-label", `${labels[i]}, ${labels[j]}: ${text}`);
       cell.tabIndex = i === this.focused[0] && j === this.focused[1] ? 0 : -1;
     }));
@@ -90,6 +89,19 @@ class HeatView {
       const wide = map.querySelector(".tm-cell")?.clientWidth ?? 0;
       const few = wide >= Math.max(SMALLEST_FOR_NUMBERS, 6.1 * map.dataset.longest);
       map.classList.toggle("tm-no-numbers", !few || this.frame?.labels.length > 16);
+    }
+    this.ink();
+  }
+
+  /** Numbers are black or white, whichever stands out more from what the theme makes of their cell. */
+  ink() {
+    if (this.frame?.labels.length > 16) return;
+    const light = new Map();
+    for (const cell of this.cells.flat(2)) {
+      const ground = getComputedStyle(cell).backgroundColor;
+      if (!light.has(ground)) light.set(ground, luminance(ground) > 0.179); // equal contrast to both
+      cell.classList.toggle("tm-black", light.get(ground));
+      cell.classList.toggle("tm-white", !light.get(ground));
     }
   }
 
@@ -150,6 +162,7 @@ class HeatView {
 
   stop() {
     this.observer.disconnect();
+    this.unwatch();
   }
 }
 

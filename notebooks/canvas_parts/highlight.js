@@ -11,19 +11,15 @@ const CUE_TOKEN = new RegExp(
 const CUE_KEYWORDS = new Set(CUE_WORDS.keywords);
 const NAME_AFTER = new Set(["icon", "play", "set", "site", "control"]);
 
-/** Pieces of a line in order, {text, kind}; together they are the whole line. */
+/** Pieces of a line in order, {text, kind, from}; what no piece covers is blank or unknown. */
 function cueTokens(line) {
   const pieces = [];
-  let end = 0;
   let before = "";
-  for (const found of line.matchAll(CUE_TOKEN)) {
-    const [kind, text] = Object.entries(found.groups).find(([, part]) => part !== undefined);
-    if (found.index > end) pieces.push({ text: line.slice(end, found.index), kind: "" });
-    pieces.push({ text, kind: kindOf(kind, text, before) });
-    end = found.index + text.length;
+  for (const match of line.matchAll(CUE_TOKEN)) {
+    const [kind, text] = Object.entries(match.groups).find(([, part]) => part !== undefined);
+    pieces.push({ text, kind: kindOf(kind, text, before), from: match.index });
     before = kind === "number" ? "number" : text;
   }
-  if (end < line.length) pieces.push({ text: line.slice(end), kind: "" });
   return pieces;
 }
 
@@ -39,29 +35,30 @@ function offsetOf(line, column) {
   return Array.from(line).slice(0, Math.max(0, column - 1)).join("").length;
 }
 
-/** Cuts pieces at the ends of [from, to) and sets `wrong` on what lies inside. */
-function markWrong(pieces, from, to) {
-  let at = 0;
-  return pieces.flatMap((piece) => {
-    const begin = at;
-    at += piece.text.length;
-    const cuts = [0, clamp(from - begin, 0, piece.text.length), clamp(to - begin, 0, piece.text.length), piece.text.length];
-    const part = (k, wrong) => ({ ...piece, text: piece.text.slice(cuts[k], cuts[k + 1]), wrong: wrong || piece.wrong });
-    return [part(0, false), part(1, true), part(2, false)].filter((cut) => cut.text);
-  });
-}
-
-/** The elements of one line, with wavy marks under what the troubles of this line are about. */
-function lineElements(line, troubles) {
-  let pieces = cueTokens(line);
-  for (const trouble of troubles) {
-    const from = Math.min(offsetOf(line, trouble.column), line.length);
-    const to = Math.max(offsetOf(line, trouble.end_column ?? trouble.column + 1), from + 1);
-    if (from >= line.length) pieces.push({ text: " ", kind: "", wrong: true }); // something is missing at the end
-    else pieces = markWrong(pieces, from, to);
-  }
-  return pieces.map(({ text, kind, wrong }) => {
-    const look = [kind && `tm-${kind}`, wrong && "tm-wrong"].filter(Boolean).join(" ");
-    return look ? make("span", { class: look }, text) : document.createTextNode(text);
-  });
+/** The extension that colours the lines in sight. */
+function cueColours() {
+  const looks = {};
+  const lookOf = (kind) => (looks[kind] ??= CM.Decoration.mark({ class: `tm-${kind}` }));
+  const painted = (view) => {
+    const marks = [];
+    for (const { from, to } of view.visibleRanges) {
+      for (let at = from; at <= to; ) {
+        const line = view.state.doc.lineAt(at);
+        for (const { text, kind, from: start } of cueTokens(line.text)) {
+          if (kind !== "plain") marks.push(lookOf(kind).range(line.from + start, line.from + start + text.length));
+        }
+        at = line.to + 1;
+      }
+    }
+    return CM.Decoration.set(marks);
+  };
+  return CM.ViewPlugin.define(
+    (view) => ({
+      decorations: painted(view),
+      update(change) {
+        if (change.docChanged || change.viewportChanged) this.decorations = painted(change.view);
+      },
+    }),
+    { decorations: (plugin) => plugin.decorations },
+  );
 }

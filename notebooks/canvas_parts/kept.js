@@ -31,9 +31,9 @@ function markOf(text) {
 }
 
 class Kept {
-  /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say. */
-  constructor(id, onTake, onForget, say) {
-    Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say });
+  /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say, `tell` the kernel. */
+  constructor(id, onTake, onForget, say, tell) {
+    Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say, tell });
     const button = (name, act) => make("button", { type: "button", class: "tm-button", onclick: act }, name);
     this.element = make(
       "div", { class: "tm-kept", role: "group", "aria-label": "Earlier text", hidden: true },
@@ -65,6 +65,7 @@ class Kept {
   offer(text) {
     this.offered = text;
     this.element.hidden = false;
+    this.tell("kept"); // the kernel may offer what it kept itself, which is older
     const said = "An earlier text was saved. Buttons above the editor restore or discard it.";
     setTimeout(() => this.offered !== null && this.say(said), 0); // after what the first frame says
   }
@@ -76,19 +77,19 @@ class Kept {
   }
 
   close() {
+    if (this.offered !== null) this.tell("decided");
     this.offered = null;
     this.element.hidden = true;
   }
 }
 
 /** The text on the clipboard; true if it is there. Where pages may not write to it, it is selected and copied the old way. */
-async function copyText(area) {
+async function copyText(editor) {
   try {
-    await navigator.clipboard.writeText(area.value);
+    await navigator.clipboard.writeText(editor.text);
     return true;
   } catch {
-    area.focus();
-    area.select();
+    editor.selectAll();
     return document.execCommand("copy");
   }
 }

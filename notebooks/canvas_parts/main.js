@@ -22,6 +22,7 @@ class Workbench {
     this.key = model.get?.("key") || model.model_id || model;
     this.onMessage = (meta, buffers) => this.receive(meta, buffers);
     el.append(this.root);
+    followSystem();
     model.on("msg:custom", this.onMessage);
     if (!siblings.has(this.key)) siblings.set(this.key, new Set());
     siblings.get(this.key).add(this);
@@ -40,7 +41,7 @@ class Workbench {
   }
 
   async copyText() {
-    const copied = await copyText(this.view.editor.area);
+    const copied = await copyText(this.view.editor);
     setText(this.copy, copied ? "Copied" : "Copy text");
     this.say(copied ? "Text copied" : "The text is selected: copy it with Ctrl+C");
   }
@@ -66,6 +67,7 @@ class Workbench {
     this.view.show(frame);
     if (frame.troubles) this.sayTroubles(frame.troubles);
     this.root.dataset.seq = frame.seq;
+    if (kind === "design") nameControls(this.root);
     this.repeatText();
     const drawn = performance.now();
     measure(kind, { seq: frame.seq, sent_ms: sent, arrived_ms: arrived, drawn_ms: drawn, kernel_ms: frame.ms, draw_ms: drawn - began });
@@ -108,7 +110,14 @@ class Workbench {
   }
 }
 
-function render({ model, el }) {
+async function render({ model, el }) {
+  const text = model.get?.("view") === "design";
+  try {
+    if (text) await loadCodeMirror();
+  } catch (problem) {
+    el.append(make("p", { role: "alert" }, `The editor cannot be loaded; a newer browser may help (${problem.message})`));
+    throw problem;
+  }
   const workbench = new Workbench(model, el);
   return () => workbench.stop();
 }

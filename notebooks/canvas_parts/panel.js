@@ -11,6 +11,12 @@ class LabelSpace {
   constructor(left, top, right, bottom) {
     this.bounds = { left, top, right, bottom };
     this.taken = [];
+    this.points = [];
+  }
+
+  /** Keeps labels off a curve, given as its points in pixels, in order across. */
+  avoid(points) {
+    this.points.push(...points);
   }
 
   fits(box) {
@@ -18,7 +24,9 @@ class LabelSpace {
     if (box.left < left || box.right > right || box.top < top || box.bottom > bottom) return false;
     const apart = (other) =>
       box.right + 3 <= other.left || other.right + 3 <= box.left || box.bottom <= other.top || other.bottom <= box.top;
-    return this.taken.every(apart);
+    const onCurve = ([across, down]) =>
+      across > box.left - 2 && across < box.right + 2 && down > box.top - 1 && down < box.bottom + 1;
+    return this.taken.every(apart) && !this.points.some(onCurve);
   }
 
   /** Takes a spot away from all labels. */
@@ -76,6 +84,7 @@ function drawPanel(surface, frame, panel, view, range, palette) {
   for (const { left, row, mark } of lay.marks.placed) {
     labels.claim([[left, row * LABEL_ROW]], context.measureText(mark.label).width + 4, LABEL_ROW);
   }
+  for (const series of panel.series) labels.avoid(curvePoints(frame.arrays[series.buffer] ?? [], frame.time, lay));
   for (const handle of frame.handles) if (handle.panel === panel.key) labels.keep(lay.x(handle.t), lay.y(handle.y), 8);
   inPlot(context, lay, () => {
     for (const span of panel.spans) drawSpan(context, span, lay, palette);
@@ -210,9 +219,28 @@ function drawLabels(context, panel, lay, space, palette) {
   }
   for (const band of panel.bands) {
     const middle = (lay.y(band.low) + lay.y(band.high)) / 2 - LABEL_ROW / 2;
-    const downs = [middle, lay.y(band.high) - LABEL_ROW, lay.y(band.low)];
+    const beside = [1, 2, 3, 4].flatMap((k) => [lay.y(band.low) + (k - 1) * LABEL_ROW, lay.y(band.high) - k * LABEL_ROW]);
+    const downs = [middle, ...beside];
     label(context, band.label, sidePlaces(context, band.label, lay, downs), space, palette[band.role] ?? palette.grey, palette.paper);
   }
+}
+
+/** A curve as points not further apart than a label is high; labels need not know more of it. */
+function curvePoints(values, time, lay) {
+  const points = [];
+  const every = Math.max(1, Math.floor(4 / Math.max(lay.x.slope * time.dt, 1e-9)));
+  let before = null;
+  for (let row = 0; row < values.length; row += every) {
+    if (!Number.isFinite(values[row])) {
+      before = null;
+      continue;
+    }
+    const [across, down] = [lay.x(time.t0 + row * time.dt), lay.y(values[row])];
+    const steps = before === null ? 1 : Math.max(1, Math.ceil(Math.abs(down - before) / LABEL_ROW));
+    for (let k = 1; k <= steps; k += 1) points.push([across, before === null ? down : before + ((down - before) * k) / steps]);
+    before = down;
+  }
+  return points;
 }
 
 function spanPlaces(context, span, lay) {
@@ -224,7 +252,8 @@ function spanPlaces(context, span, lay) {
 
 function sidePlaces(context, text, lay, downs) {
   const wide = context.measureText(text).width + 6;
-  const lefts = [lay.right - wide - 2, (lay.left + lay.right - wide) / 2, lay.left + 5];
+  const [from, to] = [lay.left + 5, lay.right - wide - 2];
+  const lefts = [1, 0.5, 0, 0.75, 0.25, 0.875, 0.625, 0.375, 0.125].map((part) => from + (to - from) * part);
   return downs.flatMap((top) => lefts.map((left) => [left, top]));
 }
 

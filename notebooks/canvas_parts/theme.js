@@ -10,6 +10,44 @@ function paletteOf(root) {
   return palette;
 }
 
+let probe = null;
+
+/** Relative luminance (0 to 1, as in WCAG) of any colour that CSS has. */
+function luminance(colour) {
+  probe ??= Object.assign(document.createElement("canvas"), { width: 1, height: 1 }).getContext("2d", { willReadFrequently: true });
+  probe.fillStyle = colour;
+  probe.fillRect(0, 0, 1, 1);
+  const [red, green, blue] = Array.from(probe.getImageData(0, 0, 1, 1).data, (value) => {
+    const part = value / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+}
+
+/** On Voila's page, which is light for everybody, the system's wish decides; JupyterLab has a setting of its own. */
+function followSystem() {
+  const { body } = document;
+  if (body.dataset.voila === undefined || body.dataset.thermiconTheme) return;
+  body.dataset.thermiconTheme = "system";
+  const system = matchMedia("(prefers-color-scheme: dark)");
+  const follow = () => {
+    body.dataset.jpThemeLight = String(!system.matches);
+    body.classList.toggle("thermicon-dark", system.matches);
+  };
+  system.addEventListener("change", follow);
+  follow();
+}
+
+/** Names for screen readers, where ipywidgets gives none: a knob's label stands beside its control. */
+function nameControls(root) {
+  for (const knob of root.closest(".thermicon")?.querySelectorAll(".thermicon-knob") ?? []) {
+    const name = knob.querySelector(".widget-html-content")?.textContent.trim();
+    for (const control of knob.querySelectorAll(".noUi-handle, select, .widget-readout")) {
+      if (name && control.getAttribute("aria-label") !== name) control.setAttribute("aria-label", name);
+    }
+  }
+}
+
 /** Calls `act` when JupyterLab's theme, the system's theme or the pixel ratio changes; returns how to stop. */
 function watchTheme(act) {
   const observer = new MutationObserver(act);

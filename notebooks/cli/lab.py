@@ -20,13 +20,15 @@ import typer
 
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
+from ..files.cue_document import open_document
 from ..files.outputs import check_folder, stopped_cleanly, write_together
-from ..files.start_folder import VARIABLE
-from ..text.messages import fail, interrupted, note, usage
+from ..files.start_folder import FILE, RIG, VARIABLE
+from ..text.messages import fail, interrupted, load_rig, note, usage
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
 """Endings of files: who gives one wants something else than a folder of that name."""
+CUE = ".cue"
 FIRST, PAGE = "01_first_icon.ipynb", "workbench.ipynb"
 MOST_BYTES = 200_000_000
 """Bytes of a notebook that is looked at; with all its pictures one has some millions."""
@@ -58,12 +60,20 @@ class Copied:
 
 def lab_command(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", readable=False, help="Folder for the notebooks; it is created if missing.")
+        Path,
+        typer.Argument(
+            metavar="DIR",
+            readable=False,
+            help="Folder for the notebooks; it is created if missing. With --page also a cue file to work on.",
+        ),
     ] = FOLDER,
     page: Annotated[
         bool,
         typer.Option("--page", help="Serve the workbench as a web page (with Voila) instead of opening JupyterLab."),
     ] = False,
+    rig: Annotated[
+        str | None, typer.Option("--rig", metavar="RIG", help="With --page: rig of the page, by name or path.")
+    ] = None,
     files_only: Annotated[
         bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
     ] = False,
@@ -83,15 +93,46 @@ def lab_command(
         raise usage("opens nothing, so no page can be served", "--files-only")
     if port is not None and not 1 <= port <= 65535:
         raise usage(f"{port} is outside 1 to 65535", "--port")
-    if folder.suffix.lower() in FILES:
+    if rig is not None and not page:
+        raise usage("is for --page; in a notebook, write Workbench(rig=...)", "--rig")
+    file = folder if page and folder.suffix.lower() == CUE else None
+    if file is None and folder.suffix.lower() in FILES:
         raise usage(f"{str(folder)!r} is the name of a file, not of a folder; give one, such as {FOLDER}", "DIR")
     program = "voila" if page else "jupyterlab"
     if not files_only and find_spec(program) is None:
         extra = "thermicon[page]" if page else "jupyterlab"
         fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
+    if page:
+        shown = page_environment(file or folder, file, rig)
+    if file is not None:
+        serve_file(file, shown, no_browser, port)
+        return
     report_copies(copy_notebooks(folder, force), folder)
     if not files_only:
-        serve(command_of(folder, page, no_browser, port), folder, program)
+        serve(command_of(folder, page, no_browser, port), program, shown if page else {})
+
+
+def page_environment(place: Path, file: Path | None, rig: str | None) -> dict[str, str]:
+    """What the kernels of a page are told: its folder, the cue file and the rig that it shows.
+
+    Raises OutputError for a file, RigError for a rig that cannot be read.
+    """
+    told = {VARIABLE: str((place if file is None else place.parent).resolve())}
+    if file is not None:
+        open_document(file)
+        told[FILE] = str(file.resolve())
+    if rig is not None:
+        load_rig(rig, [])
+        told[RIG] = str(Path(rig).resolve()) if rig.endswith(".toml") else rig
+    return told
+
+
+def serve_file(file: Path, shown: Mapping[str, str], no_browser: bool, port: int | None) -> None:
+    """Serve the workbench on one file; the notebook that it is made of stays out of the file's folder."""
+    note(f"{file}: the page opens, saves and exports below {shown[VARIABLE]}")
+    with tempfile.TemporaryDirectory(prefix="thermicon-page-", ignore_cleanup_errors=True) as own:
+        write_together({PAGE: _stamped(shipped_notebooks()[PAGE])}, Path(own), replace=True)
+        serve(command_of(Path(own), True, no_browser, port), "voila", shown)
 
 
 def copy_notebooks(folder: Path, force: bool = False) -> Copied:
@@ -150,16 +191,14 @@ def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> 
     return words + ([f"--port={port}"] if port is not None else [])
 
 
-def serve(command: list[str], folder: Path, program: str) -> None:
-    """Run a server on a folder until it ends or Ctrl-C ends it; it is given the time to stop its kernels.
+def serve(command: list[str], program: str, told: Mapping[str, str]) -> None:
+    """Run a server until it ends or Ctrl-C ends it; it is given the time to stop its kernels.
 
     It runs in an empty folder, since servers of Jupyter take settings, which are programs, from where they are started;
     kernels run in the folder of their notebooks, and import nothing from there (PYTHONSAFEPATH).
     """
     note("press Ctrl-C to stop")
-    own = {**os.environ, "PYTHONSAFEPATH": "1"}
-    if program == "voila":
-        own[VARIABLE] = str(folder.resolve())
+    own = {**os.environ, "PYTHONSAFEPATH": "1", **told}
     # Without a terminal to ask at, a server ends at once on Ctrl-C, which reaches it as well as this process.
     with (
         stopped_cleanly(),

@@ -11,6 +11,24 @@ VARIABLE = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
 
 
+FILE, RIG = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG"
+"""Set for the kernels of ``thermicon lab --page FILE --rig RIG``: what a workbench shows that is asked for nothing."""
+
+
+def started_with() -> str | None:
+    """Return the cue file that the page was started with; None for none."""
+    return os.environ.get(FILE) or None
+
+
+def started_rig() -> str:
+    """Return the rig that the page was started with, or the usual one.
+
+    >>> started_rig()
+    'thenar'
+    """
+    return os.environ.get(RIG) or "thenar"
+
+
 def below_start(folder: Path) -> Path:
     """Return a folder to write into, with links followed; OutputError where it is not below that of the page.
 

@@ -1,14 +1,17 @@
 """The canvas of the workbench: one anywidget that draws frames in the browser and hands back what people do there.
 
 The module in ``canvas_parts/`` is plain JavaScript without a build step: its parts are joined here in order, so they
-import nothing. A frame goes out as one message with float32 buffers, never as a trait, so a saved notebook holds the
-module and no data.
+import nothing; CodeMirror, bundled in ``codemirror/``, is carried in packed form. A frame goes out as one message with
+float32 buffers, never as a trait, so a saved notebook holds the module and no data.
 """
 
 from __future__ import annotations
 
+import gzip
 import json
+from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 from uuid import uuid4
@@ -29,7 +32,9 @@ PARTS = (
     "panel",
     "handles",
     "timeline",
+    "codemirror",
     "highlight",
+    "complete",
     "troubles",
     "editor",
     "kept",
@@ -44,7 +49,20 @@ def module_text() -> str:
     """Return the ES module: the words of the cue language, then all parts."""
     folder = files("thermicon.notebooks") / "canvas_parts"
     parts = [_shortened((folder / f"{part}.js").read_text(encoding="utf-8")) for part in PARTS]
-    return "\n".join((f"const CUE_WORDS = {json.dumps(_words(), ensure_ascii=False)};", *parts))
+    constants = {"CUE_WORDS": _words(), "PACKED_CODEMIRROR": _packed()}
+    first = (f"const {name} = {json.dumps(value, ensure_ascii=False)};" for name, value in constants.items())
+    return "\n".join((*first, *parts))
+
+
+def codemirror_text() -> str:
+    """Return the ES module that ``notebooks/codemirror/build.sh`` bundles CodeMirror into."""
+    return (files("thermicon.notebooks") / "codemirror" / "codemirror.js").read_text(encoding="utf-8")
+
+
+@lru_cache(maxsize=1)
+def _packed() -> str:
+    """CodeMirror for the page to unpack: a notebook that stores its widgets stores a third of it."""
+    return b64encode(gzip.compress(codemirror_text().encode(), mtime=0)).decode()
 
 
 def style_text() -> str:
@@ -59,12 +77,15 @@ def _shortened(script: str) -> str:
     return "\n".join(line for line in lines if line and not line.startswith(("//", "/** ", "* ", "*/")))
 
 
-def _words() -> dict[str, list[str]]:
+def _words() -> dict[str, Any]:
     """Words to colour, from the lexer, so that the page never knows another language than the parser."""
     from thermicon.icons.language.highlight import KEYWORDS, SPELLINGS
     from thermicon.icons.model.words import CONTROLS, STARTS
 
-    return {"keywords": sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"}), "units": list(SPELLINGS)}
+    from ..editing.completions import completions
+
+    keywords = sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"})
+    return {"keywords": keywords, "units": list(SPELLINGS), "next": completions()}
 
 
 class Canvas(anywidget.AnyWidget):

@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from .cue_check import mended
+from ..editing.cue_check import mended
+from ..editing.history import Edited, History
 from .dragging import drag
 from .frames import CanvasFrame, frame_of
-from .history import Edited, History
 from .knobs import apply, knobs_of
 from .scene import Scene, scene, with_notes
 
@@ -87,6 +87,25 @@ class DesignModel:
     def show_text(self, text: str, icon: str | None = None) -> CanvasFrame:
         """Put another text in the editor, as one step that can be undone."""
         return self._answer(lambda: self._replace(text, icon))
+
+    def open_text(self, text: str) -> CanvasFrame:
+        """Put the text of another file in the editor, which begins a history of its own."""
+
+        def act() -> str:
+            self.scene = scene(text, self.rig, None, self._applied.observer)
+            self.history = History(Edited(text, self.scene.icon))
+            return text
+
+        return self._answer(act)
+
+    def take_rig(self, rig: Rig) -> CanvasFrame:
+        """Show the icons on another rig, with its own values."""
+
+        def act() -> None:
+            self.nominal = rig
+            self._set({})
+
+        return self._answer(act)
 
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""

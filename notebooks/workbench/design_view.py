@@ -10,7 +10,9 @@ from .canvas import Canvas, module_text
 from .knobs import Knob, knobs_of
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+    from thermicon.circuit import Rig
 
     from .design_model import DesignModel
 
@@ -45,13 +47,14 @@ class DesignView:
         self.sliders: dict[str, Any] = {}
         self._labels: dict[str, widgets.HTML] = {}
         self._quiet = False
-        held = [self._knob(knob) for knob in knobs_of(design.nominal)]
+        self.on_page: dict[str, Callable[[], None]] = {}
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
         self.reset.on_click(lambda _: self._reset())
         self.reset.add_class("thermicon-reset")
-        knobs = widgets.Box([*held, self.reset]).add_class("thermicon-knobs")
-        self.box = widgets.VBox([knobs, self.canvas]).add_class("thermicon-design")
+        self.knobs = widgets.Box([]).add_class("thermicon-knobs")
+        self._make_knobs()
+        self.box = widgets.VBox([self.knobs, self.canvas]).add_class("thermicon-design")
         self.refresh()
 
     def refresh(self) -> None:
@@ -62,7 +65,24 @@ class DesignView:
         """Put another text into the editor, as one step that can be undone."""
         self._send(self.design.show_text(text, icon))
 
+    def step(self, kind: str) -> None:
+        """Undo or redo, from wherever it is asked for."""
+        self._send(self.design.receive({"type": kind}))
+
+    def take_rig(self, rig: Rig) -> None:
+        """Show the icons on another rig, with knobs of its own."""
+        self._send(self.design.take_rig(rig))
+        self._make_knobs()
+
+    def _make_knobs(self) -> None:
+        self.sliders, self._labels = {}, {}
+        self.knobs.children = (*(self._knob(knob) for knob in knobs_of(self.design.nominal)), self.reset)
+
     def _receive(self, message: Mapping[str, Any]) -> None:
+        if (act := self.on_page.get(str(message.get("type")))) is not None:
+            act()
+            self._send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
+            return
         self._send(self.design.receive(message))
 
     def _send(self, frame: Any) -> None:

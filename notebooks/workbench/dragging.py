@@ -13,9 +13,9 @@ from thermicon.icons.model.motion import periods_of
 from thermicon.icons.model.shapes import Wave
 from thermicon.icons.number_text import number
 
-from .cue_check import read_text
+from ..editing.cue_check import read_text
+from ..editing.number_literals import Amount, Written, keyword_of, kind_of, replaced, written
 from .handles import PEAK_AT, RATES, Corner, Grip, corners_of, grip_of, slots_of
-from .number_literals import Amount, Written, keyword_of, kind_of, replaced, written
 
 if TYPE_CHECKING:
     from thermicon.icons.model.slots import Path

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
+from ..editing.cue_check import read_text
 from ..files.exporting import FORMAT, PreparedExport, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
 from ..pages.blocks import fragment
 from .background import Job
-from .cue_check import read_text
+from .downloads import drives_zip, link
 from .export_tables import delivered_html, gate_html, written_html
 from .live_view import LiveView
 from .set_model import MOST_RANKED
@@ -61,6 +62,8 @@ class ExportView(LiveView[ExportRequest]):
         self.overwrite = widgets.Checkbox(value=False, description="overwrite existing files", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also export lossy or unreached icons", indent=False)
         self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
+        self.download = widgets.Button(description="Download", disabled=True, tooltip="the same files as one archive")
+        self.download.on_click(lambda _: self._safely(self.offer_download))
         for control in (self.device, self.form, self.folder, self.which, self.pause):
             control.style.description_width = "52px"
         self.said = {name: widgets.HTML() for name in ("status", "written", "delivered", "figure", "gate")}
@@ -72,7 +75,7 @@ class ExportView(LiveView[ExportRequest]):
         self.button.on_click(lambda _: self._safely(self.write))
         said = self.said
         controls = [self.device, self.form, self.which, self.pause, self.folder]
-        controls += [self.overwrite, self.insist, self.button]
+        controls += [self.overwrite, self.insist, widgets.Box([self.button, self.download])]
         left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
         self.body = widgets.VBox(
             [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
@@ -82,7 +85,7 @@ class ExportView(LiveView[ExportRequest]):
         self._say("drives are prepared when this tab opens")
 
     def _mark_outdated(self, request: ExportRequest) -> None:
-        self.button.disabled = True
+        self.button.disabled = self.download.disabled = True
         self.said["written"].value = ""
         super()._mark_outdated(request)
 
@@ -120,6 +123,17 @@ class ExportView(LiveView[ExportRequest]):
             return
         self.said["written"].value = written_html(self.ready, written)
         self._say("")
+
+    def offer_download(self) -> None:
+        """Offer the files as one archive, under the same conditions as they are written."""
+        if self.ready is None or self._request() != self._finished:
+            raise OutputError("the drives are not ready yet")
+        try:
+            data = drives_zip(self.ready, self.insist.value)
+        except (OutputError, ValueError, RuntimeError) as wrong:
+            self.said["written"].value = fragment("block", f"nothing to download: {wrong}", "th-bad")
+            return
+        self.said["written"].value = link("drives.zip", data)
 
     def _forget_result(self) -> None:
         """A result for another folder does not apply to this one."""
@@ -164,7 +178,7 @@ class ExportView(LiveView[ExportRequest]):
         if self.ready is None or self._request() != self._finished:
             return
         stops = [refusal for _, refusal in self.ready.against if not (self.insist.value and refusal.forcible)]
-        self.button.disabled = bool(stops)
+        self.button.disabled = self.download.disabled = bool(stops)
         if not stops:
             self._say("ready to be written", "th-good")
         elif all(refusal.forcible for refusal in stops):

@@ -17,7 +17,7 @@ from thermicon.icons.number_text import signed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from .cue_check import Trouble
+    from ..editing.cue_check import Trouble
     from .scene import Drawing, Scene
 
     Floats = NDArray[np.float32]

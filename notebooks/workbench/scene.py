@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from thermicon.icons import CueErrors
 from thermicon.icons.number_text import number, percent
 
-from .cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
+from ..editing.cue_check import MOST_NAMES, Reading, Trouble, read_text, trouble_of
 from .handles import MOST_HANDLES, Handle, handles_of
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
 from ..files.cues import MOST_ICONS
-from .cue_check import Reading, read_text
 from .frames import CanvasFrame, traces_of
 
 if TYPE_CHECKING:

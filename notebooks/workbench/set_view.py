@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from ..editing.apply_edit import with_edit
+from ..editing.cue_check import read_text
 from ..figures.map_drawing import map_svg
 from ..pages.blocks import fragment
 from ..text.choices import NAMES
-from .apply_edit import with_edit
 from .background import BackgroundWorker, Job
-from .cue_check import read_text
 from .design_view import SideCanvas
 from .live_view import LiveView
 from .set_model import (
@@ -83,8 +83,12 @@ class SetView(LiveView[SetRequest]):
             control.observe(lambda _: self._safely(lambda: self.renew(0.0)), "value")
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
+        self.keep: Callable[[tuple[str, ...]], None] | None = None
+        self.take = widgets.Button(description="Keep these", layout={"width": "100px", "display": "none"})
+        self.take.tooltip = "take the other icons out of the text, as one step that can be undone"
+        self.take.on_click(lambda _: self._safely(self.keep_chosen))
         top = _row(said["scores"], said["status"]).add_class("thermicon-top")
-        table = widgets.VBox([said["table"], _row(self.count, self.objective), said["choice"]])
+        table = widgets.VBox([said["table"], _row(self.count, self.objective, self.take), said["choice"]])
         self._table = table.add_class("thermicon-side")
         self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
         overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
@@ -160,6 +164,16 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
+    def keep_chosen(self) -> None:
+        """Take the icons that were not chosen out of the text, as one step that can be undone."""
+        chosen = None if self.made is None else self.made.ranking.chosen
+        if chosen is None or self.keep is None:
+            raise ValueError("no icons are chosen yet: say above how many")
+        self.take.layout.display = "none"
+        self.keep(tuple(chosen.icons))
+        self.count.value = 0
+        self._show_text(self.design.text)
+
     def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
         text, rig, choosing = request
@@ -213,6 +227,7 @@ class SetView(LiveView[SetRequest]):
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
+        self.take.layout.display = "none" if ranking.chosen is None else ""
         people = f"{ranking.people} people"
         self._say(f"{people}" if well else f"preliminary: {people}; refining …")
         self._offer(len(made.icons))

@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
 
+from ..files.cue_document import open_document
+from ..files.start_folder import started_rig, started_with
 from .design_model import DesignModel
+from .project import Project
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 
     from .design_view import DesignView
     from .export_view import ExportView
+    from .project_bar import ProjectBar
     from .scene import Scene
     from .set_view import SetView
 
@@ -35,7 +39,7 @@ class Workbench:
         Cue text, the path of a cue file, the name of a shipped set, an icon or a set; None: six-icons. Errors in a cue
         text are shown on the page.
     rig
-        A rig, its name, or the path of a rig file.
+        A rig, its name, or the path of a rig file; None: thenar.
     icon
         Name of the icon that is shown first; None: the first.
     folder
@@ -62,21 +66,27 @@ class Workbench:
     def __init__(
         self,
         text: str | Path | Icon | IconSet | None = None,
-        rig: str | Path | Rig = "thenar",
+        rig: str | Path | Rig | None = None,
         icon: str | None = None,
         folder: str | Path = "drives",
     ) -> None:
         from thermicon.circuit import Rig
 
-        loaded = rig if isinstance(rig, Rig) else Rig.load(rig)
-        self._design = DesignModel(text_of(text), loaded, icon)
+        source = text if text is not None else started_with()
+        chosen = rig if rig is not None else started_rig()
+        loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
+        self._design = DesignModel(text_of(source), loaded, icon)
         self._check_icon(icon)
+        document = open_document(found) if (found := file_of(source)) is not None else None
+        name = document.path.name if document is not None else _name_of(source)
+        self.project = Project(self._design, document, name, autosaves=has_kernel())
         self._folder = Path(folder)
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
+        self.bar: ProjectBar | None = None
 
     def _check_icon(self, icon: str | None) -> None:
         """A name that is asked for must be there; while people write, another icon may take its place."""
@@ -178,21 +188,27 @@ class Workbench:
 
         from .design_view import DesignView
         from .export_view import ExportView
+        from .project_bar import ProjectBar
         from .set_view import SetView
 
         style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
         self.set_view = ranked = SetView(self._design, design.show_text)
         self.export_view = export = ExportView(self._design, self._folder)
+        self.bar = bar = ProjectBar(self.project, design)
+        ranked.keep = self.project.keep_only
+        design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}
         tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
 
         def shown(change: Any) -> None:
+            bar.beside(design=change["new"] == 0)
             ranked.shown = change["new"] == 1
             export.shown = change["new"] == 2
             for view in (ranked, export):
                 view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
+            bar.renew()
             for view in (ranked, export):
                 view.renew()
 
@@ -201,7 +217,7 @@ class Workbench:
         tabs.observe(shown, "selected_index")
         self._design.on_change(changed)
         self.tabs = tabs
-        return widgets.VBox([style, tabs]).add_class("thermicon")
+        return widgets.VBox([style, bar.box, tabs]).add_class("thermicon")
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
@@ -240,6 +256,22 @@ def text_of(source: str | Path | Icon | IconSet | None) -> str:
     if data is None:
         return str(read_cue(source))  # JSON, or the reason why there is no such file
     return data.decode("utf-8-sig", errors="replace")
+
+
+def file_of(source: object) -> Path | None:
+    """The cue file that a workbench is made of; None for text, icons, JSON and shipped sets."""
+    from thermicon.icons.files.shipped import is_json
+
+    if not isinstance(source, str | Path) or (isinstance(source, str) and ("{" in source or "\n" in source)):
+        return None
+    path = Path(source)
+    return path if path.is_file() and not is_json(path) else None
+
+
+def _name_of(source: object) -> str:
+    if isinstance(source, Icon | IconSet):
+        return source.name or "icons"
+    return source if isinstance(source, str) and source in library_names() else FIRST if source is None else "icons"
 
 
 def _shipped(name: str) -> str:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.browser.jupyter import Server, end_kernels, page_of, running
+from tests.browser.jupyter import Server, end_kernels, page_of, page_of_file, running
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
 WINDOW = {"width": 1280, "height": 800}
@@ -92,6 +92,17 @@ def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> It
 
         def serve(folder: Path) -> Server:
             return stack.enter_context(page_of(folder, tmp_path_factory.mktemp("page")))
+
+        yield serve
+
+
+@pytest.fixture
+def serve_file(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[[Path, str], Server]]:
+    """``serve_file(file, rig)`` serves the workbench on one cue file and one rig."""
+    with ExitStack() as stack:
+
+        def serve(file: Path, rig: str) -> Server:
+            return stack.enter_context(page_of_file(file, rig, tmp_path_factory.mktemp("page")))
 
         yield serve
 

@@ -68,6 +68,19 @@ def page_of(folder: Path, own: Path) -> Iterator[Server]:
 
 
 @contextmanager
+def page_of_file(file: Path, rig: str, own: Path) -> Iterator[Server]:
+    """The page of one cue file, by the command itself: ``thermicon lab --page FILE --rig RIG``."""
+    own.mkdir(parents=True, exist_ok=True)
+    port, log = free_port(), own / "page.log"
+    options = ["lab", "--page", str(file), "--rig", rig, "--no-browser", f"--port={port}"]
+    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *options]
+    with _started(command, own, environment(own), log, f"http://localhost:{port}"):
+        told = re.search(rf"http://localhost:{port}/\?token=\S+", log.read_text(encoding="utf-8"))
+        assert told is not None, log.read_text(encoding="utf-8")
+        yield Server(told[0], file.parent, log)
+
+
+@contextmanager
 def _started(command: Sequence[str], folder: Path, places: dict[str, str], log: Path, address: str) -> Iterator[None]:
     with log.open("wb") as said:
         process = subprocess.Popen(

@@ -23,13 +23,13 @@ function unpacked(buffer) { // at an odd place, as buffers come out of a message
 window.listeners = new Set();
 window.sent = [];
 window.deliver = (meta, buffers) => [...listeners].forEach((tell) => tell(meta, buffers.map(unpacked)));
-window.show = (view, key) => {
+window.show = async (view, key) => {
   const el = document.body.appendChild(document.createElement("div"));
   const model = {
     get: (name) => ({ view, key })[name], send: (message) => window.sent.push(message),
     on: (_, tell) => listeners.add(tell), off: (_, tell) => listeners.delete(tell),
   };
-  window.leave = widget.render({ model, el });
+  window.leave = await widget.render({ model, el });
 };
 window.ready = true;
 </script></body></html>"""
@@ -128,6 +128,9 @@ def design(**changes: Any) -> dict[str, Any]:
     } | changes
 
 
+TEXT_NOW = "k => document.querySelectorAll('.tm-editor')[k].editor.text"
+
+
 class Bench:
     """The page as a person and a kernel use it."""
 
@@ -153,7 +156,7 @@ class Bench:
 
     def said(self, text: str) -> None:
         """Wait until screen readers are told so."""
-        self.page.wait_for_function("text => document.querySelector('[aria-live]').textContent === text", arg=text)
+        self.page.wait_for_function("text => document.querySelector('.tm-live-region').textContent === text", arg=text)
 
     def again(self, key: str, **changes: Any) -> None:
         """The page loaded again, with a bench of this model and its first frame."""
@@ -161,6 +164,29 @@ class Bench:
         self.page.wait_for_function("window.ready === true")
         self.show(key=key)
         self.frame(design(**changes))
+
+    @property
+    def text(self) -> str:
+        """The cue text in the first editor."""
+        return self.text_in(0)
+
+    def text_in(self, place: int) -> str:
+        """The cue text in one of several editors."""
+        return str(self.page.evaluate(TEXT_NOW, place))
+
+    @property
+    def caret(self) -> int:
+        """Where the caret is in the text."""
+        where = "document.querySelector('.tm-editor').editor.view.state.selection.main.head"
+        return int(self.page.evaluate(where))
+
+    def set_caret(self, place: int) -> None:
+        """Focus the text and put the caret there."""
+        self.page.evaluate(
+            "anchor => { const { view } = document.querySelector('.tm-editor').editor;"
+            " view.focus(); view.dispatch({ selection: { anchor } }); }",
+            place,
+        )
 
     def corner(self, t: float, y: float) -> tuple[float, float]:
         """Where a point of the temperature panel is in the window."""

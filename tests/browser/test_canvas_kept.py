@@ -25,7 +25,7 @@ def edited(page: Any) -> Iterator[Bench]:
 
 
 def append(bench: Bench, text: str) -> None:
-    bench.page.locator(".tm-area").press("Control+End")
+    bench.page.locator(".cm-content").press("Control+End")
     bench.page.keyboard.type(text)
 
 
@@ -34,7 +34,7 @@ def offered(bench: Bench) -> bool:
 
 
 def text_of(bench: Bench) -> str:
-    return str(bench.page.locator(".tm-area").input_value())
+    return bench.text
 
 
 def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
@@ -51,7 +51,7 @@ def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
     assert [message["text"] for message in edited.sent("text")] == [TEXT + "# mine"]
     assert text_of(edited) == TEXT + "# mine"
     assert not offered(edited)
-    assert edited.page.evaluate("document.activeElement.className") == "tm-area"
+    assert "cm-content" in edited.page.evaluate("document.activeElement.className")
     edited.said("The earlier text is back in the editor.")
 
 
@@ -70,7 +70,7 @@ def test_what_is_forgotten_is_not_offered_again(edited: Bench) -> None:
     edited.again("two")
     edited.again("two")
     assert offered(edited), "as long as nothing is decided"
-    edited.page.get_by_role("button", name="Forget").click()
+    edited.page.get_by_role("button", name="Discard").click()
     assert not offered(edited)
     assert text_of(edited) == TEXT
     edited.said("The earlier text was discarded.")
@@ -105,7 +105,7 @@ def test_two_views_of_one_model_decide_once(edited: Bench) -> None:
     edited.frame(design())
     bars = edited.page.locator(".tm-kept:visible")
     assert bars.count() == 2
-    bars.nth(1).get_by_role("button", name="Forget").click()
+    bars.nth(1).get_by_role("button", name="Discard").click()
     assert bars.count() == 0
 
 
@@ -116,8 +116,8 @@ def test_the_text_can_be_copied_while_there_is_no_answer(edited: Bench) -> None:
     page.get_by_role("button", name="Copy text").click()
     page.get_by_role("button", name="Copied").wait_for()
     edited.said("Text copied")
-    page.locator(".tm-area").fill("")
-    page.locator(".tm-area").press("Control+v")
+    page.locator(".cm-content").press("Control+a")
+    page.keyboard.press("Control+v")
     assert text_of(edited) == TEXT + "# mine"
     edited.answer()
     assert page.locator(".tm-banner").is_hidden()

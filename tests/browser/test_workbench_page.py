@@ -7,14 +7,18 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import Server
 from tests.browser.onbench import (
+    TWO,
     click_a_confusion,
+    expect_text,
     root,
     type_below_the_first_screen,
     type_drag_and_err,
+    type_text,
     wait_until_drawn,
     write_drives,
 )
@@ -36,15 +40,52 @@ def test_the_page_starts_and_shows_the_curve_of_what_is_typed(
     type_drag_and_err(page)
 
 
+@pytest.mark.parametrize("width", [1280, 900])
+def test_text_below_the_first_screen_can_be_edited(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, width: int
+) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    open_page(page, serve_page, tmp_path)
+    type_below_the_first_screen(page)
+
+
 def test_the_page_designs_compares_and_exports(
     page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
 ) -> None:
     open_page(page, serve_page, tmp_path)
     shot("page-design")
-    type_below_the_first_screen(page)
     type_drag_and_err(page)
     click_a_confusion(page)
     shot("page-set")
     write_drives(page, tmp_path / "drives")
     shot("page-export")
     assert (tmp_path / "drives" / "near.csv").exists()
+
+
+def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(
+    page: Page, serve_file: Callable[[Path, str], Server], tmp_path: Path
+) -> None:
+    file = tmp_path / "alerts.cue"
+    file.write_text(TWO, encoding="utf-8")
+    server = serve_file(file, "fingertip")
+    page.goto(server.url)
+    wait_until_drawn(page)
+    expect(page.locator(".thermicon-file")).to_have_text("alerts.cue")
+    expect(page.locator(".thermicon-bar select")).to_have_value("fingertip")
+    typed = TWO.replace("icon near ", "icon nigh ")
+    type_text(page, typed)
+    expect(page.locator(".thermicon-file")).to_have_text("alerts.cue, unsaved changes")
+    page.wait_for_timeout(1000)
+    again = page.context.browser.new_context().new_page()  # type: ignore[union-attr]
+    page.close()
+    again.goto(server.url)
+    wait_until_drawn(again)
+    expect_text(again, TWO)
+    offer = again.locator(".thermicon-offer")
+    expect(offer).to_contain_text("Unsaved text of alerts.cue was typed a moment ago")
+    offer.get_by_role("button", name="Restore it").click()
+    expect_text(again, typed)
+    again.locator(".cm-content").press("Control+s")
+    expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
+    assert file.read_text(encoding="utf-8") == typed
+    assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]

@@ -146,6 +146,38 @@ def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple
     assert not (tmp_path / "mine").exists()
 
 
+def test_a_page_of_one_file_knows_file_rig_and_folder(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served: list[tuple[list[str], dict[str, str]]] = []
+    monkeypatch.setattr(lab, "find_spec", lambda _: True)
+    monkeypatch.setattr(lab, "serve", lambda command, program, told: served.append((command, dict(told))))
+    file = tmp_path / "alerts.cue"
+    file.write_text("cue 1; icon a { hold for 1 s }", encoding="utf-8")
+    said = cli("lab", "--page", file, "--rig", "fingertip", "--no-browser")
+    assert (said.exit_code, said.stdout) == (0, "")
+    command, told = served[0]
+    assert told == {
+        "THERMICON_PAGE_FOLDER": str(tmp_path),
+        "THERMICON_PAGE_FILE": str(file),
+        "THERMICON_PAGE_RIG": "fingertip",
+    }
+    assert str(tmp_path / "workbench.ipynb") not in command
+    assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
+
+
+def test_a_page_of_a_file_or_rig_that_is_not_there_is_not_served(cli: Cli, tmp_path: Path) -> None:
+    said = cli("lab", "--page", tmp_path / "none.cue", "--no-browser")
+    assert (said.exit_code, said.stderr) == (1, f"cannot open {tmp_path / 'none.cue'}: No such file or directory\n")
+    said = cli("lab", "--page", tmp_path / "mine", "--rig", "thenr")
+    assert said.exit_code == 1
+    assert "thenar" in said.stderr
+    assert not (tmp_path / "mine").exists()
+    said = cli("lab", tmp_path / "mine", "--rig", "thenar")
+    assert said.exit_code == 2
+    assert "is for --page" in " ".join(said.stderr.replace("│", " ").split())
+
+
 def test_the_name_of_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
     said = cli("lab", tmp_path / "alerts.cue", "--files-only")
     assert said.exit_code == 2

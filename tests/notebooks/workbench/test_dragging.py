@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.workbench.cue_check import read_text
+from thermicon.notebooks.editing.cue_check import read_text
 from thermicon.notebooks.workbench.dragging import Dragged, drag
 from thermicon.notebooks.workbench.handles import MOST_HANDLES, handles_of
 

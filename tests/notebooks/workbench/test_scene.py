@@ -9,7 +9,7 @@ import pytest
 
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.workbench.cue_check import MOST_NAMES, mended, read_text
+from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended, read_text
 from thermicon.notebooks.workbench.event_times import missed_spans
 from thermicon.notebooks.workbench.knobs import aged
 from thermicon.notebooks.workbench.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes

@@ -9,7 +9,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.workbench.apply_edit import CannotApply, with_edit
+from thermicon.notebooks.editing.apply_edit import CannotApply, with_edit
+from thermicon.notebooks.editing.icon_edits import only
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
@@ -194,6 +195,12 @@ def test_the_best_few_are_chosen_and_marked() -> None:
     bench.view.objective.value = "bits"
     bench.wait()
     assert "by bits" in bench.said("choice")
+    assert bench.view.take.layout.display == ""
+    bench.view.keep = lambda names: bench.type(only(bench.design.text, names))
+    chosen = bench.view.made.ranking.chosen.icons if bench.view.made and bench.view.made.ranking.chosen else ()
+    bench.view.take.click()
+    assert bench.design.scene.names == tuple(chosen)
+    assert bench.view.count.value == 0
 
 
 def test_a_map_stays_where_it_was_when_an_icon_changes(ranked: Bench) -> None:

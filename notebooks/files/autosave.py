@@ -1,0 +1,138 @@
+"""Unsaved text, kept beside the file it belongs to while somebody types, and offered when the file is opened again."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import os
+import re
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock, Timer
+
+from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+
+from .cue_document import MOST_BYTES
+from .locking import is_alive
+from .outputs import OutputError, complete_or_absent
+
+SUFFIX = "unsaved"
+EVERY_S = 0.5
+"""Shortest time between two writings, in s; what is typed last is lost by a killed process for this long."""
+KEPT_S = 30 * 86_400.0
+"""Time after which an unsaved text of a process that is gone is removed, in s."""
+
+_COUNT = itertools.count()
+
+
+@dataclass(frozen=True, slots=True)
+class Unsaved:
+    """A text that was not saved: where it is kept, since when (s since 1970), and whether its process still runs."""
+
+    path: Path
+    text: str
+    since_s: float
+    alive: bool
+
+    @property
+    def age(self) -> str:
+        """How long ago it was typed, in words."""
+        minutes = max(0.0, time.time() - self.since_s) / 60
+        if minutes < 1.5:
+            return "a moment ago"
+        if minutes < 90:
+            return f"{minutes:.0f} minutes ago"
+        return time.strftime("on %d %B at %H:%M", time.localtime(self.since_s))
+
+
+class Autosave:
+    """Keeps the newest text of one editor beside a file, under a hidden name of this process.
+
+    ``failed`` says why the newest text could not be kept, None while it is.
+    """
+
+    def __init__(self, place: Path) -> None:
+        self.place = place
+        self.path = place.with_name(f".{place.name}.{os.getpid()}-{next(_COUNT)}.{SUFFIX}")
+        self.failed: str | None = None
+        self._text: str | None = None
+        self._last_s = -EVERY_S
+        self._timer: Timer | None = None
+        self._lock = Lock()
+
+    def keep(self, text: str) -> None:
+        """Keep a text, at once or within half a second."""
+        with self._lock:
+            self._text = text
+            if self._timer is not None:
+                return
+            wait_s = self._last_s + EVERY_S - time.monotonic()
+            if wait_s <= 0:
+                self._write()
+                return
+            self._timer = Timer(wait_s, self._late)
+            self._timer.daemon = True
+            self._timer.start()
+
+    def forget(self) -> None:
+        """Remove what is kept: it was saved, or is as it was."""
+        with self._lock:
+            self._text = None
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+            with contextlib.suppress(OSError):
+                self.path.unlink()
+            self.failed = None
+
+    def _late(self) -> None:
+        with self._lock:
+            self._timer = None
+            self._write()
+
+    def _write(self) -> None:
+        if self._text is None:
+            return
+        try:
+            with complete_or_absent(self.path) as draft:
+                draft.write_text(self._text, encoding="utf-8", newline="")
+            self.failed = None
+        except (OutputError, OSError) as wrong:
+            self.failed = str(wrong)
+        self._last_s = time.monotonic()
+
+
+def unsaved_texts(place: Path, text: str, own: Path | None = None) -> list[Unsaved]:
+    """Texts of other editors that were never saved to a file and differ from its ``text``, the newest first.
+
+    What equals the text, or is older than 30 days, is removed where its process is gone.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     place = Path(folder) / "a.cue"
+    ...     Autosave(place).keep("cue 1 # typed")
+    ...     [each.text for each in unsaved_texts(place, "cue 1")]
+    ['cue 1 # typed']
+    """
+    found = []
+    for path, process in _kept(place):
+        if path == own:
+            continue
+        with contextlib.suppress(OSError, NotRegular, TooLarge, UnicodeDecodeError):
+            since_s, alive = path.lstat().st_mtime, process != os.getpid() and is_alive(process)
+            kept = read_limited(path, MOST_BYTES).decode("utf-8")
+            if kept != text and (alive or time.time() - since_s < KEPT_S):
+                found.append(Unsaved(path, kept, since_s, alive))
+            elif not alive:
+                path.unlink()
+    return sorted(found, key=lambda each: -each.since_s)
+
+
+def _kept(place: Path) -> Iterator[tuple[Path, int]]:
+    pattern = re.compile(rf"\.{re.escape(place.name)}\.(\d+)-\d+\.{SUFFIX}")
+    with contextlib.suppress(OSError), os.scandir(place.parent) as entries:
+        for entry in entries:
+            if (named := pattern.fullmatch(entry.name)) is not None and entry.is_file(follow_symlinks=False):
+                yield Path(entry.path), int(named[1])

@@ -1,0 +1,44 @@
+"""The sheet behind "?": what can be dragged, clicked and pressed."""
+
+from __future__ import annotations
+
+from ..pages.blocks import fragment
+
+SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
+    (
+        "Time line",
+        (
+            "drag a filled dot: the corner moves, and the number in the text with it",
+            "move the pointer: the cursor reads all curves; click: it stays there",
+            "[ and ] choose a corner, arrows move it, with Shift ten times as far, Escape goes back to the cursor",
+            "Left, Right, Home, End move the cursor",
+        ),
+    ),
+    (
+        "Text",
+        (
+            "Ctrl+Space offers what may follow; Enter or Tab takes it",
+            "F8 goes to the next error, Ctrl+. takes its correction",
+            "Ctrl+F searches, Ctrl+/ makes a line a comment, Ctrl+D selects the next occurrence",
+            "Ctrl+Z and Ctrl+Shift+Z undo and redo text, drags and applied edits; Ctrl+S saves the file",
+            "Tab, with no offer open, leaves the text",
+        ),
+    ),
+    (
+        "Set",
+        (
+            "click a cell, or choose it with arrows and Enter: both icons, why they are confused, the cheapest edit",
+            "choose: the best few icons; Keep these takes the others out of the text (Undo brings them back)",
+        ),
+    ),
+    ("Safety", ("click the badge: every limit that was judged",)),
+)
+
+
+def help_html() -> str:
+    """Return the sheet as HTML.
+
+    >>> "F8" in help_html()
+    True
+    """
+    return "".join(f"{fragment('block', head, 'th-head')}{fragment('points', lines)}" for head, lines in SHEET)

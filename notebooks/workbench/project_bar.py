@@ -1,0 +1,277 @@
+"""The bar above the tabs: file, icons, rig, undo, and the messages about them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import ipywidgets as widgets
+
+from ..files.outputs import OutputError
+from ..pages.blocks import fragment
+from .help_sheet import help_html
+from .project import SHIPPED, Project
+
+if TYPE_CHECKING:
+    from .design_view import DesignView
+
+ICON_VERBS = ("New icon", "Duplicate", "Rename", "Delete")
+
+
+class ProjectBar:
+    """Widgets of one ``Project``: ``box`` is the bar with the panel that its buttons open below it."""
+
+    def __init__(self, project: Project, view: DesignView) -> None:
+        self.project, self.view = project, view
+        self.title, self.said = widgets.HTML(), widgets.HTML()
+        self.buttons = {
+            name: self._button(name, hint, act)
+            for name, hint, act in (
+                ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
+                ("Save", "to the file it came from (Ctrl+S)", self.save),
+                ("Save as", "under another name", lambda: self._toggle("save")),
+                ("Download", "text, rig and pictures", lambda: self._toggle("download")),
+                ("Icon", "new, duplicate, rename, delete", lambda: self._toggle("icon")),
+                ("Undo", "Ctrl+Z in the text", lambda: self._step("undo")),
+                ("Redo", "Ctrl+Shift+Z in the text", lambda: self._step("redo")),
+                ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
+            )
+        }
+        self.rig = widgets.Dropdown(description="rig", layout={"width": "170px"})
+        self.rig.style.description_width = "auto"
+        self._offer_rigs()
+        self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
+        self._panels = {"open": self._open_panel(), "save": self._save_panel(), "icon": self._icon_panel()}
+        self.links = widgets.HTML()
+        self._panels["download"] = self.links
+        self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
+        self.panel = widgets.VBox([]).add_class("thermicon-panel")
+        self.shown: str | None = None
+        self.offer = self._offer_panel()
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon")]
+        rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
+        self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
+        self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
+        project.design.on_change(self.renew)
+        self.renew()
+        self.beside(design=True)
+        self._show_offer()
+
+    def renew(self) -> None:
+        """Say anew what the project is, and what may cost somebody their text."""
+        project, history = self.project, self.project.design.history
+        kind = "th-caution" if project.dirty else ""
+        self._set(self.title, fragment("marked", project.title, f"thermicon-file {kind}".strip()))
+        self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.can_undo, not history.can_redo
+        self.buttons["Save"].disabled = not project.dirty and project.document is not None
+        self.say(project.warning(), "th-caution")
+
+    def say(self, text: str, kind: str = "th-good") -> None:
+        """Show a sentence below the bar; none hides the line."""
+        self._set(self.said, fragment("block", text, f"th-note {kind}") if text else "")
+        self.said.layout.display = "" if text else "none"
+
+    def save(self) -> None:
+        """Save to the file, or ask for a name where there is none."""
+        if self.project.document is None:
+            self._open("save")
+            return
+        path = self.project.save()
+        self._after(f"saved {path.name}")
+
+    def beside(self, design: bool) -> None:
+        """Show undo and redo here where the design view, which has its own, is not shown."""
+        for name in ("Undo", "Redo"):
+            self.buttons[name].layout.display = "none" if design else ""
+
+    def saved_by_key(self) -> None:
+        """Ctrl+S in the text: where there is no file, the notebook's own saving is enough."""
+        if self.project.document is not None:
+            self._safely(self.save)
+
+    def hide_offer(self) -> None:
+        """The page itself offers a newer text."""
+        self.offer.layout.display = "none"
+
+    def decided(self) -> None:
+        """The page's own offer was decided on; what the kernel kept is older."""
+        self.project.discard()
+        self._show_offer()
+
+    def take_rig(self, name: str) -> None:
+        """Load a rig by name or path, and show the icons on it."""
+        from thermicon.circuit import Rig
+
+        self.view.take_rig(Rig.load(name))
+
+    def _take_rig(self, name: str) -> None:
+        path = self.project.folder / name
+        self.take_rig(str(path) if name.endswith(".toml") else name)
+        self.say("")
+
+    def _offer_rigs(self) -> None:
+        from thermicon.circuit import rig_names
+
+        nominal = self.project.design.nominal.name
+        files = sorted(path.name for path in Path(self.project.folder).glob("*.toml"))[:50]
+        names = list(dict.fromkeys([nominal, *rig_names(), *files]))
+        self.rig.options = names
+        self.rig.value = nominal
+
+    def _open_panel(self) -> widgets.Widget:
+        self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
+        self.preview = widgets.HTML(layout={"flex": "1 1 260px", "min_width": "0"})
+        self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
+        for control in (self.files, self.path):
+            control.style.description_width = "36px"
+        self.files.observe(lambda change: self._safely(lambda: self._preview(change["new"])), "value")
+        go = self._button("Open it", "open what is selected or typed", self._open_selected)
+        left = widgets.VBox([self.files, widgets.Box([self.path, go])])
+        return widgets.Box([left, self.preview]).add_class("thermicon-row")
+
+    def _save_panel(self) -> widgets.Widget:
+        self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
+        self.overwrite = widgets.Checkbox(value=False, description="overwrite", indent=False, layout={"width": "110px"})
+        go = self._button("Save it", "write the file", self._save_as)
+        return widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
+
+    def _icon_panel(self) -> widgets.Widget:
+        self.icon_name = widgets.Text(placeholder="new name", description="name", layout={"width": "210px"})
+        self.icon_name.style.description_width = "auto"
+        verbs = {name: self._button(name, "", lambda name=name: self._icon(name)) for name in ICON_VERBS}  # type: ignore[misc]
+        self.verbs = verbs
+        self.about = widgets.HTML()
+        return widgets.Box(
+            [self.about, verbs["New icon"], verbs["Duplicate"], verbs["Delete"], self.icon_name, verbs["Rename"]]
+        ).add_class("thermicon-row")
+
+    def _offer_panel(self) -> widgets.Box:
+        self.offered = widgets.HTML()
+        yes = self._button("Restore it", "as a step that can be undone", self._restore)
+        no = self._button("Discard", "drop the unsaved text", self._discard)
+        return widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
+
+    def _show_offer(self) -> None:
+        offers = self.project.offers
+        self.offer.layout.display = "" if offers else "none"
+        if offers:
+            who = " in another workbench that is still open" if offers[0].alive else ""
+            said = f"Unsaved text of {self.project.name} was typed {offers[0].age}{who}:"
+            self._set(self.offered, fragment("marked", said, ""))
+
+    def _restore(self) -> None:
+        self.project.restore()
+        self._show_offer()
+        self._after("the unsaved text is in the editor; Undo takes it back out")
+
+    def _discard(self) -> None:
+        self.project.discard()
+        self._show_offer()
+
+    def _preview(self, name: str | None) -> None:
+        """What a shipped set holds, or where a file is."""
+        if not name:
+            return
+        if not name.startswith(SHIPPED):
+            self._set(self.preview, fragment("block", str(self.project.folder / name), "th-soft"))
+            return
+        from thermicon.icons import load_library
+
+        icons = load_library(name.removeprefix(SHIPPED))
+        lines = [f"{each.name}: {each.metadata.means}" if each.metadata.means else each.name for each in icons.entries]
+        more = [f"and {len(lines) - 8} more"] if len(lines) > 8 else []
+        head = fragment("block", icons.title or icons.name, "th-head")
+        source = "; ".join(text for text in (icons.metadata.by, icons.metadata.doi) if text)
+        self._set(self.preview, f"{head}{fragment('points', lines[:8] + more)}{fragment('block', source, 'th-soft')}")
+
+    def _open_selected(self) -> None:
+        source = self.path.value.strip() or self.files.value
+        if not source:
+            raise OutputError("select what is to be opened, or type its path")
+        self.project.open(source)
+        self.path.value = ""
+        self._offer_rigs()
+        self._show_offer()
+        self._after("")
+
+    def _save_as(self) -> None:
+        path = self.project.save_as(self.name.value, self.overwrite.value)
+        self.overwrite.value = False
+        self._after(f"saved {path}")
+
+    def _icon(self, verb: str) -> None:
+        project, shown = self.project, self.project.design.scene.icon
+        if verb == "New icon":
+            project.new_icon()
+        elif shown is None:
+            raise ValueError("there is no icon to change yet")
+        elif verb == "Duplicate":
+            project.duplicate(shown)
+        elif verb == "Delete":
+            project.delete(shown)
+        else:
+            project.rename(shown, self.icon_name.value)
+        self.view.refresh()
+        self.renew()
+        self._about()
+
+    def _step(self, kind: str) -> None:
+        self.view.step(kind)
+        self.renew()
+
+    def _after(self, said: str) -> None:
+        """Close the panel, send the text to the page, and say what was done."""
+        self._open(None)
+        self.view.refresh()
+        self.renew()
+        if said and not self.project.warning():
+            self.say(said)
+
+    def _toggle(self, name: str) -> None:
+        self._open(None if self.shown == name else name)
+
+    def _open(self, name: str | None) -> None:
+        self.shown = name
+        if name == "open":
+            self.files.options = self.project.openable()
+            self._preview(self.files.value)
+        elif name == "save" and not self.name.value:
+            self.name.value = self.project.name if self.project.name.endswith(".cue") else f"{self.project.name}.cue"
+        elif name == "icon":
+            self._about()
+        elif name == "download":
+            self._offer_downloads()
+        self.panel.children = () if name is None else (self._panels[name],)
+
+    def _offer_downloads(self) -> None:
+        """Links to the text, the rig and the picture of the icon that is shown."""
+        from .downloads import figure_files, link, rig_text
+        from .scene_plot import scene_figure
+
+        design = self.project.design
+        stem = Path(self.project.name).stem
+        files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": rig_text(design.rig).encode()}
+        if design.scene.drawing is not None:
+            files |= figure_files(f"{design.scene.icon}-on-{design.rig.name}", scene_figure(design.scene))
+        self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
+
+    def _about(self) -> None:
+        icon = self.project.design.scene.icon
+        self._set(self.about, fragment("marked", icon or "no icon", "th-head"))
+
+    def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
+        made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})
+        made.on_click(lambda _: self._safely(act))
+        return made
+
+    def _safely(self, act: Callable[[], None]) -> None:
+        try:
+            act()
+        except Exception as wrong:  # a message is better than a page that goes silent
+            self.say(str(wrong) or type(wrong).__name__, "th-bad")
+
+    @staticmethod
+    def _set(part: Any, value: str) -> None:
+        if part.value != value:
+            part.value = value

@@ -1,0 +1,84 @@
+"""What axe, an independent checker, finds in the views of the workbench, its page and a report: nothing serious."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from tests.browser.jupyter import Server
+from tests.browser.onbench import open_tab, type_text, wait_until_drawn, wait_until_refined
+
+RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
+SERIOUS = ("serious", "critical")
+
+
+def findings(page: Page, within: str | None = None) -> list[dict[str, Any]]:
+    """What is serious or critical, with the elements."""
+    found = Axe().run(page, context=within, options=RULES).response["violations"]
+    return [
+        {"rule": each["id"], "where": [node["html"][:160] for node in each["nodes"][:4]]}
+        for each in found
+        if each["impact"] in SERIOUS
+    ]
+
+
+def told(found: list[dict[str, Any]]) -> str:
+    return json.dumps(found, indent=1, ensure_ascii=False)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_no_view_of_the_page_has_a_serious_finding(
+    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path], scheme: Any
+) -> None:
+    with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
+        shutil.copy(shipped, tmp_path / "workbench.ipynb")
+    page.emulate_media(color_scheme=scheme)
+    page.goto(serve_page(tmp_path).url)
+    wait_until_drawn(page)
+    wrong = {"design": findings(page)}
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert (ground == "rgb(20, 23, 26)") == (scheme == "dark")
+    for name in ("Open", "Save as", "Icon", "?"):
+        page.get_by_role("button", name=name, exact=True).click()
+        page.wait_for_timeout(300)
+        wrong[name] = findings(page, ".thermicon-project")
+    page.get_by_role("button", name="?", exact=True).click()
+    open_tab(page, "Set")
+    wait_until_refined(page)
+    page.wait_for_timeout(3000)
+    wrong["set"] = findings(page)
+    shot(f"axe-set-{scheme}")
+    open_tab(page, "Export")
+    expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
+    wrong["export"] = findings(page)
+    shot(f"axe-export-{scheme}")
+    open_tab(page, "Design")
+    type_text(page, "cue 1; icon a { hold for 1 }")
+    expect(page.locator(".tm-status")).to_contain_text("1 error")
+    wrong["error"] = findings(page)
+    shot(f"axe-error-{scheme}")
+    wrong = {view: found for view, found in wrong.items() if found}
+    assert wrong == {}, json.dumps(wrong, indent=1, ensure_ascii=False)
+
+
+def test_a_report_has_no_serious_finding(page: Page, tmp_path: Path) -> None:
+    from typer.testing import CliRunner
+
+    from thermicon.notebooks.cli.main import app
+
+    cue = tmp_path / "two.cue"
+    cue.write_text("cue 1\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\nicon b { pulse warm by 3 K for 2 s }\n")
+    report = tmp_path / "report.html"
+    done = CliRunner().invoke(app, ["rank", str(cue), "--people", "4", "--parameters", "0", "--report", str(report)])
+    assert done.exit_code == 0, done.output
+    page.goto(report.as_uri())
+    found = findings(page)
+    assert found == [], told(found)
