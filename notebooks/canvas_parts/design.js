@@ -1,7 +1,7 @@
 // The design view: text on the left, time line on the right, and what is true of both above and below.
 
 const BADGES = {
-  green: { word: "safe", sign: "\u2713" },
+  green: { word: "limits kept", sign: "\u2713" },
   amber: { word: "caution", sign: "!" },
   red: { word: "not safe", sign: "\u2715" },
   grey: { word: "not judged", sign: "?" },

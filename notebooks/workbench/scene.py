@@ -229,7 +229,7 @@ def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
 def _badge(verdict: SafetyVerdict) -> Badge:
     findings = verdict.findings
     if not findings:
-        return Badge("green", "safe: no safety limit is exceeded")
+        return Badge("green", "limits kept: in this simulation (export judges worst cases)")
     first = findings[0]
     unit = "" if first.unit == "1" else f" {first.unit}"
     side = "above" if first.upper else "below"
