@@ -10,9 +10,9 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array, Index
+from ..cores import cores
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .cores import cores
 from .network import RECORDED, SKIN, Network, network_of
 
 

@@ -23,7 +23,7 @@ FOLDER = "leave-out"
 
 def leave_out_files(output: Path | None, keep: Path | None, seed: int) -> None:
     """Sample the posterior, leave every experiment out, score the variants; what is done already is not done again."""
-    from thermicon.circuit.solver.cores import cores
+    from thermicon.circuit.cores import cores
     from thermicon.perception.inference.posterior import Posterior
     from thermicon.perception.posterior import left_out_file, variant_scores
     from thermicon.perception.posterior.diagnostics import require_extra

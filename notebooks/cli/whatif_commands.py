@@ -234,7 +234,7 @@ def calibrate_command(
     check_output(output, (".csv",), "a table of draws")
     if keep is not None:
         check_folder(keep)
-    from thermicon.circuit.solver.cores import cores
+    from thermicon.circuit.cores import cores
     from thermicon.perception.inference.posterior import Posterior
     from thermicon.perception.observer.draws_file import to_text, variant_named
     from thermicon.perception.posterior.diagnostics import require_extra

@@ -9,7 +9,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any, TypeVar
 
-from thermicon.circuit.solver.cores import at_most, cores
+from thermicon.circuit.cores import at_most, cores
 
 SMALL = 200_000
 MOST_THREADS = 8

@@ -155,7 +155,7 @@ def plan(
 
     Parameters
     ----------
-    icons, rig, norm, tracking
+    icons, rig
         As in `rank`.
     other
         A second set, to be distinguished from the first by its proportion correct.
@@ -169,6 +169,8 @@ def plan(
         Draws of the posterior, each with a laboratory around it.
     seed
         Seed of all chance.
+    norm, tracking
+        As in `rank`.
     observer
         A table of posterior draws, such as `observed` keeps, or a model that has one (None: the shipped draws).
     progress

@@ -191,7 +191,7 @@ def locally(job: Job, numbers: list[int], workers: int | None = None) -> Iterato
 
     At most two batches per worker are in memory.
     """
-    from thermicon.circuit.solver.cores import cores
+    from thermicon.circuit.cores import cores
 
     each = in_order(lambda number: run(job, number), numbers, workers or cores())
     yield from zip(numbers, each, strict=True)

@@ -87,7 +87,7 @@ def _quiet() -> Iterator[None]:
 
 def _run(job: Job, number: int) -> tuple[str, BatchResult]:
     """Runs on a worker: the hash of its code, and the batch."""
-    from thermicon.circuit.solver.cores import at_most
+    from thermicon.circuit.cores import at_most
 
     with at_most(1):
         return code_digest(), run(job, number)

@@ -170,10 +170,12 @@ def frontier(
         Largest choice; fewer where the pool has fewer icons that can be played.
     objective
         What a choice maximises: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
-    people, seed, tracking, norm, observer
+    people, seed, tracking, norm
         As in `rank`.
     most_s
         Most time of all chosen icons together, s; None: any.
+    observer
+        An observer or its file, as in `rank`.
     progress
         Called with (steps done, steps in all).
 

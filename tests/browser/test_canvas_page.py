@@ -32,7 +32,7 @@ def test_a_view_greets_and_draws_the_first_frame(drawn: Bench) -> None:
         "view": "design",
     }
     assert drawn.text == TEXT
-    assert drawn.page.locator(".tm-pill").inner_text() == "✓ safe"
+    assert drawn.page.locator(".tm-pill").inner_text() == "✓ limits kept"
     assert [option.inner_text() for option in drawn.page.locator(".tm-picker option").all()] == ["dip", "rise"]
     assert drawn.page.locator(".tm-base").evaluate(INKED) > 1_000
     measured = drawn.page.evaluate("__thermicon.design")

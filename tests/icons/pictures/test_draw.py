@@ -275,7 +275,7 @@ def test_the_library_is_a_table_with_pictures() -> None:
 
 def test_an_unknown_shipped_set_is_told() -> None:
     with pytest.raises(
-        KeyError, match=r"no shipped set is called 'six-icon'; did you mean six-icons\? there are: cool"
+        KeyError, match=r"no shipped set is called 'six-icon'; did you mean six-icons\? there are: calibration"
     ):
         library()["six-icon"]
     assert "six-icon" not in library()

@@ -52,7 +52,11 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     assert (meta["type"], meta["view"], meta["seq"], meta["text"], meta["ms"]) == ("frame", "design", 7, None, 4.2)
     assert (meta["can_undo"], meta["can_redo"], meta["stale"]) == (True, False, False)
     assert (meta["icons"], meta["icon"], meta["troubles"]) == (["dip"], "dip", [])
-    assert meta["badge"] == {"colour": "green", "text": "limits kept: in this simulation (export judges worst cases)", "more": []}
+    assert meta["badge"] == {
+        "colour": "green",
+        "text": "limits kept: in this simulation (export judges worst cases)",
+        "more": [],
+    }
     assert meta["time"] == {"t0": 0.0, "dt": pytest.approx(0.01), "n": 1801}
     assert [handle["t"] for handle in meta["handles"]] == [2.0, 6.0, 8.0]
     assert meta["handles"][0] == {

@@ -36,7 +36,10 @@ def test_a_figure_has_the_panels_of_the_overview_with_bands_and_marks(rig: Rig) 
         assert word in said
     assert "felt peak (cold)\n" in labels(figure, 3)
     assert "reported as cold" in labels(figure, 3)
-    assert figure.get_suptitle() == "dip on the thenar rig\nGREEN  limits kept: in this simulation (export judges worst cases)"
+    assert (
+        figure.get_suptitle()
+        == "dip on the thenar rig\nGREEN  limits kept: in this simulation (export judges worst cases)"
+    )
 
 
 def test_unreached_stretches_are_shaded_and_the_title_says_why(rig: Rig) -> None:

@@ -126,6 +126,7 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     assert list(one.to_dict()["at_own_range"]) == [
         *("worst_pair", "d_prime", "proportion_correct", "information_bits", "bits_per_s"),
         *("proportion_correct_interval_new_laboratory", "information_bits_interval_new_laboratory"),
+        *("d_prime_interval_new_laboratory", "icons"),
     ]
 
 
