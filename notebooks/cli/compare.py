@@ -13,7 +13,8 @@ from ..files.cues import pick, read_set
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.compare_inputs import Request, check_request, kind_of_both
-from ..text.messages import load_rig, note, usage
+from ..text.messages import DEFAULT_RIG, load_rig, note, usage
+from ..text.set_matrix import FEWEST, show_matrix
 from ..text.tables import show, table
 from .simulate import headline
 
@@ -41,6 +42,9 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
     """Compare two rigs, icons, sets or tables: one table per pair on stdout, and a figure on request."""
     kind = kind_of_both(first, second)
     check_request(kind, request)
+    if kind == "set" and (request.rigs or (request.icon is None and not _common(first, second))):
+        _matrix(first, second, request, figure)
+        return
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
         check_separate([first, second], [figure])
@@ -88,6 +92,32 @@ def _icons(first: str, second: str, request: Request) -> list[Comparison]:
     return [_played("", (icons[0], icons[1]), (rig, rig), (first, second))]
 
 
+def _common(first: str, second: str) -> list[str]:
+    """Names of icons that both sets have, in the order of the first."""
+    names = [[icon.name for icon in read_set([name])] for name in (first, second)]
+    known = set(names[1])
+    return [name for name in names[0] if name in known]
+
+
+def _matrix(first: str, second: str, request: Request, figure: Path | None) -> None:
+    """Print scores of both sets, on each rig; for sets whose icons have other names, and for several rigs."""
+    if figure is not None:
+        raise usage("curves are compared of icons with the same name on one rig: leave it out", "--figure")
+    if request.rigs and request.rig is not None:
+        raise usage("the rigs are those of --rigs", "--rig")
+    sets = dict(zip(_short((first, second)), (read_set([first]), read_set([second])), strict=True))
+    for name, icons in sets.items():
+        if not FEWEST <= len(icons) <= MOST_IN_A_SET:
+            raise LogError(f"{name}: sets of {FEWEST} to {MOST_IN_A_SET} icons are compared, this one has {len(icons)}")
+    names = request.rigs or (request.rig or DEFAULT_RIG,)
+    show_matrix(sets, {Path(name).name: load_rig(name, request.changes) for name in names})
+    if len(names) == 1:
+        one, other = sets.values()
+        sentence = compare_identification(one, other, load_rig(names[0], request.changes))
+        if sentence:
+            show("", f"A {next(iter(sets))}, B {list(sets)[1]}", sentence)
+
+
 def _sets(first: str, second: str, request: Request) -> list[Comparison]:
     sets = [read_set([name]) for name in (first, second)]
     names = [[icon.name for icon in icons] for icons in sets]
@@ -95,10 +125,6 @@ def _sets(first: str, second: str, request: Request) -> list[Comparison]:
     common = [name for name in names[0] if name in known]
     if request.icon is not None:
         common = [pick(icons, request.icon)[0].name for icons in sets][:1]
-    if not common:
-        few = [", ".join(own[:20] + ["…"] * (len(own) > 20)) for own in names]
-        has = "; ".join(f"{file} has {own}" for file, own in zip((first, second), few, strict=True))
-        raise LogError(f"no icon has the same name in both sets: {has}; compare two icons as FILE:ICON")
     alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]
     if alone and request.icon is None:
         note(f"only in one of the two sets: {', '.join(alone)}")

@@ -135,6 +135,10 @@ def compare_command(
     align: Annotated[
         bool, typer.Option("--align", help="For a trace and a log: shift B in time to where it is most like A.")
     ] = False,
+    rigs: Annotated[
+        str | None,
+        typer.Option("--rigs", metavar="R,R", help="For two sets: score both on each of these rigs, as a table."),
+    ] = None,
     figure: Figure = None,
     rig: RigName = None,
     changes: Changes = None,
@@ -142,13 +146,15 @@ def compare_command(
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
-    .csv or .parquet files with time_s and columns of a trace.
+    .csv or .parquet files with time_s and columns of a trace. Two sets without a common name of an icon are compared by
+    what is predicted for them.
     """
     check_changes(changes or [])
     from ..text.compare_inputs import Request
     from .compare import compare
 
-    compare(first, second, Request(file, icon, rig, tuple(changes or ()), align), figure)
+    several = tuple(name.strip() for name in (rigs or "").split(",") if name.strip())
+    compare(first, second, Request(file, icon, rig, tuple(changes or ()), align, several), figure)
 
 
 def sensitivity_command(

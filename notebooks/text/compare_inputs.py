@@ -11,6 +11,7 @@ TABLES = (".csv", ".parquet")
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
 
+RIGS = "belongs to two sets"
 CLOCKS = "belongs to a trace and a log, which have clocks of their own"
 
 
@@ -23,6 +24,7 @@ class Request:
     rig: str | None = None
     changes: tuple[str, ...] = ()
     align: bool = False
+    rigs: tuple[str, ...] = ()
 
 
 def kind_of(text: str, option: str) -> str:
@@ -82,16 +84,23 @@ def check_request(kind: str, request: Request) -> None:
         "--icon": request.icon is not None,
         "--rig": request.rig is not None,
         "--set": bool(request.changes),
+        "--rigs": bool(request.rigs),
         "--align": request.align,
     }
     misplaced = {
-        "rig": {"--rig": "the two rigs are A and B", "--align": CLOCKS},
-        "icon": {"--file": "belongs to two rigs", "--icon": "the two icons are A and B", "--align": CLOCKS},
+        "rig": {"--rig": "the two rigs are A and B", "--align": CLOCKS, "--rigs": RIGS},
+        "icon": {
+            "--file": "belongs to two rigs",
+            "--icon": "the two icons are A and B",
+            "--align": CLOCKS,
+            "--rigs": RIGS,
+        },
         "set": {"--file": "belongs to two rigs; the two sets are A and B", "--align": CLOCKS},
         "table": {
             "--file": "belongs to two rigs",
             "--rig": "traces and logs are compared as they are",
             "--set": "traces and logs are compared as they are",
+            "--rigs": RIGS,
         },
     }
     for option, why in misplaced[kind].items():

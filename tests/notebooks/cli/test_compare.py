@@ -90,11 +90,45 @@ def test_the_better_of_two_sets_is_told(cli: Cli, two: Path, tmp_path: Path) -> 
     assert warned.count("warning:") == len({line for line in warned.splitlines() if line.startswith("warning:")}) > 0
 
 
-def test_two_sets_without_a_common_name(cli: Cli, two: Path) -> None:
-    said = cli("compare", two, "six-icons")
-    assert (said.exit_code, said.stdout) == (1, "")
-    assert f"no icon has the same name in both sets: {two} has cool-step, warm-step; six-icons has" in said.stderr
-    assert "compare two icons as FILE:ICON" in said.stderr
+def test_two_sets_without_a_common_name_are_scored(cli: Cli, two: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.cue"
+    other.write_text(two.read_text(encoding="utf-8").replace("cool-step", "dip").replace("warm-step", "glow"))
+    said = cli("compare", two, other)
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert "set rig icons correct d′ bits worst pair" in words
+    assert f"A {two.name}, B other.cue predicted: no difference between A and B" in words
+    rows = [line.split() for line in said.stdout.splitlines() if " thenar " in line]
+    assert [row[0] for row in rows] == [two.name, "other.cue"]
+    assert rows[0][2:6] == rows[1][2:6]
+
+
+def test_sets_on_several_rigs_are_a_table(cli: Cli, two: Path) -> None:
+    said = cli("compare", two, "six-icons", "--rigs", "thenar, fingertip")
+    assert said.exit_code == 0, said.stderr
+    rows = [line.split()[:3] for line in said.stdout.splitlines() if " thenar " in line or " fingertip " in line]
+    assert rows == [
+        [two.name, "thenar", "2"],
+        [two.name, "fingertip", "2"],
+        ["six-icons", "thenar", "6"],
+        ["six-icons", "fingertip", "6"],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "told"),
+    [
+        (("six-icons", "wave-shapes", "--rigs", "thenr"), 1, "did you mean thenar"),
+        (("six-icons", "wave-shapes", "--rigs", "thenar", "--rig", "thenar"), 2, "the rigs are those of --rigs"),
+        (("six-icons", "wave-shapes", "--figure", "a.png", "--rigs", "thenar"), 2, "leave it out"),
+        (("thenar", "fingertip", "--rigs", "thenar"), 2, "belongs to two sets"),
+        (("six-icons", "search-space", "--rigs", "thenar"), 1, "sets of 2 to 30 icons are compared"),
+    ],
+)
+def test_bad_comparisons_of_sets(cli: Cli, options: tuple[object, ...], code: int, told: str) -> None:
+    said = cli("compare", *options)
+    assert said.exit_code == code
+    assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
 def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
