@@ -90,8 +90,10 @@ def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:
 def _goal_value(part: dict[str, Any]) -> str:
     """What was predicted of a part, in its unit, and how far that is from what is wanted."""
     value, wanted = part["value"], part["wanted"]
-    if value is None or isinstance(value, str):
-        return value or "none"
+    if isinstance(value, str):
+        return f"{value} in this simulation; export judges the worst case"
+    if value is None:
+        return "none"
     unit = part["text"].split(" for ")[0].split()[-1]
     share = unit == "%"
     shown, gap = (100.0 * value, 100.0 * abs(value - wanted)) if share else (value, abs(value - wanted))

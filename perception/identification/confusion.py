@@ -191,13 +191,16 @@ def _two(d_prime: Array, favour: Array) -> Array:
 
 
 def shared_among_identical(named: Array, distances: Array, favour: Array) -> Array:
-    """Answers shared equally among identical icons, among which rounding would decide otherwise."""
-    fair = (favour[:, :, None] == favour[:, None]).all(axis=0)
-    same = ((distances < 1e-9).all(axis=0) & fair).astype(np.float64)
-    mean = same / same.sum(axis=1, keepdims=True)
-    if mean.max(axis=1).min() == 1.0:
+    """Answers shared equally among icons that are identical for a person, such as several that one does not feel.
+
+    The order of the file, or rounding, would decide among them otherwise.
+    """
+    fair = favour[:, :, None] == favour[:, None]
+    same = ((distances < 1e-9) & fair).astype(np.float64)
+    mean = same / same.sum(axis=2, keepdims=True)
+    if mean.max(axis=2).min() == 1.0:
         return named
-    shared: Array = np.einsum("pij,jk->pik", np.einsum("ij,pjk->pik", mean, named), mean)
+    shared: Array = np.einsum("pij,pjk->pik", np.einsum("pij,pjk->pik", mean, named), mean)
     return shared
 
 

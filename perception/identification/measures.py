@@ -69,7 +69,7 @@ def information_bits(confusion: ArrayLike) -> Array:
     2.585
     """
     joint = np.asarray(confusion, dtype=np.float64) / np.shape(confusion)[-1]
-    return _mutual_information(joint)
+    return np.maximum(_mutual_information(joint), 0.0)
 
 
 def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> PluginInformation:

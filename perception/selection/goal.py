@@ -211,6 +211,8 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
         units = " or ".join(each or "no unit" for each in known.units)
         raise GoalError(f"{where}: {name} is given in {units}, not {unit or 'without a unit'}")
     limit = round(value * known.units[unit], 12)
+    if name == "count" and limit != int(limit):
+        raise GoalError(f"{where}: count is a whole number of icons")
     if not known.least <= limit <= known.most or not limit > 0.0:
         first = next(iter(known.units))
         span = f"{known.least / known.units[first]:g} to {known.most / known.units[first]:g} {first}".rstrip()

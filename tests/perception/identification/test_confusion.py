@@ -144,3 +144,16 @@ def test_icons_that_nobody_can_tell_apart_share_their_answers_equally() -> None:
     assert named[1, 1] == pytest.approx(named[1, 2], abs=1e-12)
     assert named[1] == pytest.approx(named[2], abs=1e-12)
     assert named.sum(axis=1) == pytest.approx(1.0)
+
+
+def test_icons_that_one_person_does_not_feel_are_named_alike_in_any_order() -> None:
+    felt = 3.0 * (1.0 - np.eye(4))
+    faint = felt.copy()
+    faint[:3, :3] = 0.0  # this person feels only the last
+    found = confuse(np.stack([felt, faint]), lapse=0.0, seed=1).probability
+    assert found[1, :3, :3] == pytest.approx(np.full((3, 3), found[1, 0, 0]), abs=1e-12)
+    assert found[0].argmax(axis=1).tolist() == [0, 1, 2, 3]
+    order = [3, 1, 0, 2]
+    turned = confuse(np.stack([felt, faint])[:, order][:, :, order], lapse=0.0, seed=1).probability
+    assert np.diagonal(turned[1])[0] == pytest.approx(np.diagonal(found[1])[3], abs=0.02)
+    assert np.diagonal(turned[1])[1:] == pytest.approx(np.diagonal(found[1])[:3], abs=0.02)

@@ -40,6 +40,7 @@ def test_the_strictest_of_several_counts() -> None:
         ("correct >= 2,5 %", "'5 %' at character 14 cannot be read"),
         ("", "it ends too early"),
         ("count 1", "count lies in 2 to 10000"),
+        ("count 6.5", "count is a whole number of icons"),
         ("time <= 9 s for 95 % of people", "time is the same for all people"),
         ("correct >= 9 % for 20 % of people", "for 50 % of people or more"),
         ("correct >= 90 %, correct >= 80 %", "are about the same: keep one of them"),
