@@ -155,7 +155,10 @@ def _result(
         for k, key in enumerate(keys)
     )
     fitted = problem.rig_at(solution.theta)
-    if stated := uncertainties(keys, parameters):
+    measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
+    if not measured:  # a voltage alone cannot show what the rig leaves out
+        notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
+    elif stated := uncertainties(keys, parameters):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
         fitted = fitted.with_(**changes, **{"uncertainty.reason": reason_of(start, sources)})
     alike = [

@@ -10,15 +10,18 @@ from ..program import own_version
 from ..rig.rig import Rig
 from ..rig.rig_text import toml_text
 from ..rig.rigfile import UncertaintyTable
+from ..rig.uncertainty import uncertainty_of
 from .identify import Parameter
 from .keys import FitKey
 
 DIGEST_DIGITS = 16
 MOST_LOGS_NAMED = 5
 PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
-LEAST = {"relative": 0.01, "K": 0.1}
-"""No less uncertainty is written: what is held fixed in a fit, skin above all, is not known better."""
+LEAST_SHARE = 0.5
+"""Share of the shipped uncertainty that is written at least: what a fit holds fixed, skin and heat sink above all, may
+bias it by more than its interval says, and the safety gate relies on it."""
 
+_SHIPPED = uncertainty_of({})
 LARGEST = {
     name: float(schema["anyOf"][0]["maximum"])
     for name, schema in UncertaintyTable.model_json_schema()["properties"].items()
@@ -37,7 +40,7 @@ def uncertainties(keys: Sequence[FitKey], parameters: Sequence[Parameter]) -> di
     for key, item in zip(keys, parameters, strict=True):
         if not key.uncertainty or not item.identified or (key.key in PLATES and not set(PLATES) <= identified):
             continue
-        least = LEAST[key.uncertainty.rpartition("_")[2]]
+        least = LEAST_SHARE * getattr(_SHIPPED, key.uncertainty)
         width = min(max(least, _rounded_up(item.half_width)), LARGEST[key.uncertainty])
         stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
     return stated
