@@ -1,4 +1,4 @@
-"""Logs held against the simulation before and after a fit: stuck and unplugged sensors, signs, clocks that drift."""
+"""Logs checked against the simulation before and after a fit: stuck and unplugged sensors, signs, clocks that drift."""
 
 from __future__ import annotations
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from thermicon.icons.number_text import number, percent
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.choices import OBJECTIVES, MostTime, check_totals
-from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
+from ..text.messages import check_changes, load_observer, load_rig, progress_bar, usage
 from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_tracking
 from ..text.tables import show, table
 
@@ -66,7 +66,7 @@ def frontier_command(
     from thermicon.perception.observer.channels import NORMS
 
     from ..files.cues import read_set, warn_of_frames
-    from .sweep import write_frame
+    from .sweep import write_study
 
     if norm not in NORMS:
         raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
@@ -86,18 +86,7 @@ def frontier_command(
             observer=model,
             progress=progress,
         )
-    if output is not None and output != STDOUT:
-        with complete_or_absent(output) as draft:
-            write_frame(found.to_frame(), draft)
-        note(f"wrote {output}")
-    if figure is not None:
-        drawn: Any = found.plot().figure
-        with complete_or_absent(figure) as draft:
-            drawn.savefig(draft, dpi=130)
-        note(f"wrote {figure}")
-    if output == STDOUT:
-        typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)
-    else:
+    if not write_study(found, output, figure):
         show_frontier(found, icons.title)
 
 

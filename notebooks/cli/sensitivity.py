@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import typer
+from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import percent
 
 from ..files.cues import read_set, warn_of_frames
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import check_draws, fail, load_observer, note, progress_bar, usage
+from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
+from ..text.messages import check_draws, fail, load_observer, progress_bar, usage
 from ..text.tables import show, table
-from .sweep import write_frame
+from .sweep import write_study
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -65,18 +63,7 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
             observer=model,
             progress=progress,
         )
-    if output is not None and output != STDOUT:
-        with complete_or_absent(output) as draft:
-            write_frame(found.to_frame(), draft)
-        note(f"wrote {output}")
-    if figure is not None:
-        drawn: Any = found.plot().figure
-        with complete_or_absent(figure) as draft:
-            drawn.savefig(draft, dpi=130)
-        note(f"wrote {figure}")
-    if output == STDOUT:
-        typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)
-    else:
+    if not write_study(found, output, figure):
         show_sensitivity(found, icons.title)
 
 

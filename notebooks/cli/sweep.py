@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import typer
 
@@ -20,6 +20,7 @@ from ..text.messages import Progress, fail, note, progress_bar, usage
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, Trace
@@ -27,6 +28,16 @@ if TYPE_CHECKING:
 
 MOST_VALUES = 10_000
 FORM = "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, or LOW:HIGH:Nlog for equal ratios"
+
+
+class Study(Protocol):
+    """What has a table and a figure."""
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return its table."""
+
+    def plot(self) -> Axes:
+        """Draw it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,6 +254,22 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary]) -> Figure:
     if (count := frame["icon"].nunique()) > MOST_ROWS:
         note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
     return sweep_map(frame, varied[0].key, varied[1].key)
+
+
+def write_study(found: Study, output: Path | None, figure: Path | None) -> bool:
+    """Write table and figure of a study where asked for; whether its table went to stdout, in place of a summary."""
+    if output is not None and output != STDOUT:
+        with complete_or_absent(output) as draft:
+            write_frame(found.to_frame(), draft)
+        note(f"wrote {output}")
+    if figure is not None:
+        drawn: Any = found.plot().figure
+        with complete_or_absent(figure) as draft:
+            drawn.savefig(draft, dpi=130)
+        note(f"wrote {figure}")
+    if output == STDOUT:
+        typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)
+    return output == STDOUT
 
 
 def write_frame(frame: pd.DataFrame, path: Path) -> None:

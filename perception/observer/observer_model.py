@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Self
@@ -85,9 +85,7 @@ class ObserverModel:
 
         """
         if path is None:
-            text = (DATA / "observer.toml").read_bytes()
-            digest = hashlib.sha256(text).hexdigest()
-            return cls(SHIPPED, digest, Observer.load(), None, variant_records(), _shipped_draws())
+            return cls(SHIPPED, _shipped_digest(), Observer.load(), None, variant_records(), _shipped_draws())
         file = Path(path)
         records = read_observer_file(file, ("temperature", "adapting"))
         draws = PosteriorDraws.load(file) if file.suffix.lower() == ".csv" else None
@@ -105,6 +103,10 @@ class ObserverModel:
     def __hash__(self) -> int:
         return hash((self.name, self.digest))
 
+    def for_jobs(self) -> ObserverModel | None:
+        """What batches need of it, without the draws: None for the shipped one, which every worker has."""
+        return replace(self, posterior=None) if self.key else None
+
     @property
     def key(self) -> str:
         """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
@@ -113,6 +115,11 @@ class ObserverModel:
     def __repr__(self) -> str:
         draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"
         return f"ObserverModel({self.name}, {draws})"
+
+
+@lru_cache(maxsize=1)
+def _shipped_digest() -> str:
+    return hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
 
 
 @lru_cache(maxsize=1)

@@ -207,7 +207,7 @@ def frontier(
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     pool = usable_icons(Selection(2, objective, most_s=most_s), members, traces, rig)
     able = [members[k] for k in pool.places]
-    job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen)
+    job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen, observer=model.for_jobs())
     largest = min(most, len(able))
     steps = job.batches + largest - 1
     done = 0

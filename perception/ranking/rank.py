@@ -160,8 +160,7 @@ def rank(
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
-    alone = None if not model.key else replace(model, posterior=None)
-    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, alone)
+    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
     report = _steps(progress, 2 + job.batches + draws + (choosing is not None))
     percepts = [perceive(trace, nominal) for trace in traces]
     report()

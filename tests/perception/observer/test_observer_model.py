@@ -8,7 +8,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
 from thermicon.icons import load_library
-from thermicon.perception import Observer, draw_people, rank, search
+from thermicon.perception import Observer, draw_people, frontier, rank, search
 from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -83,6 +83,14 @@ def test_a_search_with_another_observer_appraises_with_it(draws_file: Path) -> N
     usual = search(parse(text), rig, evaluations=10, people=4)
     numb = search(parse(text), rig, evaluations=10, people=4, observer=draws_file)
     assert numb.before.d_prime < usual.before.d_prime
+
+
+def test_a_frontier_with_other_draws_follows_them(draws_file: Path) -> None:
+    six, rig = load_library("six-icons"), Rig.load("thenar")
+    usual, numb = (
+        frontier(six, rig, people=8, most=2, objective="worst", observer=observer) for observer in (None, draws_file)
+    )
+    assert numb.points[0].d_prime < usual.points[0].d_prime
 
 
 def test_no_more_draws_than_there_are() -> None:
