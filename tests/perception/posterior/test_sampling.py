@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +17,7 @@ from thermicon.perception.posterior import learning, sampling
 from thermicon.perception.posterior.chains import Chain, Reference, begin, extend
 from thermicon.perception.posterior.diagnostics import diagnose, smoothed_weights
 from thermicon.perception.posterior.limit_features import LimitFeatures
-from thermicon.perception.posterior.sampling import sample, shipped_vector
+from thermicon.perception.posterior.sampling import in_the_middle, sample, shipped_vector
 from thermicon.perception.posterior.surrogate import Surrogate, fit_surrogate
 
 SIZE = 3
@@ -140,3 +142,14 @@ def test_features_of_the_limits_have_the_right_slopes() -> None:
             slopes[:, k], (features.at(vector + step) - features.at(vector - step)) / 2e-6, atol=1e-6
         )
     assert LimitFeatures.of(Posterior("heat flow").priors) is None
+
+
+def test_the_nominal_draw_is_nearest_to_the_medians_of_constants_and_of_predictions() -> None:
+    constant, offset = SimpleNamespace(mechanism="depth"), SimpleNamespace(mechanism="laboratories")
+    posterior: Any = SimpleNamespace(
+        priors=SimpleNamespace(each=(constant, offset)),
+        rows=(SimpleNamespace(key="latency"),),
+        predictions=lambda vector: {"latency": vector[0] ** 2},
+    )
+    vectors = np.array([[-2.0, 0.0], [0.9, 50.0], [1.0, 9.0], [1.1, 0.0], [4.0, 0.0]])
+    assert in_the_middle(posterior, vectors) == 2
