@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, percent
 
 from ..figures.differences import Aligned, align, differences, quantity, with_unit
+from ..figures.figure_look import SCREEN, Look
+from ..figures.print_figure import write_figure
 from ..files.cues import pick, read_set
-from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..text.compare_inputs import Request, check_request, kind_of_both
 from ..text.messages import DEFAULT_RIG, load_rig, note, usage
@@ -38,7 +40,7 @@ class Comparison:
     after: str = ""
 
 
-def compare(first: str, second: str, request: Request, figure: Path | None) -> None:
+def compare(first: str, second: str, request: Request, figure: Path | None, look: Look = SCREEN) -> None:
     """Compare two rigs, icons, sets or tables: one table per pair on stdout, and a figure on request."""
     kind = kind_of_both(first, second)
     check_request(kind, request)
@@ -52,8 +54,8 @@ def compare(first: str, second: str, request: Request, figure: Path | None) -> N
     if figure is not None:
         from ..figures.compare_figure import compare_figure
 
-        with complete_or_absent(figure) as draft:
-            compare_figure([(each.title, each.both) for each in made]).savefig(draft, dpi=130)
+        pairs = [(each.title, each.both) for each in made]
+        write_figure(compare_figure(pairs, across=look.across(3)), figure, look)
     for place, each in enumerate(made):
         if place:
             show("")

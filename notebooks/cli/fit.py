@@ -9,6 +9,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..figures.figure_look import (
+    SCREEN,
+    FigureData,
+    FigureFile,
+    FigureStyle,
+    FigureWidth,
+    Look,
+    NoTitle,
+    figure_look,
+)
+from ..figures.print_figure import write_figure
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_rig, note, usage
 from ..text.options import Changes, RigName
@@ -32,6 +43,7 @@ class Request:
     offset_K: float = OFFSET_K
     output: Path | None = None
     figure: Path | None = None
+    look: Look = SCREEN
 
 
 def fit_command(
@@ -51,10 +63,11 @@ def fit_command(
         Path | None,
         typer.Option("-o", "--output", metavar="NEW.toml", readable=False, help="Write the fitted rig as a rig file."),
     ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw measured, fitted and residuals."),
-    ] = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     plan: Annotated[
         bool, typer.Option("--plan", help="Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
@@ -92,7 +105,8 @@ def fit_command(
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
     if not 0 <= offset <= MOST_OFFSET_K:
         raise usage(f"{offset:g} K is outside 0 to {MOST_OFFSET_K:g} K", "--offset")
-    request = Request(keys, hold, fit_start, offset, output, figure)
+    look = figure_look(figure, width, style, no_title, figure_data)
+    request = Request(keys, hold, fit_start, offset, output, figure, look)
     if plan:
         show_plan(load_rig(rig, changes or []), request)
     else:
@@ -117,8 +131,7 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
     if request.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
 
-        with complete_or_absent(request.figure) as draft:
-            fit_figure(fitted).savefig(draft, dpi=130, format=request.figure.suffix.lower().removeprefix("."))
+        write_figure(fit_figure(fitted), request.figure, request.look)
     show_fit(fitted, rig)
     for path in (request.output, request.figure):
         if path is not None:

@@ -9,6 +9,7 @@ import typer
 
 from thermicon.icons.number_text import number, percent
 
+from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.choices import OBJECTIVES, MostTime, check_totals
 from ..text.messages import check_changes, load_observer, load_rig, progress_bar, usage
@@ -38,9 +39,11 @@ def frontier_command(
             "-o", "--output", metavar="OUT.csv", readable=False, help="Write the table to .csv or .parquet, or -."
         ),
     ] = None,
-    figure: Annotated[
-        Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the curve.")
-    ] = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -48,6 +51,7 @@ def frontier_command(
     check_changes(changes or [])
     check_tracking(tracking)
     check_totals(most_time, None)
+    look = figure_look(figure, width, style, no_title, figure_data)
     for option, value, least, highest in (
         ("--most", most, 2, 64),
         ("--people", people, 1, 100_000),
@@ -86,7 +90,7 @@ def frontier_command(
             observer=model,
             progress=progress,
         )
-    if not write_study(found, output, figure):
+    if not write_study(found, output, figure, look):
         show_frontier(found, icons.title)
 
 

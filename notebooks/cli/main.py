@@ -14,6 +14,15 @@ from typing import Annotated
 
 import typer
 
+from ..figures.figure_look import (
+    FigureData,
+    FigureFolder,
+    FigureFormat,
+    FigureStyle,
+    FigureWidth,
+    NoTitle,
+    figure_look,
+)
 from ..startup import is_command, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
@@ -164,11 +173,15 @@ def simulate_command(
         Path | None,
         typer.Option(
             "--figure",
-            metavar="OUT.png",
+            metavar="OUT",
             readable=False,
-            help="Draw an overview; several icons give one file each, OUT-NAME.png.",
+            help="Draw an overview, .pdf, .svg or .png; several icons give one file each, OUT-NAME.png.",
         ),
     ] = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     power: Annotated[
         bool, typer.Option("--power", help="With -o: add the electrical power of the module, power_W.")
     ] = False,
@@ -193,12 +206,13 @@ def simulate_command(
     if not (math.isfinite(rate) and rate > 0):
         raise usage(f"{rate:g} is not a number of samples per second above 0", "--rate")
     check_tail(tail)
+    look = figure_look(figure, width, style, no_title, figure_data)
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
-        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power)
+        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power, look)
     elif file is not None:
-        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power)
+        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power, look)
 
 
 @app.command("rank", rich_help_panel=PREDICT)
@@ -240,10 +254,12 @@ def rank_command(
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures to the folder DIR."),
-    ] = None,
+    figure: FigureFolder = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
+    figure_format: FigureFormat = None,
     report: ReportPage = None,
     workers: Workers = None,
     cluster: Cluster = None,
@@ -279,6 +295,7 @@ def rank_command(
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":
         raise usage("icons are chosen with the model; leave out --by rules", "--choose")
+    look = figure_look(figure, width, style, no_title, figure_data, figure_format)
     from .ranking import Request, rank_files
 
     request = Request(
@@ -301,7 +318,7 @@ def rank_command(
         cluster=cluster,
         keep=keep,
     )
-    rank_files(files, load_rig(rig, changes or []), request, json, figure, report)
+    rank_files(files, load_rig(rig, changes or []), request, json, figure, report, look)
 
 
 @app.command("rigs", rich_help_panel=SIMULATE)

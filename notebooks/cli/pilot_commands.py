@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
+from ..figures.print_figure import write_figure
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
@@ -56,9 +58,11 @@ def observed_command(
     tracking: Tracking = None,
     observer: ObserverFile = None,
     json: JsonOut = None,
-    figure: Annotated[
-        Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")
-    ] = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -70,6 +74,7 @@ def observed_command(
     check_changes(changes or [])
     check_numbers(draws, seed, norm)
     check_tracking(tracking)
+    look = figure_look(figure, width, style, no_title, figure_data)
     if json is not None:
         check_output(json, (), "JSON")
     if figure is not None:
@@ -104,7 +109,7 @@ def observed_command(
             observer=model,
             progress=progress,
         )
-    _write(found, json, figure, keep)
+    _write(found, json, figure, keep, look)
     if json == STDOUT:
         typer.echo(found.to_json())
         return
@@ -122,7 +127,7 @@ def check_numbers(draws: int, seed: int, norm: str) -> None:
         raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
 
 
-def _write(found: Observed, json: Path | None, figure: Path | None, keep: Path | None) -> None:
+def _write(found: Observed, json: Path | None, figure: Path | None, keep: Path | None, look: Look) -> None:
     """Write the outputs that were asked for, each complete or absent."""
     if json is not None and json != STDOUT:
         with complete_or_absent(json) as draft:
@@ -131,8 +136,7 @@ def _write(found: Observed, json: Path | None, figure: Path | None, keep: Path |
     if figure is not None:
         from ..figures.observed_figure import observed_figure
 
-        with complete_or_absent(figure) as draft:
-            observed_figure(found).savefig(draft, dpi=130)
+        write_figure(observed_figure(found, stacked=look.narrow), figure, look)
         note(f"wrote {figure}")
     if keep is not None:
         drawn = keep.with_suffix(".csv")

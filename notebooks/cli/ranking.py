@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from ..figures.figure_look import SCREEN, Look
 from ..files.cache import kept
 from ..files.cues import MOST_ICONS, read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
@@ -36,7 +37,7 @@ PLAIN_OPTIONS = (
     "observer",
     "goal",
 )
-PICTURES = (*FIGURE_SUFFIXES, ".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
+OTHER_PICTURES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +79,7 @@ def rank_files(
     json_out: Path | None,
     figures: Path | None,
     report_out: Path | None = None,
+    look: Look = SCREEN,
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, Task, rank
@@ -89,7 +91,7 @@ def rank_files(
     if json_out is not None:
         check_output(json_out, (), "JSON")
     check_report(report_out)
-    check_separate(files, [json_out, report_out])
+    check_separate(files, [json_out, report_out, figures])
     check_figures(figures)
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
@@ -131,7 +133,7 @@ def rank_files(
     if figures is not None:
         from ..figures.set_figures import write_figures
 
-        write_figures(ranking, icons, rig, figures)
+        write_figures(ranking, icons, rig, figures, look)
     near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
     if report_out is not None:
         from ..pages.report import report
@@ -154,14 +156,21 @@ def check_report(out: Path | None) -> None:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
 
 
-def check_figures(folder: Path | None) -> None:
-    """Fail for figures that are not to go to a folder."""
-    if folder is None:
+def check_figures(place: Path | None) -> None:
+    """Fail where figures can neither go to a folder, nor one of the set to a file."""
+    if place is None:
         return
-    if not folder.is_dir() and (folder.exists() or folder.suffix.lower() in PICTURES):
-        hint = folder.with_suffix("") if folder.suffix else "figures"
-        raise usage(f"{folder} is the name of a file; give a folder, such as {hint}, for all figures", "--figure")
-    check_folder(folder)
+    if place.suffix.lower() in FIGURE_SUFFIXES and not place.is_dir():
+        check_output(place, FIGURE_SUFFIXES, "a figure")
+        return
+    if not place.is_dir() and (place.exists() or place.suffix.lower() in OTHER_PICTURES):
+        hint = place.with_suffix("") if place.suffix else "figures"
+        raise usage(
+            f"{place} is the name of a file; give a folder, such as {hint}, for all figures, or a .pdf, .svg or .png "
+            "for that of the set",
+            "--figure",
+        )
+    check_folder(place)
 
 
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:

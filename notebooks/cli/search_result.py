@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, percent, percent_span
 
+from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
 from ..text.choices import goal_lines
 from ..text.messages import note, progress_bar
@@ -89,7 +90,7 @@ class FoundSet:
                 )
         return cls(found, before, after, trials)
 
-    def write(self, rig: Rig, report_out: Path | None, figures: Path | None, command: str) -> None:
+    def write(self, rig: Rig, report_out: Path | None, figures: Path | None, command: str, look: Look = SCREEN) -> None:
         """Write report and figures of the found set, as ``rank`` does."""
         from .ranking import cures
 
@@ -97,7 +98,7 @@ class FoundSet:
         if figures is not None:
             from ..figures.set_figures import write_figures
 
-            write_figures(self.after, icons, rig, figures)
+            write_figures(self.after, icons, rig, figures, look)
         if report_out is not None:
             from ..pages.report import report
 

@@ -8,6 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..figures.figure_look import (
+    FigureData,
+    FigureFolder,
+    FigureFormat,
+    FigureStyle,
+    FigureWidth,
+    NoTitle,
+    figure_look,
+)
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
 from ..text.messages import check_changes, check_draws, load_observer, load_rig, note, progress_bar, usage
@@ -67,10 +76,12 @@ def search_command(
             help="Write the improved set to a cue file, or - for stdout.",
         ),
     ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option("--figure", metavar="DIR", readable=False, help="Write the figures of the found set to DIR."),
-    ] = None,
+    figure: FigureFolder = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
+    figure_format: FigureFormat = None,
     report: ReportPage = None,
     rig: RigName = None,
     changes: Changes = None,
@@ -104,6 +115,7 @@ def search_command(
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
     check_report(report)
+    look = figure_look(figure, width, style, no_title, figure_data, figure_format)
     check_figures(figure)
     check_separate([file], [output, report])
     from thermicon.perception import Goal, search
@@ -142,7 +154,7 @@ def search_command(
         note(f"wrote {output}")
     made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, parameters), wanted)
     if report is not None or figure is not None:
-        made.write(where, report, figure, _command([file], where, choose, objective, goal))
+        made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
     made.show(icons.title, where.name)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import percent
 
+from ..figures.figure_look import SCREEN, Look
 from ..files.cues import read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.messages import check_draws, fail, load_observer, progress_bar, usage
@@ -33,7 +34,9 @@ class Request:
     observer: Path | None = None
 
 
-def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None) -> None:
+def sensitivity_file(
+    file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None, look: Look = SCREEN
+) -> None:
     """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import NORMS, sensitivity
 
@@ -63,7 +66,7 @@ def sensitivity_file(file: str, rig: Rig, request: Request, output: Path | None,
             observer=model,
             progress=progress,
         )
-    if not write_study(found, output, figure):
+    if not write_study(found, output, figure, look):
         show_sensitivity(found, icons.title)
 
 

@@ -11,6 +11,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..figures.figure_look import (
+    SCREEN,
+    FigureData,
+    FigureFile,
+    FigureStyle,
+    FigureWidth,
+    Look,
+    NoTitle,
+    figure_look,
+)
+from ..figures.print_figure import write_figure
 from ..text.messages import check_changes, load_rig, note, usage
 from ..text.options import Changes, OneFile, RigName
 
@@ -45,6 +56,7 @@ class Request:
     json: Path | None = None
     figure: Path | None = None
     order_out: Path | None = None
+    look: Look = SCREEN
 
 
 def session_command(
@@ -85,10 +97,11 @@ def session_command(
     json: Annotated[
         Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
     ] = None,
-    figure: Annotated[
-        Path | None,
-        typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the session: .png, .pdf or .svg."),
-    ] = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     order_out: Annotated[
         Path | None,
         typer.Option(
@@ -114,7 +127,8 @@ def session_command(
     if tracking not in TRACKING:
         raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS
-    request = Request(order, count, seed, gap, tracking, json, figure, order_out)
+    look = figure_look(figure, width, style, no_title, figure_data)
+    request = Request(order, count, seed, gap, tracking, json, figure, order_out, look)
     session_file(file, load_rig(rig, changes or []), request)
 
 
@@ -151,8 +165,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     if request.figure is not None:
         from ..figures.session_figure import session_figure
 
-        with complete_or_absent(request.figure) as draft:
-            session_figure(session).savefig(draft, dpi=130)
+        write_figure(session_figure(session), request.figure, request.look)
     for written in (request.json, request.order_out, request.figure):
         if written is not None:
             note(f"wrote {written}")

@@ -11,6 +11,7 @@ import typer
 
 from thermicon.icons.number_text import number, span
 
+from ..figures.figure_look import SCREEN, Look
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
 from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
@@ -30,6 +31,7 @@ def simulate_file(
     output: Path | None,
     figure: Path | None,
     power: bool = False,
+    look: Look = SCREEN,
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import simulate
@@ -43,13 +45,20 @@ def simulate_file(
     _write(traces, output, power)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes)
+        draw_overview(played, picture, rig.changes, look)
     cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
     _report(traces, rig, output, pictures, cures, power)
 
 
 def simulate_drive(
-    drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: Path | None, power: bool = False
+    drive: Path,
+    hold: bool,
+    rig: Rig,
+    rate_Hz: float,
+    output: Path | None,
+    figure: Path | None,
+    power: bool = False,
+    look: Look = SCREEN,
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit import read_drive, simulate_current
@@ -60,7 +69,7 @@ def simulate_drive(
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
     _write([trace], output, power)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes)
+        draw_overview(simulate_current(played, rig), picture, rig.changes, look)
     _report([trace], rig, output, pictures, [None], power)
 
 

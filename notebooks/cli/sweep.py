@@ -14,6 +14,8 @@ import typer
 
 from thermicon.icons.number_text import span
 
+from ..figures.figure_look import SCREEN, Look
+from ..figures.print_figure import write_figure
 from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import Progress, fail, note, progress_bar, usage
@@ -210,6 +212,7 @@ def sweep_file(
     tail_s: float,
     output: Path,
     figure: Path | None,
+    look: Look = SCREEN,
 ) -> None:
     """Sweep the icons of a file (or the one named); write the table, draw the figure, report each icon's outcome."""
     check_output(output, TRACE_SUFFIXES, "a sweep")
@@ -231,8 +234,7 @@ def sweep_file(
         with complete_or_absent(output) as draft:
             write_frame(frame, draft)
     if figure is not None:
-        with complete_or_absent(figure) as draft:
-            _figure(frame, varied).savefig(draft, dpi=130)
+        write_figure(_figure(frame, varied, look), figure, look)
     lines = [headline(frame[frame["icon"] == each.name], points) for each in icons]
     for line in (*lines, *_impossible(frame, keys)):
         note(line)
@@ -243,12 +245,12 @@ def sweep_file(
         typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
 
 
-def _figure(frame: pd.DataFrame, varied: Sequence[Vary]) -> Figure:
+def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look) -> Figure:
     """Lines over one key, heat maps over two."""
     if len(varied) == 1:
         from ..figures.sweep_figure import sweep_figure
 
-        return sweep_figure(frame, varied[0].key, log=varied[0].log)
+        return sweep_figure(frame, varied[0].key, log=varied[0].log, across=look.across(3))
     from ..figures.sweep_map import MOST_ROWS, sweep_map
 
     if (count := frame["icon"].nunique()) > MOST_ROWS:
@@ -256,7 +258,7 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary]) -> Figure:
     return sweep_map(frame, varied[0].key, varied[1].key)
 
 
-def write_study(found: Study, output: Path | None, figure: Path | None) -> bool:
+def write_study(found: Study, output: Path | None, figure: Path | None, look: Look = SCREEN) -> bool:
     """Write table and figure of a study where asked for; whether its table went to stdout, in place of a summary."""
     if output is not None and output != STDOUT:
         with complete_or_absent(output) as draft:
@@ -264,8 +266,7 @@ def write_study(found: Study, output: Path | None, figure: Path | None) -> bool:
         note(f"wrote {output}")
     if figure is not None:
         drawn: Any = found.plot().figure
-        with complete_or_absent(figure) as draft:
-            drawn.savefig(draft, dpi=130)
+        write_figure(drawn, figure, look)
         note(f"wrote {figure}")
     if output == STDOUT:
         typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)

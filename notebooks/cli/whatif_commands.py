@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.cues import only, read_set, warn_of_site
 from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
 VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
 MOST_STEPS = 100_000
-Figure = Annotated[Path | None, typer.Option("--figure", metavar="OUT.png", readable=False, help="Draw the figure.")]
 
 
 def netlist_command(
@@ -106,7 +106,11 @@ def sweep_command(
     ],
     icon: IconName = None,
     tail: Tail = 0.0,
-    figure: Figure = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -119,7 +123,8 @@ def sweep_command(
     check_tail(tail)
     from .sweep import read_varied, sweep_file
 
-    sweep_file(file, read_varied(vary), icon, load_rig(rig, changes or []), tail, output, figure)
+    look = figure_look(figure, width, style, no_title, figure_data)
+    sweep_file(file, read_varied(vary), icon, load_rig(rig, changes or []), tail, output, figure, look)
 
 
 def compare_command(
@@ -139,7 +144,11 @@ def compare_command(
         str | None,
         typer.Option("--rigs", metavar="R,R", help="For two sets: score both on each of these rigs, as a table."),
     ] = None,
-    figure: Figure = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -153,8 +162,9 @@ def compare_command(
     from ..text.compare_inputs import Request
     from .compare import compare
 
+    look = figure_look(figure, width, style, no_title, figure_data)
     several = tuple(name.strip() for name in (rigs or "").split(",") if name.strip())
-    compare(first, second, Request(file, icon, rig, tuple(changes or ()), align, several), figure)
+    compare(first, second, Request(file, icon, rig, tuple(changes or ()), align, several), figure, look)
 
 
 def sensitivity_command(
@@ -178,7 +188,11 @@ def sensitivity_command(
             help="Write the table to a .csv or .parquet file, or - for stdout.",
         ),
     ] = None,
-    figure: Figure = None,
+    figure: FigureFile = None,
+    width: FigureWidth = None,
+    style: FigureStyle = "screen",
+    no_title: NoTitle = False,
+    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -193,8 +207,9 @@ def sensitivity_command(
             raise usage(f"{value} is outside {least} to {most}", option)
     from .sensitivity import Request, sensitivity_file
 
+    look = figure_look(figure, width, style, no_title, figure_data)
     request = Request(people=people, seed=seed, draws=draws, norm=norm, observer=observer)
-    sensitivity_file(file, load_rig(rig, changes or []), request, output, figure)
+    sensitivity_file(file, load_rig(rig, changes or []), request, output, figure, look)
 
 
 def calibrate_command(

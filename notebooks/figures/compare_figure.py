@@ -23,7 +23,7 @@ BROAD = "#b9bec4"
 ACROSS = 3
 
 
-def compare_figure(pairs: Sequence[tuple[str, Aligned]]) -> Figure:
+def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = ACROSS) -> Figure:
     """Draw comparisons: of one, up to six quantities; of several, one quantity of each under its title.
 
     A is a broad grey line, B a thin one on top; cold receptors are blue, warm ones orange.
@@ -32,7 +32,7 @@ def compare_figure(pairs: Sequence[tuple[str, Aligned]]) -> Figure:
     from matplotlib.lines import Line2D
 
     panels = [(title, both, name) for title, both in pairs for name in _shown(both, 6 if len(pairs) == 1 else 1)]
-    across = min(ACROSS, len(panels))
+    across = min(across, len(panels))
     down = -(-len(panels) // across)
     figure = Figure(figsize=(0.8 + 3.3 * across, 0.7 + 3.6 * down), layout="constrained")
     grid = figure.subplots(2 * down, across, squeeze=False, height_ratios=[2.0, 1.0] * down)

@@ -31,14 +31,20 @@ class Row:
     seen: float | None = None
 
 
-def observed_figure(found: Observed) -> Figure:
-    """Draw a pilot: grey bars are 95 % as predicted, blue ones after the answers, dots observed."""
+def observed_figure(found: Observed, stacked: bool = False) -> Figure:
+    """Draw a pilot: grey bars are 95 % as predicted, blue ones after the answers, dots observed.
+
+    Panels stand beside one another, or, stacked, below one another.
+    """
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
     icons = min(len(found.trials.icons), MOST_ICONS)
-    figure = Figure(figsize=(11.0, 1.8 + 0.36 * max(icons, 5)), layout="constrained")
-    left, middle, right = figure.subplots(1, 3, width_ratios=[1.0, 1.0, 0.8])
+    tall = 0.36 * max(icons, 5)
+    size = (6.0, 3.2 + 2.6 * tall) if stacked else (11.0, 1.8 + tall)
+    figure = Figure(figsize=size, layout="constrained")
+    grid = figure.subplots(3, 1) if stacked else figure.subplots(1, 3, width_ratios=[1.0, 1.0, 0.8])
+    left, middle, right = grid
     _icons(left, found)
     _pairs(middle, found)
     _sets(right, found)

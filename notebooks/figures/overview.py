@@ -111,13 +111,15 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
 
 
-def set_figure(ranking: Ranking) -> Figure:
+def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
     """Draw who is confused with whom: distances (d′) and predicted confusions of one set, side by side.
 
     Parameters
     ----------
     ranking
         The ranking of the set.
+    stacked
+        Whether the second stands below the first, as in a narrow column.
 
     Returns
     -------
@@ -139,8 +141,9 @@ def set_figure(ranking: Ranking) -> Figure:
 
     longest = max(map(len, map(draw_heat.short, ranking.labels)))
     side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
-    figure = Figure(figsize=(2 * (side + 0.6), side), layout="constrained")
-    distance, confusion = figure.subplots(1, 2)
+    down, across = (2, 1) if stacked else (1, 2)
+    figure = Figure(figsize=(across * (side + 0.6), down * side), layout="constrained")
+    distance, confusion = figure.subplots(down, across)
     draw.plot_distance(ranking, ax=distance)
     draw.plot_confusion(ranking, ax=confusion)
     return figure

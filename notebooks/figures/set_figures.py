@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..files.outputs import complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES
 from ..text.messages import note
+from .figure_look import SCREEN, Look
+from .print_figure import write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,35 +18,51 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
 
-DPI = 130
+
+def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
+    """Distances and confusions beside each other; by rules the ranking."""
+    if ranking.by == "rules":
+        from thermicon.perception.plots.draw import plot_ranking
+
+        drawn: Any = plot_ranking(ranking, words=not look.narrow).figure
+    else:
+        from .overview import set_figure
+
+        drawn = set_figure(ranking, stacked=look.narrow)
+    write_figure(drawn, file, look)
+    note(f"wrote {file}")
 
 
-def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, folder: Path) -> None:
-    """Write the pictures of the set as PNG and an overview for every icon into ``folder``, which is made if missing.
+def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look: Look = SCREEN) -> None:
+    """Write the pictures of the set and an overview for every icon into a folder, or one of the set into a file.
 
-    The set has ranking, distance, confusion, map and places; the last two need two icons, places two people.
+    A folder is made if it is missing. The set has ranking, distance, confusion, map and places; the last two need two
+    icons, places two people.
     """
     from thermicon.circuit import simulate
 
     from .trace_overview import FELT_TAIL_S, draw_overview
 
+    if place.suffix.lower() in FIGURE_SUFFIXES and not place.is_dir():
+        _one_figure(ranking, place, look)
+        return
+    folder, kind = place, look.kind
     folder.mkdir(exist_ok=True)
-    drawn = set_axes(ranking)
+    drawn = set_axes(ranking, words=not look.narrow)
     for name, axes in drawn.items():
         figure: Any = axes.figure
-        with complete_or_absent(folder / f"{name}.png") as draft:
-            figure.savefig(draft, dpi=DPI)
+        write_figure(figure, folder / f"{name}.{kind}", look)
     names = [icon.name for icon in icons]
     stems = distinct(names)
     for icon, stem in zip(icons, stems, strict=True):
         if stem != icon.name:
             note(
-                f"warning: the overview of {icon.name} is overview-{stem}.png, since some disks take {icon.name} and "
-                f"{names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
+                f"warning: the overview of {icon.name} is overview-{stem}.{kind}, since some disks take {icon.name} "
+                f"and {names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
             )
-        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.png", rig.changes)
+        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.{kind}", rig.changes, look)
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
-    note(f"wrote {', '.join(f'{name}.png' for name in drawn)} and {count} into {folder}")
+    note(f"wrote {', '.join(f'{name}.{kind}' for name in drawn)} and {count} into {folder}")
 
 
 def distinct(names: Sequence[str]) -> list[str]:
@@ -65,15 +83,16 @@ def distinct(names: Sequence[str]) -> list[str]:
     return found
 
 
-def set_axes(ranking: Ranking) -> dict[str, Axes]:
+def set_axes(ranking: Ranking, words: bool = True) -> dict[str, Axes]:
     """The pictures of a ranking by the names of their files, each on a figure of its own.
 
-    By rules there is only the ranking: the others show the model's numbers.
+    By rules there is only the ranking: the others show the model's numbers. Without words the ranking has no columns of
+    text.
     """
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
 
-    made = {"ranking": plot_ranking(ranking)}
+    made = {"ranking": plot_ranking(ranking, words=words)}
     if ranking.by == "rules":
         return made
     made |= {"distance": plot_distance(ranking), "confusion": plot_confusion(ranking)}

@@ -28,7 +28,7 @@ PANELS = (
 """Columns of a sweep and the label of their panel."""
 
 
-def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
+def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int = 3) -> Figure:
     """Draw the table of a sweep, one panel per quantity and one line per icon.
 
     Icons that mainly cool are blue, others orange, and each has its own mark. A hollow mark stands for an icon that was
@@ -42,6 +42,8 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
         The column on the abscissa: the key of the rig that was varied.
     log
         Whether the abscissa is logarithmic.
+    across
+        Panels beside one another.
 
     Returns
     -------
@@ -57,12 +59,9 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
     >>> len(sweep_figure(sweep([step], Rig.load("thenar"), key, [1.0, 1.5]), key).axes)
     9
     """
-    from matplotlib.figure import Figure
-
     from thermicon.circuit.rig.keyunits import unit_of
 
-    figure = Figure(figsize=(9.6, 8.2), layout="constrained")
-    axes = list(figure.subplots(3, 3, sharex=True).flat)
+    figure, axes = small_multiples(len(PANELS), across)
     styles = _styles(frame)
     for ax, (columns, label) in zip(axes, PANELS, strict=True):
         for name, (color, mark) in styles.items():
@@ -83,6 +82,21 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False) -> Figure:
     unit = unit_of(key)
     figure.supxlabel(f"{key} ({unit})" if unit else key, fontsize=10)
     return figure
+
+
+def small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
+    """A figure with so many panels on one abscissa; those with none below them have its numbers."""
+    from matplotlib.figure import Figure
+
+    across = min(across, count)
+    down = -(-count // across)
+    figure = Figure(figsize=(3.2 * across, 0.4 + 2.6 * down), layout="constrained")
+    axes = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
+    for ax in axes[count:]:
+        ax.remove()
+    for ax in axes[max(0, count - across) : count]:
+        ax.tick_params(labelbottom=True)
+    return figure, axes[:count]
 
 
 def _log_axis(ax: Axes) -> None:

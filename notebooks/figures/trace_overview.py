@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from ..files.outputs import complete_or_absent
+from .figure_look import SCREEN, Look
+from .print_figure import write_figure
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -18,15 +19,14 @@ FELT_TAIL_S = 10.0
 """How long an overview follows sensation after the last corner, unless a tail is given."""
 
 
-def draw_overview(trace: Trace, picture: Path, rig_changes: Sequence[str] = ()) -> None:
+def draw_overview(trace: Trace, picture: Path, rig_changes: Sequence[str] = (), look: Look = SCREEN) -> None:
     """Write the overview figure of one trace, its percept included."""
     from thermicon.perception import perceive
 
     from .overview import overview
 
     trace = on_one_clock(trace)
-    with complete_or_absent(picture) as draft:
-        overview(trace, perceive(trace), rig_changes).savefig(draft, dpi=130)
+    write_figure(overview(trace, perceive(trace), rig_changes), picture, look)
 
 
 def on_one_clock(trace: Trace) -> Trace:

@@ -22,16 +22,17 @@ WORDS = ("most confused with", "plays")
 HUES = {"cold": COOL, "warm": WARM}
 
 
-def plot_ranking(ranking: Ranking, ax: Axes | None = None) -> Axes:
+def plot_ranking(ranking: Ranking, ax: Axes | None = None, words: bool = True) -> Axes:
     """Icons from the best to the worst: a bar of per cent correct, detection, onset, channel and strongest rival.
 
-    By rules, the bar is the share of rules passed, and what only the model gives is left out.
+    By rules, the bar is the share of rules passed, and what only the model gives is left out. Without words only the
+    per cent stands beside the bars, as in a narrow column.
     """
     rows, model = ranking.rows(), ranking.by == "model"
     names = [short(row["icon"], 36) for row in rows]
     rivals = [short(_rival(ranking, row["icon"]), 42) for row in rows] if model else ["" for _ in rows]
     wide = LETTER * (max(map(len, names)) + max(map(len, rivals)))
-    axes = new_axes(ax, (max(6.0, 5.4 + wide), 0.95 + LINE * len(rows)))
+    axes = new_axes(ax, (max(6.0, 5.4 + wide) if words else 4.4, 0.95 + LINE * len(rows)))
     places = np.arange(len(rows))
     key = "proportion_correct" if model else "rules_score"
     shares = [100.0 * row[key] for row in rows]
@@ -58,7 +59,7 @@ def plot_ranking(ranking: Ranking, ax: Axes | None = None) -> Axes:
         columns += [("rules passed", [f"{row['rules_passed']} of {row['rules']}" for row in rows])]
     if any(row["reason"] for row in rows):
         columns += [("plays", [_plays(row) for row in rows])]
-    _columns(axes, columns)
+    _columns(axes, columns if words else columns[:1])
     return axes
 
 

@@ -1,0 +1,216 @@
+"""Style, size and writing of every figure that a command draws.
+
+Figures are drawn for a screen. For paper they are set in the width asked for, with smaller letters, thinner lines and a
+letter on each panel; keys that stood beside the panels stand below where there is no room. The bytes of a file depend
+on what is drawn alone: no dates, and fonts are embedded.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..files.outputs import complete_or_absent
+from ..text.messages import note
+from .dark_colours import turn_dark
+from .figure_data import letter, panels_of, write_figure_data
+from .figure_look import NARROW_MM, SCREEN, Look
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
+
+DPI, PAPER_DPI = 130, 300
+WIDEST_PAPER_MM, MM_PER_INCH = 180.0, 25.4
+TYPE_PT, SMALLEST_PT, LARGEST_PT = 7.5, 5.5, 9.0
+"""Size in print of what is drawn at 10 pt, and the limits of all sizes: journals ask for 5 to 9 pt."""
+HEIGHT_POWER = 0.6
+"""Panels lose less height than width, since their labels do not shrink as much as they do."""
+THINNER = 0.75
+LONGEST_KEY = 30
+"""Letters of a line in the key below the panels."""
+EMBEDDED: Mapping[str, Any] = {
+    "pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "thermicon",
+}  # fmt: skip
+UNDATED: Mapping[str, dict[str, None]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
+
+
+def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
+    """Write a figure in its style, and the data of its panels where asked for.
+
+    Parameters
+    ----------
+    figure
+        A figure as it is drawn for the screen; it is changed.
+    path
+        File to write: .png, .pdf or .svg.
+    look
+        Style, width and title, and the folder for data.
+    """
+    import matplotlib
+
+    if look.data is not None:
+        names = write_figure_data(figure, look.data, path.stem)
+        note(f"wrote {names[0]}{f' to {names[-1]}' if len(names) > 1 else ''} into {look.data}")
+    with matplotlib.rc_context(dict(EMBEDDED)), complete_or_absent(path) as draft:
+        restyle(figure, look)
+        kind = path.suffix.lower().removeprefix(".")
+        dpi = PAPER_DPI if look.style == "paper" or look.width_mm is not None else DPI
+        figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind], facecolor=figure.get_facecolor())
+
+
+def restyle(figure: Figure, look: Look) -> None:
+    """Change a figure to a look in place; for the screen at its own width nothing changes.
+
+    >>> from matplotlib.figure import Figure
+    >>> figure = Figure(figsize=(8, 6))
+    >>> _ = figure.subplots(2, 1)
+    >>> restyle(figure, Look("paper", 85.0))
+    >>> [round(inches * 25.4, 1) for inches in figure.get_size_inches()][0], figure.axes[1].get_title(loc="left")
+    (85.0, 'b')
+    """
+    if not look.title:
+        _drop_title(figure)
+    if look.style == "paper":
+        _letter_panels(figure)
+    natural_mm = float(figure.get_figwidth()) * MM_PER_INCH
+    width_mm = look.width_mm
+    if width_mm is None and look.style == "paper":
+        width_mm = min(natural_mm, WIDEST_PAPER_MM)
+    if width_mm is not None:
+        _resize(figure, width_mm, natural_mm)
+    if look.style == "dark":
+        turn_dark(figure)
+
+
+def _drop_title(figure: Figure) -> None:
+    """Titles of panels stay where there are several, since they say what each shows."""
+    title: Any = figure.get_suptitle() and figure._suptitle  # type: ignore[attr-defined]
+    if title:
+        title.set_in_layout(False)
+        title.set_visible(False)
+        title.set_text("")
+    panels = panels_of(figure)
+    if len(panels) == 1:
+        for place in ("left", "center", "right"):
+            panels[0].set_title("", loc=place)  # type: ignore[arg-type]
+
+
+def _letter_panels(figure: Figure) -> None:
+    panels = panels_of(figure)
+    if len(panels) < 2:
+        return
+    for place, ax in enumerate(panels):
+        loc = next((loc for loc in ("left", "center") if ax.get_title(loc=loc)), None)
+        if loc is None:
+            ax.set_title(letter(place), loc="left", fontweight="bold")
+        else:
+            ax.set_title(rf"$\mathbf{{{letter(place)}}}$  {ax.get_title(loc=loc)}", loc=loc)
+
+
+def _resize(figure: Figure, width_mm: float, natural_mm: float) -> None:
+    """Give the figure its width, and letters, lines and keys the sizes that go with it."""
+    if width_mm < NARROW_MM:
+        _keys_below(figure)
+    _break_titles(figure)
+    ratio = min(1.0, width_mm / natural_mm)
+    even = any(ax.get_aspect() == 1.0 for ax in figure.axes)
+    tall = ratio if even else ratio**HEIGHT_POWER
+    height = float(figure.get_figheight()) * tall
+    figure.set_size_inches(width_mm / MM_PER_INCH, height)
+    _resize_letters(figure)
+    _resize_lines(figure)
+    for legend in list(figure.legends):
+        _fit(figure, legend)
+
+
+def _break_titles(figure: Figure) -> None:
+    """What a title says in brackets goes to a second line."""
+    for ax in figure.axes:
+        for loc in ("left", "center"):
+            if " (" in (title := ax.get_title(loc=loc)):  # type: ignore[arg-type]
+                ax.set_title(title.replace(" (", "\n("), loc=loc)  # type: ignore[arg-type]
+
+
+def _resize_letters(figure: Figure) -> None:
+    from matplotlib.text import Annotation, Text
+
+    sizes: dict[tuple[int, str], float] = {}
+    for place, ax in enumerate(figure.axes):
+        for name in ("x", "y"):
+            labels = getattr(ax, f"get_{name}ticklabels")()
+            sizes[place, name] = _printed_pt(labels[0].get_fontsize() if labels else 10.0)
+    words: list[Any] = list(figure.findobj(Text))
+    for text in words:
+        text.set_fontsize(_printed_pt(float(text.get_fontsize())))
+        if isinstance(text, Annotation) and text.anncoords == "offset points":
+            text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)  # type: ignore[assignment]
+    for place, ax in enumerate(figure.axes):
+        for name in ("x", "y"):
+            ax.tick_params(axis=name, labelsize=sizes[place, name])  # type: ignore[arg-type]
+
+
+def _printed_pt(size: float) -> float:
+    """Size in print of letters that are so large on the screen, pt.
+
+    >>> _printed_pt(10.0), _printed_pt(7.0), _printed_pt(14.0)
+    (7.5, 5.5, 9.0)
+    """
+    return min(max(size * TYPE_PT / 10.0, SMALLEST_PT), LARGEST_PT)
+
+
+def _resize_lines(figure: Figure) -> None:
+    from matplotlib.lines import Line2D
+
+    lines: list[Any] = list(figure.findobj(Line2D))
+    for line in lines:
+        line.set_linewidth(THINNER * float(line.get_linewidth()))
+        line.set_markersize(THINNER * float(line.get_markersize()))
+    for ax in figure.axes:
+        for spine in ax.spines.values():
+            spine.set_linewidth(THINNER * float(spine.get_linewidth()))
+
+
+def _keys_below(figure: Figure) -> None:
+    """Gather the keys that stand beside the panels into one below them; what several name alike stands once."""
+    entries: dict[tuple[str, str, str], tuple[Any, str]] = {}
+    for ax in figure.axes:
+        legend = ax.get_legend()
+        if legend is None:
+            continue
+        beside = legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 > 1.0
+        if not beside:
+            continue
+        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
+            thing: Any = handle
+            label = textwrap.fill(" ".join(text.get_text().split()), LONGEST_KEY)
+            colour = thing.get_color() if hasattr(thing, "get_color") else thing.get_facecolor()
+            dashes = thing.get_linestyle() if hasattr(thing, "get_linestyle") else ""
+            entries.setdefault((label, str(colour), str(dashes)), (thing, label))
+        legend.remove()
+    if entries:
+        handles, labels = zip(*sorted(entries.values(), key=lambda entry: len(entry[1])), strict=True)
+        figure.legend(
+            handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=8, handlelength=2.6,
+            columnspacing=1.2,
+        )  # fmt: skip
+
+
+def _fit(figure: Figure, legend: Legend) -> None:
+    """Give a key of the whole figure as many columns as the width has room for; columns are laid out anew."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    held: Any = legend
+    handles, labels = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
+    size, side = legend.get_texts()[0].get_fontsize(), held._outside_loc or "upper"
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for columns in range(held._ncols, 0, -1):
+        legend.remove()
+        legend = figure.legend(
+            handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False, fontsize=size,
+            handlelength=2.2, columnspacing=1.2,
+        )  # fmt: skip
+        if legend.get_window_extent(renderer).width <= 0.98 * float(figure.bbox.width):
+            return

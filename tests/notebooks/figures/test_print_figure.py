@@ -1,0 +1,136 @@
+"""Figures in print: width, letters, keys, embedded fonts, bytes without dates, dark ground, and data of the panels."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import pytest
+import typer
+from matplotlib.figure import Figure
+from PIL import Image
+
+from thermicon.notebooks.figures.dark_colours import dark
+from thermicon.notebooks.figures.figure_data import panels_of
+from thermicon.notebooks.figures.figure_look import Look, figure_look, read_width_mm
+from thermicon.notebooks.figures.print_figure import restyle, write_figure
+
+
+def two_panels() -> Figure:
+    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    for ax in (upper, lower):
+        ax.plot([0, 1, 2], [32, 30, 31], color="#2166ac", label="skin")
+        ax.plot([0, 1, 2], [32, 33, 31], color="#e08214", ls="--", label="display")
+        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    lower.set_xlabel("time (s)")
+    lower.set_ylabel("skin (°C)")
+    figure.suptitle("a title")
+    return figure
+
+
+@pytest.mark.parametrize("kind", ["pdf", "svg", "png"])
+def test_the_same_figure_gives_the_same_bytes_without_a_date(tmp_path: Path, kind: str) -> None:
+    look = Look("paper", 85.0)
+    for name in ("one", "other"):
+        write_figure(two_panels(), tmp_path / f"{name}.{kind}", look)
+    first = (tmp_path / f"one.{kind}").read_bytes()
+    assert first == (tmp_path / f"other.{kind}").read_bytes()
+    assert b"CreationDate" not in first and b"dc:date" not in first
+
+
+def test_a_pdf_has_its_fonts_embedded_as_truetype(tmp_path: Path) -> None:
+    write_figure(two_panels(), tmp_path / "a.pdf", Look("paper"))
+    content = (tmp_path / "a.pdf").read_bytes()
+    assert b"/FontFile2" in content and b"/Type3" not in content
+
+
+def test_a_picture_is_as_wide_as_asked(tmp_path: Path) -> None:
+    write_figure(two_panels(), tmp_path / "a.png", Look(width_mm=85.0))
+    assert Image.open(tmp_path / "a.png").width == pytest.approx(85.0 / 25.4 * 300, abs=1)
+
+
+def test_a_column_has_letters_and_one_key_below() -> None:
+    figure = two_panels()
+    restyle(figure, Look("paper", 85.0))
+    assert [ax.get_title(loc="left") for ax in figure.axes] == ["a", "b"]
+    assert [ax.get_legend() for ax in figure.axes] == [None, None]
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["skin", "display"]
+    sizes = {text.get_fontsize() for ax in figure.axes for text in ax.get_xticklabels()}
+    assert max(sizes) <= 9.0 and min(sizes) >= 5.5
+
+
+def test_the_screen_is_as_drawn_and_a_title_can_be_left_out() -> None:
+    figure = two_panels()
+    restyle(figure, Look())
+    assert figure.get_suptitle() == "a title" and figure.axes[0].get_title(loc="left") == ""
+    restyle(figure, Look(title=False))
+    assert figure.get_suptitle() == ""
+    one = Figure()
+    one.add_subplot(title="one panel")
+    restyle(one, Look(title=False))
+    assert one.axes[0].get_title() == ""
+
+
+def test_a_dark_figure_has_light_ink_and_keeps_blue_and_orange() -> None:
+    figure = two_panels()
+    restyle(figure, Look("dark"))
+    blue, orange = (line.get_color() for line in figure.axes[0].get_lines())
+    assert blue[2] > blue[0] and orange[0] > orange[2]
+    assert max(figure.get_facecolor()[:3]) < 0.2
+    assert min(figure.axes[0].xaxis.label.get_color()[:3]) > 0.8
+
+
+def test_cold_and_warm_differ_in_grey() -> None:
+    """Luminance of blue and orange, on paper and on a dark ground."""
+    for turned in (False, True):
+        grey = []
+        for colour in ("#2166ac", "#e08214"):
+            from matplotlib.colors import to_rgb
+
+            red, green, blue = dark(colour)[:3] if turned else to_rgb(colour)
+            grey.append(0.2126 * red + 0.7152 * green + 0.0722 * blue)
+        assert grey[1] - grey[0] > 0.05
+
+
+def test_the_data_of_each_panel_are_those_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    figure = two_panels()
+    write_figure(figure, tmp_path / "fig.svg", Look(data=tmp_path / "data"))
+    assert sorted(path.name for path in (tmp_path / "data").iterdir()) == ["fig-a.csv", "fig-b.csv"]
+    rows = list(csv.reader((tmp_path / "data" / "fig-b.csv").read_text(encoding="utf-8").splitlines()))
+    assert rows[0] == ["series", "kind", "time (s)", "skin (°C)"]
+    assert rows[2] == ["skin", "line", "1", "30"]
+    assert "wrote fig-a.csv to fig-b.csv into" in capsys.readouterr().err
+
+
+def test_a_heat_map_gives_its_cells(tmp_path: Path) -> None:
+    figure = Figure()
+    ax = figure.add_subplot()
+    ax.pcolormesh([[1.0, 2.0], [3.0, 4.0]])
+    ax.set_xticks([0.5, 1.5], ["x", "y"])
+    ax.set_yticks([0.5, 1.5], ["first", "second"])
+    write_figure(figure, tmp_path / "heat.png", Look(data=tmp_path))
+    assert (tmp_path / "heat.csv").read_text(encoding="utf-8").splitlines()[1:3] == ["first,x,1", "first,y,2"]
+    assert panels_of(figure) == [ax]
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("85", "is not a width with a unit"),
+        ("85px", "such as 85mm"),
+        ("2mm", "outside 40 to 500 mm"),
+        ("-85mm", "unit"),
+    ],
+)
+def test_a_width_that_cannot_be(text: str, what: str) -> None:
+    with pytest.raises(typer.BadParameter, match=what):
+        read_width_mm(text)
+
+
+def test_looks_without_a_figure_are_refused() -> None:
+    with pytest.raises(typer.BadParameter, match="name its file with --figure"):
+        figure_look(None, "85mm", "screen", False)
+    with pytest.raises(typer.BadParameter, match="'print' is not one of screen, paper, dark"):
+        figure_look(Path("a.png"), None, "print", False)
