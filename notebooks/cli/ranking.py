@@ -91,7 +91,7 @@ def rank_files(
     if json_out is not None:
         check_output(json_out, (), "JSON")
     check_report(report_out)
-    check_separate(files, [json_out, report_out, figures])
+    check_separate(files, [json_out, report_out, *_picture(figures)])
     check_figures(figures)
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
@@ -154,6 +154,10 @@ def check_report(out: Path | None) -> None:
         check_output(out, (".html", ".htm"), "a report")
         if out == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+
+
+def _picture(place: Path | None) -> list[Path]:
+    return [] if place is None or place.suffix.lower() not in FIGURE_SUFFIXES else [place]
 
 
 def check_figures(place: Path | None) -> None:

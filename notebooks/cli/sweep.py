@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -12,13 +11,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import typer
 
-from thermicon.icons.number_text import span
+from thermicon.icons.number_text import percent, span
 
 from ..figures.figure_look import SCREEN, Look
 from ..figures.print_figure import write_figure
 from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import Progress, fail, note, progress_bar, usage
+from ..text.messages import Progress, fail, note, progress_bar
+from ..text.varied import SITE, Vary
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,10 +26,22 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
+    from thermicon.icons import Icon, IconSet
 
-MOST_VALUES = 10_000
-FORM = "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, or LOW:HIGH:Nlog for equal ratios"
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What people perceive of a set: quantities by name, people, draws for intervals (0: none), and seed."""
+
+    icons: IconSet
+    what: tuple[str, ...]
+    people: int = 60
+    parameters: int = 64
+    seed: int = 0
+
+
+Measure = tuple[tuple[str, ...], int, int, int]
+"""Names of what is measured, people, draws and seed."""
 
 
 class Study(Protocol):
@@ -42,72 +54,15 @@ class Study(Protocol):
         """Draw it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Vary:
-    """A dotted key of the rig file and the values it takes, in the file's unit."""
-
-    key: str
-    values: tuple[float, ...]
-    log: bool
-
-
-def read_varied(texts: Sequence[str]) -> tuple[Vary, ...]:
-    """Read every ``--vary``: one key, or two for a grid of all their combinations; more are a usage error."""
-    varied = tuple(read_vary(text) for text in texts)
-    if len(varied) > 2:
-        raise usage(f"{len(varied)} keys are given; at most 2 can be varied, and 2 make a grid", "--vary")
-    if len({vary.key for vary in varied}) < len(varied):
-        raise usage(f"{varied[0].key} is given twice; a grid needs two different keys", "--vary")
-    if (count := math.prod(len(vary.values) for vary in varied)) > MOST_VALUES:
-        raise usage(f"{count:,} combinations are more than {MOST_VALUES:,}; use fewer values", "--vary")
-    return varied
-
-
-def read_vary(text: str) -> Vary:
-    """Read one ``--vary``; a text of another form is a usage error that shows the form.
-
-    >>> read_vary("contact.area_cm2=4:9:3").values, read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log").values
-    ((4.0, 6.5, 9.0), (0.0001, 0.001, 0.01))
-    """
-    key, equals, rest = text.partition("=")
-    parts = [part.strip() for part in rest.split(":")]
-    if not (key.strip() and equals and len(parts) == 3):
-        raise usage(f"{text!r}: {FORM}", "--vary")
-    log = parts[2].endswith("log")
-    low, high = (_bound(part, text) for part in parts[:2])
-    try:
-        count = int(parts[2].removesuffix("log"))
-    except ValueError:
-        raise usage(f"{text!r}: {parts[2]!r} is not a number of values; {FORM}", "--vary") from None
-    if not 2 <= count <= MOST_VALUES:
-        raise usage(f"{text!r}: {count} values is outside 2 to {MOST_VALUES}", "--vary")
-    if low == high:
-        raise usage(f"{text!r}: both ends are {low:g}; a sweep needs two different ends", "--vary")
-    if log and not (low > 0 and high > 0):
-        raise usage(f"{text!r}: equal ratios need both ends above 0; leave out log for equal steps", "--vary")
-    shares = [k / (count - 1) for k in range(count)]
-    values = [low * (high / low) ** share if log else low + (high - low) * share for share in shares]
-    return Vary(key.strip(), tuple(float(f"{value:.12g}") for value in values), log)
-
-
-def _bound(text: str, whole: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise usage(f"{whole!r}: {text!r} is not a number; {FORM}", "--vary")
-    return value
-
-
 def sweep(
     icons: Iterable[Icon],
     rig: Rig,
     key: str,
-    values: Sequence[float],
+    values: Sequence[float] | Sequence[str],
     *,
-    second: tuple[str, Sequence[float]] | None = None,
+    second: tuple[str, Sequence[float] | Sequence[str]] | None = None,
     tail_s: float = 0.0,
+    measured: Measured | None = None,
     progress: Progress | None = None,
 ) -> pd.DataFrame:
     """Play every icon at every value of a key of the rig.
@@ -115,17 +70,19 @@ def sweep(
     Parameters
     ----------
     icons
-        Icons to play.
+        Icons to play; those that `measured` measures must be among its set.
     rig
         Rig to change.
     key
-        Dotted key of the rig file.
+        Dotted key of the rig file, `site` or `people.age_years`.
     values
-        Its values, in the unit of the rig file.
+        Its values, in the unit of the rig file; names of shipped rigs for `site`.
     second
         A second key and its values; every combination of both keys is played.
     tail_s
         Time in s that is simulated after the last corner.
+    measured
+        What people perceive is predicted too, and how; None: only the rig is simulated.
     progress
         Called with the number of runs done and their total.
 
@@ -133,13 +90,16 @@ def sweep(
     -------
     pandas.DataFrame
         One row per icon and value (or combination). Columns: icon, the key or keys, the fields of
-        `thermicon.circuit.Summary`, what the receptors see, and `reason`. Where the rig is impossible or cannot play
+        `thermicon.circuit.Summary`, what the receptors see, what is measured, and `reason`; with
+        `measured` a last row of each value is that of the whole set. Where the rig is impossible or cannot play
         the icon, the row has only the reason.
 
     Raises
     ------
-    RigError
-        For a key that no rig has.
+    InputError
+        For a key that no rig has, a site that is not shipped, and an age outside 18 to 100 years.
+    ValueError
+        For an age where nothing is measured.
 
     Examples
     --------
@@ -152,26 +112,32 @@ def sweep(
     """
     import pandas as pd
 
-    from thermicon.circuit.rig.settings import put
     from thermicon.circuit.safety.summary import Summary
+    from thermicon.perception.sensitivity.swept import AGE, ALL, MEASURES, check_conditions
 
     varied = [(key, values), *([second] if second is not None else [])]
     for name, numbers in varied:
-        put(json.loads(rig.document), name, float(numbers[0]))
+        for value in numbers if name in (SITE, AGE) else numbers[:1]:
+            check_conditions({name: value}, rig)
+        if name == AGE and measured is None:
+            raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as correct")
     keys = [name for name, _ in varied]
-    combinations = list(itertools.product(*([float(value) for value in numbers] for _, numbers in varied)))
+    combinations = list(itertools.product(*(numbers for _, numbers in varied)))
     played: list[Icon] = list(icons)
     rows: list[dict[str, Any]] = []
     for combination in combinations:
         changes = dict(zip(keys, combination, strict=True))
         rows += [{"icon": icon.name, **changes, **_run(icon, rig, changes, tail_s)} for icon in played]
+        if measured is not None:
+            _measure(rows, [icon.name for icon in played], rig, changes, measured)
         if progress is not None:
-            progress(len(rows), len(played) * len(combinations))
+            progress(len(rows), (len(played) + (measured is not None)) * len(combinations))
     summary = [field.name for field in fields(Summary) if field.name != "reason"]
-    frame = pd.DataFrame(rows, columns=["icon", *keys, *summary, *RECEPTORS, "reason"])
-    words = {"icon": "string", "safety": "string", "reason": "string", "reached": "boolean", "safe": "boolean"}
+    perceived = [] if measured is None else [name for each in measured.what for name in MEASURES[each]]
+    frame = pd.DataFrame(rows, columns=["icon", *keys, *perceived, *summary, *RECEPTORS, "reason"])
+    words = dict.fromkeys(("icon", "safety", "reason", SITE), "string") | {"reached": "boolean", "safe": "boolean"}
     kinds: dict[str, Any] = {name: words.get(name, "float64") for name in frame.columns}
-    order = {icon.name: place for place, icon in enumerate(played)}
+    order = {name: place for place, name in enumerate([*(icon.name for icon in played), ALL])}
     return frame.astype(kinds).sort_values("icon", key=lambda names: names.map(order), kind="stable", ignore_index=True)
 
 
@@ -183,17 +149,38 @@ RECEPTORS = tuple(
 """Columns for what the receptors see: largest change, steepest rate towards it, lag of its half behind the skin's."""
 
 
-def _run(icon: Icon, rig: Rig, changes: Mapping[str, float], tail_s: float) -> dict[str, Any]:
+def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
     import numpy
 
     from thermicon.circuit import InputError, simulate, summarise
+    from thermicon.perception.sensitivity.swept import rig_under
 
     try:
         with numpy.errstate(all="ignore"):  # what overflows ends as a reason
-            trace = simulate(icon, rig.with_(**changes), tail_s=tail_s)
+            trace = simulate(icon, rig_under(rig, changes), tail_s=tail_s)
     except (InputError, ValueError, ArithmeticError) as problem:
         return {"reason": "; ".join(str(problem).splitlines())}
     return {**summarise(trace).to_dict(), **_receptors(trace)}
+
+
+def _measure(
+    rows: list[dict[str, Any]], names: Sequence[str], rig: Rig, changes: Mapping[str, float | str], measured: Measured
+) -> None:
+    """Add what people perceive to the last rows, those of the icons, and a row of the whole set."""
+    from thermicon.circuit import InputError
+    from thermicon.perception.sensitivity.swept import ALL, measured_rows
+
+    try:
+        found = measured_rows(
+            measured.icons, rig, changes, measured.what,
+            people=measured.people, parameters=measured.parameters, seed=measured.seed,
+        )  # fmt: skip
+    except (InputError, ValueError, ArithmeticError) as problem:
+        rows.append({"icon": ALL, **changes, "reason": "; ".join(str(problem).splitlines())})
+        return
+    for row in rows[-len(names) :]:
+        row.update(found[row["icon"]])
+    rows.append({"icon": ALL, **changes, **found[ALL]})
 
 
 def _receptors(trace: Trace) -> dict[str, float | None]:
@@ -213,6 +200,7 @@ def sweep_file(
     output: Path,
     figure: Path | None,
     look: Look = SCREEN,
+    measure: Measure | None = None,
 ) -> None:
     """Sweep the icons of a file (or the one named); write the table, draw the figure, report each icon's outcome."""
     check_output(output, TRACE_SUFFIXES, "a sweep")
@@ -224,7 +212,16 @@ def sweep_file(
     first, *others = varied
     second = (others[0].key, others[0].values) if others else None
     with progress_bar("sweep") as progress:
-        frame = sweep(icons, rig, first.key, first.values, second=second, tail_s=tail_s, progress=progress)
+        frame = sweep(
+            icons,
+            rig,
+            first.key,
+            first.values,
+            second=second,
+            tail_s=tail_s,
+            measured=None if measure is None else Measured(whole, *measure),
+            progress=progress,
+        )
     keys, points = [vary.key for vary in varied], "combinations" if others else "values"
     if frame["duration_s"].isna().all():
         count = math.prod(len(vary.values) for vary in varied)
@@ -234,9 +231,9 @@ def sweep_file(
         with complete_or_absent(output) as draft:
             write_frame(frame, draft)
     if figure is not None:
-        write_figure(_figure(frame, varied, look), figure, look)
+        write_figure(_figure(frame, varied, look, () if measure is None else measure[0]), figure, look)
     lines = [headline(frame[frame["icon"] == each.name], points) for each in icons]
-    for line in (*lines, *_impossible(frame, keys)):
+    for line in (*lines, *_measured_lines(frame, keys, measure), *_impossible(frame, keys)):
         note(line)
     for written in (output, figure):
         if written not in (None, STDOUT):
@@ -245,8 +242,15 @@ def sweep_file(
         typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
 
 
-def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look) -> Figure:
-    """Lines over one key, heat maps over two."""
+def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:
+    """Lines over one key, heat maps over two: of what is measured, else of what the rig does."""
+    from thermicon.perception.sensitivity.swept import ALL, MEASURES
+
+    columns = [MEASURES[name] for name in what]
+    if len(varied) == 1 and columns:
+        from ..figures.measure_figure import measure_figure
+
+        return measure_figure(frame, varied[0].key, columns, ALL, log=varied[0].log, across=look.across(2))
     if len(varied) == 1:
         from ..figures.sweep_figure import sweep_figure
 
@@ -255,6 +259,12 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look) -> Figure:
 
     if (count := frame["icon"].nunique()) > MOST_ROWS:
         note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
+    if columns:
+        from ..figures.measure_figure import LABELS
+        from ..figures.sweep_map import SHADES
+
+        maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, _, _ in columns]
+        return sweep_map(frame, varied[0].key, varied[1].key, maps)
     return sweep_map(frame, varied[0].key, varied[1].key)
 
 
@@ -299,10 +309,30 @@ def headline(rows: pd.DataFrame, points: str = "values") -> str:
     return f"{rows['icon'].iloc[0]}: {', '.join(parts)}"
 
 
+def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], measure: Measure | None) -> list[str]:
+    """The proportion correct of the set where it is lowest and highest; nothing where it is not measured."""
+    from thermicon.perception.sensitivity.swept import ALL
+
+    if measure is None or "correct" not in measure[0]:
+        return []
+    rows = frame[(frame["icon"] == ALL) & frame["correct"].notna()]
+    if rows.empty:
+        return []
+    ends = [rows.loc[rows["correct"].idxmin()], rows.loc[rows["correct"].idxmax()]]
+    low, high = (
+        f"{percent(row['correct'])} correct at {', '.join(_setting(key, row[key]) for key in keys)}" for row in ends
+    )
+    return [f"{ALL}: from {low} to {high}"]
+
+
+def _setting(key: str, value: float | str) -> str:
+    return f"{key} = {value if isinstance(value, str) else f'{value:g}'}"
+
+
 def _impossible(frame: pd.DataFrame, keys: Sequence[str]) -> list[str]:
     """Return the first reason why a point could not be played, as a line; none where all could."""
-    lost = frame[frame["duration_s"].isna()]
+    lost = frame[frame["duration_s"].isna() & frame["reason"].notna()]
     return [
-        f"impossible, as at {', '.join(f'{key} = {row[key]:g}' for key in keys)}: {row['reason']}"
+        f"impossible, as at {', '.join(_setting(key, row[key]) for key in keys)}: {row['reason']}"
         for _, row in lost[:1].iterrows()
     ]

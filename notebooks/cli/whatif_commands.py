@@ -15,6 +15,7 @@ from ..files.cues import only, read_set, warn_of_site
 from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
 from ..text.options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
+from ..text.varied import AGE
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -91,7 +92,8 @@ def sweep_command(
         typer.Option(
             "--vary",
             metavar="KEY=LOW:HIGH:N",
-            help="A key of the rig and N values from LOW to HIGH; Nlog for equal ratios. Give it twice for a grid.",
+            help="A key of the rig, or people.age_years, and N values from LOW to HIGH, Nlog for equal ratios; or "
+            "values with commas, such as site=thenar,fingertip. Give it twice for a grid.",
         ),
     ],
     output: Annotated[
@@ -105,6 +107,24 @@ def sweep_command(
         ),
     ],
     icon: IconName = None,
+    measure: Annotated[
+        str | None,
+        typer.Option(
+            "--measure",
+            metavar="NAME,NAME",
+            help="Also predict what people perceive: correct, detected, onset, d_prime, bits.",
+        ),
+    ] = None,
+    people: Annotated[
+        int, typer.Option("--people", metavar="N", help="With --measure: number of virtual people.")
+    ] = 60,
+    parameters: Annotated[
+        int,
+        typer.Option(
+            "--parameters", metavar="N", help="With --measure: draws of the posterior for intervals; 0 for none."
+        ),
+    ] = 64,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", help="With --measure: seed of the virtual people.")] = 0,
     tail: Tail = 0.0,
     figure: FigureFile = None,
     width: FigureWidth = None,
@@ -117,14 +137,20 @@ def sweep_command(
     """Vary one or two keys of the rig and write, for every icon, misses, extremes, receptor changes and safety.
 
     Two keys make a grid: every combination of their values is played, and the table has one row per icon and
-    combination. Values are in the unit that the key ends with.
+    combination. Values are in the unit that the key ends with. With --measure every value is ranked as by rank, and a
+    last row of each is that of the whole set; intervals are those of a new laboratory, 95 %.
     """
     check_changes(changes or [])
     check_tail(tail)
-    from .sweep import read_varied, sweep_file
+    from ..text.varied import read_measures, read_varied
+    from .sweep import sweep_file
 
     look = figure_look(figure, width, style, no_title, figure_data)
-    sweep_file(file, read_varied(vary), icon, load_rig(rig, changes or []), tail, output, figure, look)
+    varied = read_varied(vary)
+    measures = None if measure is None else read_measures(measure, people, parameters, seed)
+    if measures is None and any(vary.key == AGE for vary in varied):
+        raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
+    sweep_file(file, varied, icon, load_rig(rig, changes or []), tail, output, figure, look, measures)
 
 
 def compare_command(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .overview import GREY
+from .overview import GREY, INK
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,44 +59,68 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
     >>> len(sweep_figure(sweep([step], Rig.load("thenar"), key, [1.0, 1.5]), key).axes)
     9
     """
-    from thermicon.circuit.rig.keyunits import unit_of
-
     figure, axes = small_multiples(len(PANELS), across)
-    styles = _styles(frame)
+    styles = icon_styles(frame)
+    places, names = key_places(frame, key)
     for ax, (columns, label) in zip(axes, PANELS, strict=True):
         for name, (color, mark) in styles.items():
-            _line(ax, frame[frame["icon"] == name], key, columns, color, mark)
+            rows = frame[frame["icon"] == name]
+            _line(ax, rows, places[rows.index], columns, color, mark)
         ax.set_ylabel(label, fontsize=9)
         ax.tick_params(labelsize=8)
         ax.grid(alpha=0.25, linewidth=0.6)
         ax.spines[["top", "right"]].set_visible(False)
-        if log:
-            _log_axis(ax)
+        key_axis(ax, names, log)
     axes[0].set_ylim(bottom=0.0)
     if frame["largest_miss_K"].abs().max() < 1e-3:
         axes[0].set_ylim(0.0, 0.1)
         axes[0].text(0.5, 0.5, "everywhere within 1 mK", ha="center", transform=axes[0].transAxes, fontsize=8)
-    shaded = _shade(axes, frame, key)
-    _legend(figure, styles, bool((frame["reached"] == False).any()), shaded)  # noqa: E712
+    shaded = _shade(axes, frame, places)
+    sweep_legend(figure, styles, bool((frame["reached"] == False).any()), shaded)  # noqa: E712
     figure.align_ylabels(axes)
-    unit = unit_of(key)
-    figure.supxlabel(f"{key} ({unit})" if unit else key, fontsize=10)
+    figure.supxlabel(key_label(key), fontsize=10)
     return figure
 
 
-def small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
+def small_multiples(count: int, across: int, wide: float = 3.2) -> tuple[Figure, list[Axes]]:
     """A figure with so many panels on one abscissa; those with none below them have its numbers."""
     from matplotlib.figure import Figure
 
     across = min(across, count)
     down = -(-count // across)
-    figure = Figure(figsize=(3.2 * across, 0.4 + 2.6 * down), layout="constrained")
+    figure = Figure(figsize=(wide * across, 0.4 + 2.6 * down), layout="constrained")
     axes = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
     for ax in axes[count:]:
         ax.remove()
     for ax in axes[max(0, count - across) : count]:
         ax.tick_params(labelbottom=True)
     return figure, axes[:count]
+
+
+def key_places(frame: pd.DataFrame, key: str) -> tuple[pd.Series, list[str]]:
+    """Where the rows stand on the abscissa, and the names there: those of a key whose values are names."""
+    values = frame[key]
+    if values.dtype == "float64":
+        return values, []
+    names = [str(name) for name in values.unique()]
+    return values.map({name: float(place) for place, name in enumerate(names)}).astype("float64"), names
+
+
+def key_label(key: str) -> str:
+    """The key with its unit; an age is in years."""
+    from thermicon.circuit.rig.keyunits import unit_of
+
+    unit = "years" if key.endswith("_years") else unit_of(key)
+    return f"{key.removesuffix('_years')} ({unit})" if unit == "years" else f"{key} ({unit})" if unit else key
+
+
+def key_axis(ax: Axes, names: list[str], log: bool) -> None:
+    """Names in the place of numbers, or equal ratios."""
+    if names:
+        ax.set_xticks(range(len(names)), names, rotation=30, ha="right")
+        ax.margins(x=0.08)
+    elif log:
+        _log_axis(ax)
 
 
 def _log_axis(ax: Axes) -> None:
@@ -109,15 +133,15 @@ def _log_axis(ax: Axes) -> None:
     ax.xaxis.set_minor_locator(NullLocator())
 
 
-def _line(ax: Axes, rows: pd.DataFrame, key: str, columns: tuple[str, ...], color: str, mark: str) -> None:
+def _line(ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str) -> None:
     fill = [color if reached is not False else "white" for reached in rows["reached"].fillna(True).astype(bool)]
     for place, column in enumerate(columns):
         values = rows[column].abs() if column == "largest_miss_K" else rows[column]
-        ax.plot(rows[key], values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
-        ax.scatter(rows[key], values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3)
+        ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
+        ax.scatter(at, values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3)
 
 
-def _styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:
+def icon_styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:
     """Colour and mark of every icon: blue where its larger change at the cold receptors is a cooling, else orange."""
     styles, used = {}, {True: 0, False: 0}
     for place, name in enumerate(frame["icon"].unique()):
@@ -129,9 +153,9 @@ def _styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:
     return styles
 
 
-def _shade(axes: list[Axes], frame: pd.DataFrame, key: str) -> bool:
+def _shade(axes: list[Axes], frame: pd.DataFrame, places: pd.Series) -> bool:
     """Shade the stretches of the key in which no icon could be played; whether there are any."""
-    lost = frame.groupby(key)["duration_s"].count() == 0
+    lost = frame.groupby(places)["duration_s"].count() == 0
     values = lost.index.to_numpy(dtype=float)
     for k in lost.to_numpy().nonzero()[0]:
         low = values[k] if k == 0 else 0.5 * (values[k - 1] + values[k])
@@ -141,7 +165,10 @@ def _shade(axes: list[Axes], frame: pd.DataFrame, key: str) -> bool:
     return bool(lost.any())
 
 
-def _legend(figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, shaded: bool) -> None:
+def sweep_legend(
+    figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, shaded: bool, whole: str = ""
+) -> None:
+    """The key of a sweep: icons, the whole set where it is named, what was not reached or impossible."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -149,6 +176,8 @@ def _legend(figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, sh
         Line2D([], [], color=color, marker=mark, markersize=5, lw=1.3, label=name)
         for name, (color, mark) in styles.items()
     ]
+    if whole:
+        handles.append(Line2D([], [], color=INK, lw=2.2, label=f"{whole}, band: 95 %"))
     if missed:
         hollow = Line2D([], [], color="none", marker="o", markersize=5, label="not reached")
         hollow.set_markerfacecolor("white")

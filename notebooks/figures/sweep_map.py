@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .overview import GREY
+from .overview import COOL, GREY, WARM
+from .sweep_figure import key_label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,66 +18,77 @@ if TYPE_CHECKING:
 
 MOST_ROWS = 6
 MOST_TICKS = 6
+SHADES, BLUE_ORANGE = "cividis", "blue to orange"
 QUANTITIES = (
-    ("largest_miss_K", "largest miss (K)", "viridis"),
-    ("energy_J", "electrical energy (J)", "viridis"),
-    ("cold_receptor_peak_change_K", "peak change,\ncold receptor (K)", "RdBu_r"),
-    ("warm_receptor_peak_change_K", "peak change,\nwarm receptor (K)", "RdBu_r"),
+    ("largest_miss_K", "largest miss (K)", SHADES),
+    ("energy_J", "electrical energy (J)", SHADES),
+    ("cold_receptor_peak_change_K", "peak change,\ncold receptor (K)", BLUE_ORANGE),
+    ("warm_receptor_peak_change_K", "peak change,\nwarm receptor (K)", BLUE_ORANGE),
 )
 """Columns of a sweep, their labels and colour maps; the diverging map is centred on 0."""
 
 
-def sweep_map(frame: pd.DataFrame, key: str, second: str) -> Figure:
+def sweep_map(
+    frame: pd.DataFrame, key: str, second: str, quantities: Sequence[tuple[str, str, str]] = QUANTITIES
+) -> Figure:
     """Draw heat maps of a sweep over two keys, for the first icons of the table.
 
-    A circle marks a combination at which the icon was not reached; combinations that could not be played are
-    grey.
+    Quantities are columns with their labels and colour maps. A circle marks a combination at which the icon was not
+    reached; combinations that could not be played are grey.
     """
     from matplotlib.figure import Figure
 
-    from thermicon.circuit.rig.keyunits import unit_of
-
     names = [str(name) for name in frame["icon"].unique()][:MOST_ROWS]
-    figure = Figure(figsize=(11.5, 1.2 + 2.1 * len(names)), layout="constrained")
-    axes = figure.subplots(len(names), len(QUANTITIES), sharex=True, sharey=True, squeeze=False)
-    for column, (quantity, label, colours) in enumerate(QUANTITIES):
+    figure = Figure(figsize=(1.1 + 2.6 * len(quantities), 1.2 + 2.1 * len(names)), layout="constrained")
+    axes = figure.subplots(len(names), len(quantities), sharex=True, sharey=True, squeeze=False)
+    for column, (quantity, label, colours) in enumerate(quantities):
         shown = frame.loc[frame["icon"].isin(names), quantity].abs() if "miss" in quantity else frame[quantity]
         high = float(np.nanmax(np.abs(shown))) or 1.0
-        low = -high if colours == "RdBu_r" else 0.0
+        low = -high if colours == BLUE_ORANGE else 0.0
+        shades = blue_to_orange() if colours == BLUE_ORANGE else colours
         for row, name in enumerate(names):
-            image = _map(axes[row, column], frame[frame["icon"] == name], (key, second, quantity), colours, (low, high))
+            image = _map(axes[row, column], frame[frame["icon"] == name], (key, second, quantity), shades, (low, high))
         figure.colorbar(image, ax=list(axes[:, column]), location="top", label=label, shrink=0.9)
     for row, name in enumerate(names):
         axes[row, 0].set_ylabel(name, fontsize=9)
-    figure.supxlabel(_named(key, unit_of(key)), fontsize=10)
-    figure.supylabel(_named(second, unit_of(second)), fontsize=10)
+    figure.supxlabel(key_label(key), fontsize=10)
+    figure.supylabel(key_label(second), fontsize=10)
     return figure
 
 
+def blue_to_orange() -> Any:
+    """Colours from cooling over white to warming."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list(BLUE_ORANGE, [COOL, "#ffffff", WARM])
+
+
 def _map(
-    ax: Axes, rows: pd.DataFrame, names: tuple[str, str, str], colours: str, limits: tuple[float, float]
+    ax: Axes, rows: pd.DataFrame, names: tuple[str, str, str], colours: Any, limits: tuple[float, float]
 ) -> AxesImage:
     """Draw one quantity of one icon, with a mark where it was not reached."""
-    key, second, quantity = names
-    values = rows.pivot(index=second, columns=key, values=quantity)
+    quantity = names[2]
+    values = _grid(rows, names, quantity)
     cells = np.abs(values.to_numpy(dtype=float)) if "miss" in quantity else values.to_numpy(dtype=float)
     image = ax.imshow(cells, origin="lower", aspect="auto", cmap=colours, vmin=limits[0], vmax=limits[1])
     ax.set_facecolor(GREY)
-    reached = rows.pivot(index=second, columns=key, values="reached").to_numpy(dtype=object)
-    missed = [
-        (x, y)
-        for y, line in enumerate(reached)
-        for x, hit in enumerate(line)
-        if hit is not None and hit == False  # noqa: E712
-    ]
+    reached = _grid(rows, names, "reached").astype("boolean").fillna(True).to_numpy(dtype=bool)
+    missed = [(x, y) for y, line in enumerate(reached) for x, hit in enumerate(line) if not hit]
     if missed:
         across, up = zip(*missed, strict=True)
         ax.scatter(across, up, s=20, facecolors="white", edgecolors="black", linewidths=0.7)
     for axis, ends in ((ax.xaxis, values.columns), (ax.yaxis, values.index)):
         places = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), MOST_TICKS)).round().astype(int))
-        axis.set_ticks(list(places), [f"{ends[k]:g}" for k in places], fontsize=8)
+        axis.set_ticks(list(places), [_named(ends[k]) for k in places], fontsize=8)
     return image
 
 
-def _named(key: str, unit: str | None) -> str:
-    return f"{key} ({unit})" if unit else key
+def _grid(rows: pd.DataFrame, names: tuple[str, str, str], column: str) -> pd.DataFrame:
+    """Values in the order in which both keys take them."""
+    key, second, _ = names
+    grid = rows.pivot(index=second, columns=key, values=column)
+    return grid.reindex(index=rows[second].unique(), columns=rows[key].unique())
+
+
+def _named(value: object) -> str:
+    return value if isinstance(value, str) else f"{value:g}"

@@ -111,7 +111,8 @@ def laboratory_draws(
         k = int(chosen[place])
         moved = {p.name: p.at(float(share)) for p, share in zip(memory, shares[place], strict=True)}
         observer = with_memory(held.observer(k), moved, norm)
-        people = draw_people(count, seed, spreads=held.draw(k)).less_sensitive(*(-offsets[k]))
+        drawn = draw_people(count, seed, age_years=model.age_years, spreads=held.draw(k))
+        people = drawn.less_sensitive(*(-offsets[k]))
         return scored(
             played(place), people, observer, norm, seed, task, everyone if invited is None else invited[place]
         )

@@ -20,7 +20,7 @@ from .channels import CHANNELS
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, variant_records
 from .observer_file import read_observer_file
-from .people import SPREADS, People, draw_people
+from .people import SPREADS, People, age_factor, draw_people
 
 SHIPPED = "shipped"
 OF_PEOPLE = (
@@ -50,6 +50,8 @@ class ObserverModel:
         Records of the observer, from which intervals of memory noise are read.
     posterior
         Draws of the constants; None where the file has none.
+    age_years
+        Age of all people; None: 20 to 30 years, as in the evidence.
 
     Examples
     --------
@@ -63,6 +65,7 @@ class ObserverModel:
     spreads: Mapping[str, float] | None = field(repr=False)
     records: Table = field(repr=False)
     posterior: PosteriorDraws | None
+    age_years: float | None = None
 
     @classmethod
     def of(cls, observer: ObserverModel | Path | str | None) -> ObserverModel:
@@ -95,13 +98,23 @@ class ObserverModel:
 
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""
-        return draw_people(n, seed, spreads=self.spreads)
+        return draw_people(n, seed, age_years=self.age_years, spreads=self.spreads)
+
+    def aged(self, age_years: float) -> ObserverModel:
+        """The same model for people of an age, 18 to 100 years: their thresholds are higher."""
+        for channel in CHANNELS:
+            age_factor(age_years, channel)
+        return replace(self, age_years=age_years)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, ObserverModel) and (self.name, self.digest) == (other.name, other.digest)
+        return isinstance(other, ObserverModel) and self._identity == other._identity
 
     def __hash__(self) -> int:
-        return hash((self.name, self.digest))
+        return hash(self._identity)
+
+    @property
+    def _identity(self) -> tuple[str, str, float | None]:
+        return self.name, self.digest, self.age_years
 
     def for_jobs(self) -> ObserverModel | None:
         """What batches need of it, without the draws: None for the shipped one, which every worker has."""
@@ -110,7 +123,8 @@ class ObserverModel:
     @property
     def key(self) -> str:
         """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
-        return "" if self.name == SHIPPED else self.digest
+        own = "" if self.name == SHIPPED else self.digest
+        return own if self.age_years is None else f"{own} people of {self.age_years:g} years"
 
     def __repr__(self) -> str:
         draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"

@@ -27,9 +27,10 @@ from .waves import PAIRS, SHAPES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
-MAP, OPPOSED = "cividis", "PuOr"
+MAP = "cividis"
 SHAPE_STYLES = (("#111111", "-"), ("#5e3c99", (0, (5, 1.2))), ("#8c8c8c", (0, (1, 1))))
 
 
@@ -143,7 +144,7 @@ def trade_figure(report: ValidationReport) -> Figure:
             a, b = names.index(trade.first), names.index(trade.second)
             if trade.correlation is not None:
                 table[max(a, b), min(a, b)] = trade.correlation
-        drawn = ax.imshow(table, cmap=OPPOSED, vmin=-1.0, vmax=1.0)
+        drawn = ax.imshow(table, cmap=_opposed(), vmin=-1.0, vmax=1.0)
         ax.set_xticks(np.arange(len(names)), codes, rotation=90, fontsize=7)
         said = [f"{name.partition(' ')[2]}  {code}" for name, code in zip(names, codes, strict=True)]
         ax.set_yticks(np.arange(len(names)), said if k == 0 else codes, fontsize=7)
@@ -224,3 +225,10 @@ TRADE_OFF: Drawn = (
     "0.5 and stronger. Codes begin with the number of the target.",
     trade_figure,
 )
+
+
+def _opposed() -> Colormap:
+    """Colours from blue over white to orange, for what has two signs."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("blue to orange", [COOL, "#ffffff", WARM])

@@ -203,3 +203,84 @@ def test_figure_marks_what_was_missed_and_what_was_impossible(two: Path, tmp_pat
     assert [text.get_text() for text in figure.legends[0].get_texts()][2:] == ["not reached", "impossible"]
     figure.savefig(tmp_path / "a.png")
     assert (tmp_path / "a.png").stat().st_size > 20_000
+
+
+QUICK = ("--people", 4, "--parameters", 4)
+
+
+def test_what_people_perceive_stands_beside_what_the_rig_does(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "m.csv", tmp_path / "m.png"
+    measures = ("--measure", "correct,detected,onset,d_prime")
+    said = cli("sweep", two, "--vary", f"{AREA}=1,9", *measures, *QUICK, "-o", out, "--figure", picture)
+    assert said.exit_code == 0, said
+    frame = pd.read_csv(out)
+    assert list(frame["icon"].unique()) == ["cool-step", "warm-step", "all icons"]
+    assert {"correct_low", "detected_high", "onset_s", "d_prime_low", "skin_min_C", "reason"} <= set(frame.columns)
+    whole = frame[frame["icon"] == "all icons"].set_index(AREA)
+    assert (whole["correct_low"] <= whole["correct_high"]).all()
+    assert "all icons: from" in said.stderr and "impossible" not in said.stderr
+    assert picture.stat().st_size > 10_000
+
+
+def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
+    from thermicon.notebooks.cli.sweep import Measured
+    from thermicon.perception import rank
+
+    icons, rig = read_cue(two), Rig.load("thenar")
+    measured = Measured(icons, ("correct", "detected"), people=4, parameters=4)
+    frame = sweep(icons, rig, "site", ["fingertip"], measured=measured)
+    moved = rig.with_(**_of("fingertip"))
+    ranking = rank(icons, moved, people=4, parameters=4)
+    row = frame[frame["icon"] == "all icons"].iloc[0]
+    assert row["correct"] == ranking.proportion_correct and ranking.new_laboratory is not None
+    assert (row["correct_low"], row["correct_high"]) == ranking.new_laboratory.proportion_correct
+    first = frame.iloc[0]
+    assert first["detected"] == ranking.icons[0].detected_probability
+    assert (first["detected_low"], first["detected_high"]) == ranking.new_laboratory.detected[0]
+
+
+def _of(name: str) -> dict[str, Any]:
+    import json
+
+    document = json.loads(Rig.load(name).document)
+    return {table: document[table] for table in ("skin", "contact", "blood")}
+
+
+def test_older_people_feel_less(two: Path) -> None:
+    from thermicon.notebooks.cli.sweep import Measured
+
+    measured = Measured(read_cue(two), ("detected", "onset"), people=4, parameters=0)
+    frame = sweep(read_cue(two), Rig.load("fingertip"), "people.age_years", [25.0, 80.0], measured=measured)
+    cool = frame[frame["icon"] == "cool-step"]
+    assert cool["detected"].iloc[1] < cool["detected"].iloc[0]
+    assert cool["skin_min_C"].nunique() == 1
+
+
+def test_two_keys_with_a_site_make_maps(cli: Cli, two: Path, tmp_path: Path) -> None:
+    vary = ("--vary", "site=thenar,forearm", "--vary", f"{AREA}=4,9")
+    said = cli("sweep", two, *vary, "--measure", "correct", *QUICK, "-o", "-", "--figure", tmp_path / "m.png")
+    frame = pd.read_csv(io.StringIO(said.stdout))
+    assert len(frame) == 3 * 4 and set(frame["site"]) == {"thenar", "forearm"}
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        (
+            ("--vary", f"{AREA}=1:9:2", "--measure", "fun"),
+            2,
+            "'fun' is not one of correct, detected, onset, d_prime, bits",
+        ),
+        (("--vary", f"{AREA}=1:9:2", "--measure", "bits,bits"), 2, "the same quantity is given twice"),
+        (("--vary", f"{AREA}=1:9:2", "--measure", "bits", "--parameters", 1), 2, "1 draw has no interval"),
+        (("--vary", "people.age_years=20:80:3"), 2, "changes what people perceive only; add --measure correct"),
+        (("--vary", "people.age_years=8:80:3", "--measure", "bits"), 1, "an age of 8 years is not covered"),
+        (("--vary", "site=thenar,nose"), 1, "site=nose: there is no such site; there are fingertip, forearm"),
+        (("--vary", "site=1:3:2"), 2, "sites are names; give them as site=thenar,fingertip"),
+        (("--vary", f"{AREA}=1,x"), 2, "'x' is not a number"),
+        (("--vary", f"{AREA}=1,1"), 2, "the same value is given twice"),
+    ],
+)
+def test_measures_and_values_that_cannot_be(cli: Cli, two: Path, options: Any, code: int, words: str) -> None:
+    said = cli("sweep", two, *options, "-o", "-")
+    assert said.exit_code == code and words in " ".join(said.stderr.replace("│", " ").split()), said

@@ -1,0 +1,76 @@
+"""The figure of a sweep over what people perceive: a panel a quantity, a line an icon, the set in black, intervals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from .overview import INK
+from .sweep_figure import icon_styles, key_axis, key_label, key_places, small_multiples, sweep_legend
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+LABELS = {
+    "correct": "correct (%)",
+    "detected": "detected (%)",
+    "onset_s": "onset (s)",
+    "d_prime": "d′ of the nearest icon",
+    "bits": "information (bits)",
+}
+SHARES = ("correct", "detected")
+BAND = 0.13
+
+
+def measure_figure(
+    frame: pd.DataFrame, key: str, columns: Sequence[Sequence[str]], whole: str, log: bool = False, across: int = 2
+) -> Figure:
+    """Draw what was measured against the key, with bands or bars of 95 % for a new laboratory.
+
+    Parameters
+    ----------
+    frame
+        The table of a sweep with measures.
+    key
+        The column on the abscissa.
+    columns
+        Value, lower and upper end of each quantity.
+    whole
+        Name of the rows of the whole set.
+    log
+        Whether the abscissa is logarithmic.
+    across
+        Panels beside one another.
+    """
+    figure, axes = small_multiples(len(columns), across, 3.6)
+    places, names = key_places(frame, key)
+    styles = icon_styles(frame[frame["icon"] != whole])
+    for ax, (value, low, high) in zip(axes, columns, strict=True):
+        scale = 100.0 if value in SHARES else 1.0
+        for icon, (color, mark) in {**styles, whole: (INK, "")}.items():
+            rows = frame[frame["icon"] == icon]
+            if not len(rows) or rows[value].isna().all():
+                continue
+            if icon == whole and value == "d_prime" and styles:
+                continue  # it is the lower edge of the icons' lines
+            at = places[rows.index]
+            style: dict[str, Any] = {"lw": 2.2, "zorder": 4} if icon == whole else {"lw": 1.2, "zorder": 3}
+            ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, **style)
+            if rows[low].notna().any():
+                ax.fill_between(
+                    at, scale * rows[low].astype(float), scale * rows[high].astype(float), color=color,
+                    alpha=BAND if icon == whole else 0.5 * BAND, lw=0.0, zorder=1,
+                )  # fmt: skip
+        ax.set_ylabel(LABELS[value], fontsize=9)
+        ax.tick_params(labelsize=8)
+        ax.grid(alpha=0.25, linewidth=0.6)
+        ax.spines[["top", "right"]].set_visible(False)
+        ax.set_ylim(bottom=0.0)
+        if value in SHARES:
+            ax.set_ylim(0.0, 103.0)
+        key_axis(ax, names, log)
+    sweep_legend(figure, styles, False, False, whole=whole)
+    figure.align_ylabels(axes)
+    figure.supxlabel(key_label(key), fontsize=10)
+    return figure
