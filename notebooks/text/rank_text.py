@@ -7,6 +7,7 @@ from typing import Any
 
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
+from .assumption_text import assumption_lines
 from .choices import choice_lines, goal_lines
 from .rank_notes import (
     carried_lines,
@@ -25,7 +26,7 @@ DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
     "channel what most of them go by, from 50 % on."
 )
-MOST_DISAGREEMENTS, MOST_EDITS, MOST_DOUBTS, SAME_DPRIME = 5, 20, 3, 0.05
+MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
 def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures: Mapping[str, str]) -> None:
@@ -63,7 +64,8 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
         )
     best = ["", *choice_lines(result["chosen"])] if result["chosen"] else []
     goal = ["", *goal_lines(result["goal"])] if result["goal"] else []
-    lines = [*set_lines(result), *best, *goal, *_disagreements(result)]
+    depends = assumption_lines(result["assumptions"])
+    lines = [*set_lines(result), *depends, *best, *goal, *_disagreements(result)]
     show(*heading, made, "", *troubles, *space, *lines, "", caveat(result))
 
 
@@ -122,15 +124,7 @@ def number_lines(result: dict[str, Any]) -> list[str]:
             f"     {whole['bits_per_s']:.2f} bits/s",
             f"     a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)",
         ]
-    lines += _doubt(whole["doubt"])
     return lines
-
-
-def _doubt(doubt: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """What carries the width of the interval for a new laboratory: the constants that a pilot should narrow first."""
-    if doubt:
-        named = ", ".join(f"{one['constant']} {percent(one['share_of_variance'])}" for one in doubt[:MOST_DOUBTS])
-        yield f"     most of the doubt comes from: {named}"
 
 
 def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:

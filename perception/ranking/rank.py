@@ -30,6 +30,7 @@ from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, energy_J, objection
 from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
+from .assumptions import assumptions_of
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
 from .goal_result import NEEDS_DRAWS, judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
@@ -221,6 +222,9 @@ def rank(
         total_J=math.fsum(energies),
         goal=reached,
         warnings=warnings,
+        assumptions=assumptions_of(all_.correct, crowd, rig, nominal, None if elsewhere is None else elsewhere.each)
+        if by == "model"
+        else None,
         icons=made.icons,
         pairs=pairs,
         confusion=all_.pooled,

@@ -59,6 +59,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             },
             "set": _set(ranking, model, asked),
             "persons": {"proportion_correct": list(ranking.persons) if model else None},
+            "assumptions": None if ranking.assumptions is None else ranking.assumptions.to_dict(),
             "goal": None if ranking.goal is None else ranking.goal.to_dict(),
             "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
             "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,

@@ -17,6 +17,7 @@ from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer_model import SHIPPED
+from .assumptions import Assumptions
 from .goal_result import GoalResult
 from .scores import IconScore, PairScore
 
@@ -150,6 +151,7 @@ class Ranking:
     total_J: float = math.nan
     goal: GoalResult | None = None
     warnings: tuple[str, ...] = ()
+    assumptions: Assumptions | None = None
 
     def __post_init__(self) -> None:
         own_arrays(self, "confusion")

@@ -22,6 +22,15 @@ if TYPE_CHECKING:
 
 CALIBRATED = "thenar"
 MIRRORS = ("left", "right")
+NEAREST = {
+    "thenar": (("fingertip", "finger", "fingers", "palm", "hypothenar", "thumb"), "hairless skin of the same hand"),
+    "hand-dorsum": (("hand", "knuckle"), "the same hand"),
+    "wrist": (("wrist",), "the same joint"),
+    "forearm": (("arm", "elbow", "shoulder"), "hairy skin of the same limb"),
+    "foot": (("foot", "sole", "toe", "ankle", "leg", "calf", "shin", "thigh", "knee"), "the same limb"),
+    "face": (("face", "cheek", "forehead", "lip", "chin", "neck", "temple"), "the same part of the body"),
+}
+"""For each recorded site, words of sites that it is the nearest to, and why."""
 
 
 @lru_cache(maxsize=1)
@@ -57,6 +66,19 @@ def outside_site(site: str) -> tuple[str, ...]:
     if "-".join(words) in known:
         return ()
     return (f"no detection threshold is on record for the {site}: those of the {CALIBRATED} are used",)
+
+
+def nearest_site(site: str) -> tuple[str | None, str]:
+    """The recorded site that is nearest to one without records, and why; None where none is near.
+
+    >>> nearest_site("fingertip"), nearest_site("left upper arm")[0], nearest_site("back")[0]
+    (('thenar', 'hairless skin of the same hand'), 'forearm', None)
+    """
+    words = set(site.lower().replace("-", " ").split())
+    for recorded, (near, why) in NEAREST.items():
+        if words & set(near):
+            return recorded, why
+    return None, "no recorded site is near it"
 
 
 def _temperatures(record: Record, places: tuple[tuple[str, Array], ...], time_s: Array) -> list[str]:

@@ -1,0 +1,271 @@
+"""What a ranking depends on most, read from the people and draws that it has made already: nothing is simulated again.
+
+Contact and outermost layer differ from person to person, so that a regression of the proportion correct on people says
+what another contact would do to all of them. The area of contact acts on thresholds alone in the model of perception
+(Stevens' summation), and thresholds differ between people too. Constants of the observer differ from draw to draw.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.doubt import scores_of
+from ..identification.laboratory_draws import LaboratoryDraws
+from ..observer.channels import CHANNELS
+from ..observer.observer import Observer, on_forearm
+from ..observer.people import People, people_records
+from ..sensation.coverage import nearest_site, outside_site
+from ..sensation.sensation import sensitivity
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+FEWEST_PEOPLE, FEWEST_DRAWS = 100, 64
+"""Fewer do not distinguish an effect of some points from chance."""
+LEAST_T = 4.0
+"""An effect is named where it exceeds this many standard errors: of 50 that do nothing, one in 300 rankings does."""
+LEAST_POINTS = 0.02
+MOST = 3
+TWICE = 2.0
+COLUMNS = (
+    *("threshold_cold", "threshold_warm", "criterion_cold", "criterion_warm", "memory"),
+    *("contact_resistance", "outer_layer", "path", "decision_s"),
+)
+"""Multipliers of people that the regression accounts for, as logarithms."""
+ELSEWHERE = (
+    *("cold receptor depth", "warm receptor depth", "contact resistance of a thermode", "effusivity of living skin"),
+    *("choice time", "criterion of yes and no", "caution after a pre-pulse"),
+    *("cold sensitivity lost per decade", "warm sensitivity lost per decade"),
+)
+"""Constants of the posterior that act in other experiments only; what correlates with them here is named itself."""
+LABORATORIES = ("E1", "E3", "E4", "thenar", "wrist")
+NOT_VARIED = (
+    "module, driver and heat sink",
+    "room and resting temperature of the skin",
+    "depths of the receptors",
+    "what the skin touched before",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Assumption:
+    """A quantity that was assumed, two values of it, and the proportion correct (0–1) to be expected at both.
+
+    `key` is its key in the rig file, empty for a constant of the observer; `source` says what it was read from,
+    `people` or `draws`; `standard_error` is that of the difference.
+    """
+
+    name: str
+    key: str
+    unit: str
+    value: float | None
+    low: float
+    high: float
+    correct_at_low: float
+    correct_at_high: float
+    standard_error: float
+    source: str
+
+    @property
+    def moves(self) -> float:
+        """How far the proportion correct moves between both values."""
+        return abs(self.correct_at_high - self.correct_at_low)
+
+    def __repr__(self) -> str:
+        return (
+            f"Assumption({self.name}: {100 * self.correct_at_low:.0f} % correct at {self.low:.3g} {self.unit}, "
+            f"{100 * self.correct_at_high:.0f} % at {self.high:.3g} {self.unit})"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Assumptions:
+    """The assumptions that move a ranking most, the site's evidence, and what was not varied.
+
+    `site` is None where thresholds of the site are on record; else it names the site, the nearest recorded one and
+    the proportion correct if thresholds were twice as high (None: too few people to say).
+    """
+
+    moving: tuple[Assumption, ...]
+    site: Mapping[str, Any] | None
+    not_varied: tuple[str, ...] = NOT_VARIED
+
+    def to_dict(self) -> dict[str, Any]:
+        """The key `assumptions` of the ranking file."""
+        return {
+            "moving": [asdict(each) for each in self.moving],
+            "site": None if self.site is None else dict(self.site),
+            "not_varied": list(self.not_varied),
+        }
+
+
+def assumptions_of(
+    correct: Array, crowd: People, rig: Rig, observer: Observer, draws: LaboratoryDraws | None
+) -> Assumptions:
+    """Find what moves the proportion correct of a set most.
+
+    Parameters
+    ----------
+    correct
+        Proportion correct of every person, (people,).
+    crowd
+        The people.
+    rig
+        The rig, with its uncertainty of contact.
+    observer
+        The nominal observer, whose summation over area is used.
+    draws
+        Predictions by draws of the posterior; None: there are none.
+
+    Returns
+    -------
+    Assumptions
+        At most three, the largest first; none where all effects are within chance.
+    """
+    found = [] if draws is None else _of_draws(draws, rig.site)
+    fitted = PeopleFit.of(correct, crowd)
+    if fitted is not None:
+        found += _of_people(fitted, rig, observer)
+    named = [each for each in found if each.moves >= max(LEAST_POINTS, LEAST_T * each.standard_error)]
+    moving = sorted(named, key=lambda each: (-each.moves, each.name))[:MOST]
+    return Assumptions(tuple(moving), _site(rig.site, fitted))
+
+
+@dataclass(frozen=True, slots=True)
+class PeopleFit:
+    """Parabolas of the proportion correct in the logarithms of people's multipliers; (people, columns)."""
+
+    columns: Array
+    correct: Array
+    weights: Array
+    covariance: Array
+
+    @classmethod
+    def of(cls, correct: Array, crowd: People) -> PeopleFit | None:
+        """Fit them; None for too few people, or where all are named alike."""
+        columns = np.stack([np.log(getattr(crowd, name)) for name in COLUMNS], axis=1)
+        design = _design(columns)
+        people, terms = design.shape
+        if people < max(FEWEST_PEOPLE, 3 * terms) or np.ptp(correct) == 0.0:
+            return None
+        inverse = np.linalg.pinv(design.T @ design)
+        weights = inverse @ design.T @ correct
+        left = correct - design @ weights
+        return cls(columns, correct, weights, inverse * float(left @ left) / (people - terms))
+
+    def shifted(self, **shifts: float) -> Array:
+        """Change of the mean terms where everyone's logarithms are moved so far, (terms,)."""
+        moved = self.columns + np.array([shifts.get(name, 0.0) for name in COLUMNS])
+        mean: Array = (_design(moved) - _design(self.columns)).mean(axis=0)
+        return mean
+
+    def at(self, terms: Array) -> float:
+        """Proportion correct to be expected there, 0–1."""
+        return float(np.clip(self.correct.mean() + terms @ self.weights, 0.0, 1.0))
+
+    def error(self, terms: Array) -> float:
+        """Standard error of the change along some terms."""
+        return math.sqrt(max(float(terms @ self.covariance @ terms), 0.0))
+
+
+def _design(columns: Array) -> Array:
+    cold, warm = columns[:, :1], columns[:, 1:2]
+    return np.hstack([np.ones_like(cold), columns, columns**2, cold * warm])
+
+
+def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumption]:
+    area_cm2, resistance, layer = rig.contact.area_m2 * 1e4, rig.contact.resistance_m2K_per_W, rig.skin.layers[0]
+    by, thicker = 1.0 + rig.uncertainty.contact_resistance_relative, 1.0 + people_records()["outer_layer"].central
+    mm = layer.thickness_m * 1e3
+
+    def of_area(factor: float) -> Array:
+        own, other = (
+            [sensitivity(channel, observer, share * rig.contact.area_m2, rig.site) for channel in CHANNELS]
+            for share in (1.0, factor)
+        )
+        moved = {f"threshold_{c}": math.log(a / b) for c, a, b in zip(CHANNELS, own, other, strict=True)}
+        return fitted.shifted(**moved)
+
+    each = (
+        ("area of contact", "contact.area_cm2", "cm²", area_cm2, TWICE, of_area),
+        (
+            *("contact resistance", "contact.resistance_m2K_per_W", "m²K/W", resistance, by),
+            lambda factor: fitted.shifted(contact_resistance=math.log(factor)),
+        ),
+        (
+            *(f"thickness of the {layer.name}", "skin.layer.0.thickness_mm", "mm", mm, thicker),
+            lambda factor: fitted.shifted(outer_layer=math.log(factor)),
+        ),
+    )
+    found = []
+    for name, key, unit, value, factor, terms_of in each:
+        low, high = terms_of(1.0 / factor), terms_of(factor)
+        found.append(
+            Assumption(
+                *(name, key, unit, value, value / factor, value * factor, fitted.at(low), fitted.at(high)),
+                *(fitted.error(high - low), "people"),
+            )
+        )
+    return found
+
+
+def _of_draws(draws: LaboratoryDraws, site: str) -> list[Assumption]:
+    """What constants do between the ends of their 95 %, as parabolas in their normal scores."""
+    count = len(draws)
+    predicted = draws.proportion_correct
+    if count < FEWEST_DRAWS or np.ptp(predicted) == 0.0:
+        return []
+    found = []
+    for place, name in enumerate(draws.names):
+        values = draws.values[:, place]
+        if not _acts(name, site) or np.ptp(values) == 0.0:
+            continue
+        scores = scores_of(values)
+        design = np.stack([np.ones(count), scores, scores**2], axis=1)
+        inverse = np.linalg.pinv(design.T @ design)
+        weights = inverse @ design.T @ predicted
+        left = predicted - design @ weights
+        ends = np.array([[1.0, z, z * z] for z in (-1.96, 1.96)])
+        across = ends[1] - ends[0]
+        error = math.sqrt(float(across @ inverse @ across) * float(left @ left) / (count - 3))
+        low, high = np.percentile(values, (2.5, 97.5))
+        at_low, at_high = np.clip(ends @ weights, 0.0, 1.0).tolist()
+        found.append(Assumption(name, "", "", None, float(low), float(high), at_low, at_high, error, "draws"))
+    return found
+
+
+def _acts(name: str, site: str) -> bool:
+    """Whether a constant acts in a ranking at a site: not those of other experiments and sites.
+
+    >>> [_acts(name, "fingertip") for name in ("gain noise", "cold threshold on the forearm", "wrist cold")]
+    [True, False, False]
+    """
+    if name.endswith("on the forearm"):
+        return on_forearm(site)
+    return name not in ELSEWHERE and name.split(" ")[0] not in LABORATORIES
+
+
+def _site(site: str, fitted: PeopleFit | None) -> Mapping[str, Any] | None:
+    if not outside_site(site):
+        return None
+    doubled = dict.fromkeys(("threshold_cold", "threshold_warm"), math.log(TWICE))
+    twice = None
+    if fitted is not None:
+        terms = fitted.shifted(**doubled)
+        change = abs(fitted.at(terms) - float(fitted.correct.mean()))
+        if change >= max(LEAST_POINTS, LEAST_T * fitted.error(terms)):
+            twice = fitted.at(terms)
+    nearest, why = nearest_site(site)
+    return {
+        "site": site,
+        "nearest_recorded": nearest,
+        "why": why,
+        "thresholds_of": "forearm" if on_forearm(site) else "thenar",
+        "proportion_correct_at_twice_the_thresholds": twice,
+    }
