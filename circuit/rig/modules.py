@@ -217,7 +217,8 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
             side, end = ("below", low) if mean_C < low else ("above", high)
             warnings.append(
                 f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … "
-                f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used"
+                f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used: add a "
+                "[[module.datasheet]] of a hotter side to the rig file, or fit the module to a log (thermicon fit)"
             )
     return Peltier(*at_mean_C(extractions, mean_C), *plates, *legs), ModuleOrigin(sentence + ".", tuple(warnings))
 

@@ -13,6 +13,9 @@ if TYPE_CHECKING:
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
 
+USUAL_COMMAND_V = 10.0
+"""Analogue outputs of laboratories end here; larger commands need another output or more gain."""
+
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 """Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
 
@@ -47,8 +50,25 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
     sentences += rig.limits.hidden
     if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
         sentences.append(resting)
+    sentences += _beyond_the_command(rig)
     origin = () if rig.pump is None else rig.pump.origin.warnings
     return (*sentences, *origin, *_left_from_another_module(rig), *_left_from_another_site(rig))
+
+
+def _beyond_the_command(rig: Rig) -> list[str]:
+    """A sentence where the usual ±10 V of a converter do not command the whole current limit."""
+    if rig.pump is None:
+        return []
+    driver = rig.driver
+    gain, limit = driver.transconductance_A_per_V, max(driver.current_max_A, -driver.current_min_A)
+    if limit <= USUAL_COMMAND_V * gain * (1.0 + 1e-9):
+        return []
+    return [
+        f"driver.current_limit_A = {limit:g} A takes {limit / gain:.3g} V of command at "
+        f"driver.transconductance_A_per_V = {gain:g}; cards that end at ±{USUAL_COMMAND_V:g} V, such as those of NI, "
+        f"reach {USUAL_COMMAND_V * gain:g} A: set driver.transconductance_A_per_V to that of your driver "
+        f"({limit / USUAL_COMMAND_V:.3g} or more for {limit:g} A), or the limit to {USUAL_COMMAND_V * gain:g} A"
+    ]
 
 
 def _left_from_another_site(rig: Rig) -> list[str]:

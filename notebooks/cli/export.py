@@ -54,7 +54,7 @@ def export_file(
     for warning in ready.warnings:
         note(warning)
     if refused(ready, force):
-        for line in (line for one in ready.prepared for line in icon_lines(one)):
+        for line in (*map(icon_line, ready.prepared), *warning_lines(ready.prepared)):
             note(line)
         note(CAUTION)
         note("nothing was written")
@@ -76,8 +76,9 @@ def report_icons(ready: Sequence[Prepared]) -> None:
     For drives played open loop, one more line gives the uncertainty due to an uncharacterised module.
     """
     for one in ready:
-        for line in icon_lines(one):
-            note(line)
+        note(icon_line(one))
+    for line in warning_lines(ready):
+        note(line)
     for about, text in gate_words(ready):
         note(f"{about}: {text}")
     spreads = [(one.spread, one.delivery.icon.name) for one in ready if one.spread is not None]
@@ -86,19 +87,28 @@ def report_icons(ready: Sequence[Prepared]) -> None:
         note(f"{name}: {widest}")
 
 
-def icon_lines(one: Prepared) -> Iterator[str]:
-    """How an icon is played and how far that is from the design, then one line per warning."""
+def icon_line(one: Prepared) -> str:
+    """How an icon is played and how far that is from the design."""
     delivery = one.delivery
     receptors = [each for each in one.deviation.places if "receptor" in each.place]
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
-    yield (
+    return (
         f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {steps_of(delivery)} on "
         f"{delivery.device.name}, receptors within {number(largest)} mK of the design (RMS {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-    for warning in one.warnings:
-        yield f"warning: {delivery.icon.name}: {warning}"
+
+
+def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
+    """Every warning once, with the icons that it is about."""
+    names: dict[str, list[str]] = {}
+    for one in ready:
+        for warning in one.warnings:
+            names.setdefault(str(warning), []).append(one.delivery.icon.name)
+    for warning, about in names.items():
+        whose = f"all {len(ready)} icons" if len(about) == len(ready) > 1 else ", ".join(about)
+        yield f"warning: {whose}: {warning}"
 
 
 def refused(ready: PreparedExport, force: bool) -> bool:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.ranking.reach import Trial
 
+REFINING_PEOPLE = 24
+"""As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_TRIALS = 3
@@ -131,8 +133,9 @@ class FoundSet:
             f"Before: {', '.join(icon.name for icon in found.start)}",
             "",
             *self._goal(),
-            f"{found.evaluations} icons were tried on a nominal person and {found.refined} on 24 people, with the "
-            f"objective {found.objective} (seed {found.seed}). Before and after are for {crowd} on the {rig} rig.",
+            f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
+            f"people, whatever --people is, with the objective {found.objective} (seed {found.seed}). Before and after "
+            f"are for {crowd} on the {rig} rig.",
             "These are predictions of a model, not measurements, and the set was optimised for that same model: "
             "expect lower scores from people.",
         )
@@ -154,7 +157,14 @@ class FoundSet:
         yield "total duration, s", number(self.before.total_s), number(self.after.total_s)
 
     def _remarks(self) -> Iterator[str]:
-        """Icons of the found set that are not green, or that many people will miss."""
+        """Icons of the found set that are not green, or that many people will miss; ranges that end too early."""
+        if self.found.at_ends:
+            yield f"At the end of its range: {'; '.join(self.found.at_ends)}. A wider range may hold a better set."
+        if self.found.listed:
+            yield (
+                f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 s is searched between its "
+                "ends, with or without a step."
+            )
         for icon in self.after.icons:
             if not icon.playable:
                 yield f"{icon.name} cannot be played: {icon.reason or 'the rig does not reach it'}"

@@ -26,6 +26,7 @@ DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
     "channel what most of them go by, from 50 % on."
 )
+NO_INTERVAL = "     no interval for a new laboratory: that takes --parameters 2 or more and an observer with draws"
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
@@ -115,6 +116,10 @@ def number_lines(result: dict[str, Any]) -> list[str]:
         low, high = whole["proportion_correct_interval_new_laboratory"]
         people = whole["new_laboratory_people"]
         lines.append(f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}")
+    elif not result["chosen"]:
+        lines.append(
+            "     no interval for a new laboratory: it takes --parameters 2 or more and an observer with draws"
+        )
     if bits is not None:
         least, most = whole["information_bits_interval"]
         plugin = whole["information_bits_plugin"]
@@ -158,14 +163,17 @@ def worst_lines(result: dict[str, Any]) -> Iterator[str]:
     (worst,) = (pair for pair in pairs if [pair["a"], pair["b"]] == result["set"]["worst_pair"])
     confused = percent(worst["confused_probability"])
     head = f"Worst pair: {worst['a']} and {worst['b']}"
-    yield f"{head}, confused in {confused} of trials (d′ {number(worst['d_prime'])})"
+    yield f"{head}, confused in {confused} of trials, the mean of both ways (d′ {number(worst['d_prime'])})"
     yield from (f"  - {reason}" for reason in worst["why"])
     yield from edit_lines(worst)
     nearest = min((p for p in pairs if not fine or {p["a"], p["b"]} <= fine), key=lambda p: p["d_prime"], default=worst)
     if nearest["d_prime"] < worst["d_prime"] - SAME_DPRIME:
         share = percent(nearest["confused_probability"])
         pair = f"{nearest['a']} and {nearest['b']}"
-        yield f"Nearest in d′: {pair}, d′ {number(nearest['d_prime'])}, confused in {share} of trials"
+        yield (
+            f"Nearest in d′: {pair}, d′ {number(nearest['d_prime'])}, confused in {share} of trials: d′ compares these "
+            "two alone, answers are spread over all names, and missed icons get any of them"
+        )
 
 
 def other_edits(result: dict[str, Any]) -> Iterator[str]:

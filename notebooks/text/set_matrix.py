@@ -37,7 +37,7 @@ def show_matrix(sets: Mapping[str, IconSet], rigs: Mapping[str, Rig], seed: int 
                 percent(found.proportion_correct),
                 number(found.d_prime),
                 f"{found.information_bits:.2f}",
-                ", ".join(found.worst_pair),
+                ",\n".join(found.worst_pair),
             )
             for icon in members:
                 why = objection(simulate(icon, rig))

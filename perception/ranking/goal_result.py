@@ -19,7 +19,8 @@ from ..selection.goal import QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, Goal
 TOLERANCE = 1e-9
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: ask for 2 parameters or more, by the model, and for an observer that has draws"
+    "posterior: leave --parameters out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
+    "that has draws"
 )
 
 

@@ -64,6 +64,38 @@ def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
     return IconSet(name, title, icons.context, icons.metadata, plain_icons(found, seed))
 
 
+def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
+    """Parameters of members that lie at an end of a range with a unit, each once.
+
+    >>> from thermicon.icons import read_cue
+    >>> from thermicon.perception.selection.candidates import candidate_at
+    >>> at_ends([candidate_at(read_cue("search-space").families[0], [1.0, 0.33, 0.0, 0.9])])
+    ('dip depth 6 °C',)
+    """
+    ends = []
+    for each in found:
+        for parameter, share in zip(each.family.parameters if each.family else (), each.shares, strict=True):
+            if parameter.span is None or not parameter.unit or parameter.span[0] == parameter.span[1]:
+                continue
+            value = value_at(parameter, share)
+            if each.family is not None and value in parameter.span[:2]:
+                ends.append(f"{each.family.name} {parameter.name} {number(value, 2)} {parameter.unit}")
+    return tuple(dict.fromkeys(ends))
+
+
+def listed_only(found: Sequence[Candidate]) -> tuple[str, ...]:
+    """Parameters with a unit that take listed values, each once."""
+    return tuple(
+        dict.fromkeys(
+            f"{each.family.name} {parameter.name}"
+            for each in found
+            if each.family is not None
+            for parameter in each.family.parameters
+            if parameter.span is None and parameter.unit
+        )
+    )
+
+
 def _worded(value: float, unit: str) -> str:
     return f"{number(abs(value), 2)}{UNITS.get(unit, '')}".replace(".", "p").replace("−", "m")
 

@@ -24,7 +24,7 @@ part: WORD COMPARISON NUMBER [UNIT] [people]  -> number
     | WORD WORD                               -> verdict
 people: "for" NUMBER "%" "of" "people"
 COMPARISON: ">=" | "<=" | "≥" | "≤" | "=" | ">" | "<"
-NUMBER: /[0-9]+(\.[0-9]+)?/
+NUMBER: /[-−]?[0-9]+(\.[0-9]+)?/
 UNIT: "%" | "ms" | "min" | "s" | "mJ" | "kJ" | "J" | "bits" | "bit"
 WORD: /(?!for\b)[a-z_][a-z_'′-]*/
 %ignore /\s+/
@@ -67,6 +67,16 @@ QUANTITIES: Mapping[str, Quantity] = {
     "energy": Quantity("<=", {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}, 0.0, math.inf, False, "energy of all icons together"),
     "onset": Quantity("<=", SECONDS, 0.0, math.inf, False, "onset of the icon that is felt last"),
     "count": Quantity(">=", {"": 1.0}, 2.0, 10_000.0, False, "number of icons that can be played"),
+}
+EXAMPLES: Mapping[str, str] = {
+    "correct": "correct >= 90 %",
+    "detected": "detected >= 95 %",
+    "bits": "bits >= 2",
+    "d_prime": "d_prime >= 2.5",
+    "time": "time <= 10 s",
+    "energy": "energy <= 5 J",
+    "onset": "onset <= 1.5 s",
+    "count": "count 6",
 }
 SAFETY = "safety"
 VERDICTS = ("green", "amber")
@@ -200,10 +210,7 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
         raise GoalError(f"{where}: there is no quantity {name!r}: {did_you_mean(name, {*QUANTITIES, SAFETY})}")
     known = QUANTITIES[name]
     if tree.data == "verdict" or (tree.data == "exactly" and name != "count"):
-        unit = next(iter(known.units))
-        raise GoalError(
-            f"{where}: {name} needs a comparison and a number, such as '{name} {known.comparison} 1 {unit}'"
-        )
+        raise GoalError(f"{where}: {name} needs a comparison and a number, such as '{EXAMPLES[name]}'")
     comparison, value, unit, people = _pieces(tree)
     if comparison is not None and comparison != known.comparison:
         raise GoalError(f"{where}: {name} ({known.meaning}) is wanted {known.comparison} a number, not {comparison}")
@@ -215,9 +222,12 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
         raise GoalError(f"{where}: count is a whole number of icons")
     if not known.least <= limit <= known.most or not limit > 0.0:
         first = next(iter(known.units))
-        span = f"{known.least / known.units[first]:g} to {known.most / known.units[first]:g} {first}".rstrip()
+        low, high = (f"{end / known.units[first]:g} {first}".rstrip() for end in (known.least, known.most))
+        lies = (
+            f"must be above {low}" if math.isinf(known.most) else f"lies in {low.removesuffix(first).strip()} to {high}"
+        )
         cure = f": write it as {value:g} %" if unit == "" and "%" in known.units and value <= 100.0 else ""
-        raise GoalError(f"{where}: {name} lies in {span}{cure}")
+        raise GoalError(f"{where}: {name} {lies}{cure}")
     if people is not None and not known.people:
         raise GoalError(f"{where}: {name} is the same for all people: leave out 'for ... of people'")
     if people is not None and not 0.5 <= people < 1.0:
@@ -227,13 +237,17 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
 
 def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
     if tree.data == "exactly":
-        return None, float(tree.children[1]), "", None
+        return None, _number(tree.children[1]), "", None
     _, comparison, number, unit, people = tree.children
     sign = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">="}.get(str(comparison), str(comparison))
     if str(comparison) == "=" and str(tree.children[0]) != "count":
         sign = "="
-    share = None if people is None else float(people.children[0]) / 100.0
-    return sign, float(number), "" if unit is None else str(unit), share
+    share = None if people is None else _number(people.children[0]) / 100.0
+    return sign, _number(number), "" if unit is None else str(unit), share
+
+
+def _number(token: Any) -> float:
+    return float(str(token).replace("−", "-"))
 
 
 def _where(text: str, problem: Any) -> str:
@@ -242,5 +256,7 @@ def _where(text: str, problem: Any) -> str:
     if token is not None and token.type == "$END":
         place = None
     if place is None or place < 0 or place >= len(text):
+        if text.rstrip().endswith(","):
+            return f"goal {text!r}: it ends with a comma: leave it out, or add another part such as 'safety green'"
         return f"goal {text!r}: it ends too early: write it such as {EXAMPLE!r}"
     return f"goal {text!r}: {text[place:][:12]!r} at character {place + 1} cannot be read: write it such as {EXAMPLE!r}"

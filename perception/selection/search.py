@@ -21,7 +21,7 @@ from ..observer.observer_model import ObserverModel
 from .appraise import Appraisal, appraise
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
-from .found_icons import found_set, names_of
+from .found_icons import at_ends, found_set, listed_only, names_of
 from .goal import Goal
 from .max_min_subset import Limits, max_min_subset, nearest_pair
 from .request import ChoiceError
@@ -64,6 +64,10 @@ class SearchResult:
         Number of icons evaluated for the nominal person.
     refined
         Number of them that were tried after the first sample, near the best sets.
+    at_ends
+        Parameters of found members that lie at an end of their range, in words.
+    listed
+        Parameters with a unit that only take listed values, in words.
 
     See Also
     --------
@@ -78,6 +82,8 @@ class SearchResult:
     seed: int
     evaluations: int
     refined: int
+    at_ends: tuple[str, ...] = ()
+    listed: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
@@ -200,6 +206,8 @@ def search(
         seed=seed,
         evaluations=screened,
         refined=run.tried - screened,
+        at_ends=at_ends(best),
+        listed=listed_only(best),
     )
 
 

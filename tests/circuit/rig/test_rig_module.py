@@ -84,7 +84,8 @@ def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
     assert _parameters(warm) == pytest.approx(at_mean_C(found[1:], 0.0))
     assert warm.warnings == (
         "module: the mean of heat sink and resting skin, 36.0 °C, lies above the 8.5 … 31.2 °C that its two data "
-        "sheets stand for; the parameters at 31.2 °C are used",
+        "sheets stand for; the parameters at 31.2 °C are used: add a [[module.datasheet]] of a hotter side to the rig "
+        "file, or fit the module to a log (thermicon fit)",
     )
     assert "lies below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
 
