@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from .paper import (
     printed,
     thermistors,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SURFACE_FILM_W_PER_M2K = (8.0, 12.0)
 """Still room air over bare skin; what the standing flux of the printed slab is compared with."""
@@ -69,6 +73,25 @@ def paper_differences() -> tuple[PaperDifference, ...]:
         _mesh(rig),
         _depth(palm),
     )
+
+
+def paper_table() -> pd.DataFrame:
+    """Return the differences as a table: claim, verdict, paper, ours, why, a row each.
+
+    >>> list(paper_table().columns)
+    ['claim', 'verdict', 'paper', 'ours', 'why']
+    """
+    import pandas as pd
+
+    rows = [
+        (each.topic, "agrees" if each.agrees else "differs", *map(_sentence, (each.paper, each.ours, each.why)))
+        for each in paper_differences()
+    ]
+    return pd.DataFrame(rows, columns=["claim", "verdict", "paper", "ours", "why"])
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
 
 
 def _shape(cue: ControlledCue) -> PaperDifference:

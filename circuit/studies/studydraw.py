@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..solver.trace import Trace
+    from .dermis_course import DermisCourse
     from .meshstudy import MeshStudy
     from .paper import DermisChange, MissByLimit, Thermistors
 
@@ -93,6 +94,19 @@ def plot_dermis(dermis: DermisChange, ax: Axes | None = None) -> Axes:
     tidy(ax, depth, "K, K/s")
     ax.set_xlabel("depth (mm)")
     return ax
+
+
+def plot_dermis_course(course: DermisCourse, ax: Axes | None = None) -> Axes:
+    """Draw changes inside the dermis, shallow ones dark, and that of the thermistor on insulated skin."""
+    ax = new_axes(ax)
+    styles = (("#0b3c6f", "-"), (COOL, (0, (6, 1.5))), ("#7fb0d9", (0, (3, 1.2))), ("#7fb0d9", ":"))
+    for k, (depth, change) in enumerate(zip(course.depth_m, course.change_K, strict=True)):
+        colour, dashes = styles[min(k, len(styles) - 1)]
+        ax.plot(course.time_s, change, color=colour, lw=1.8, ls=dashes, label=f"{1e3 * depth:.2f} mm deep")
+    ax.plot(course.time_s, course.insulated_K, color=PROBE, lw=1.6, ls=(0, (5, 1.5)), label="#3 insulated skin")
+    ax.axhline(0, color="#cccccc", lw=0.8, zorder=0)
+    ax.set_title(f"{course.rig_name}: inside the dermis, and #3 on insulated skin", fontsize="small", loc="left")
+    return tidy(ax, course.time_s, "change (K)")
 
 
 def plot_miss(misses: MissByLimit, ax: Axes | None = None) -> Axes:

@@ -44,6 +44,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     assert (said.exit_code, said.stdout) == (0, "")
     assert names(out) == ["cool-step.csv", "cool-step.json", "warm-step.csv", "warm-step.json"]
     lines = [line for line in said.stderr.splitlines() if "the worst case of safety is milder" not in line]
+    assert lines.pop(0).startswith("warning: driver.current_limit_A = 1.5 A takes 15 V of command")
     assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on keysight-33500b, receptors within ")
     assert lines[0].endswith("mK), safety green in 3 scenarios")
     assert "warning: cool-step: keysight-33500b plays −1 … 1 A (−10 … 10 V through " in said.stderr
