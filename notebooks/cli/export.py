@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import DeliveredDrive, Rig
     from thermicon.circuit.packing.prepare import Prepared
 
+NUMBER = re.compile(r"\d+(\.\d+)?")
 CAUTION = (
     "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
     "works without software"
@@ -101,14 +103,17 @@ def icon_line(one: Prepared) -> str:
 
 
 def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
-    """Every warning once, with the icons that it is about."""
-    names: dict[str, list[str]] = {}
+    """Every warning once, for its first icon; those that differ in numbers alone follow by name."""
+    alike: dict[str, tuple[str, str, list[str]]] = {}
     for one in ready:
         for warning in one.warnings:
-            names.setdefault(str(warning), []).append(one.delivery.icon.name)
-    for warning, about in names.items():
-        whose = f"all {len(ready)} icons" if len(about) == len(ready) > 1 else ", ".join(about)
-        yield f"warning: {whose}: {warning}"
+            name = one.delivery.icon.name
+            kind = NUMBER.sub("#", str(warning))
+            alike.setdefault(kind, (name, str(warning), []))[2].append(name)
+    for name, warning, names in alike.values():
+        others = [each for each in dict.fromkeys(names) if each != name]
+        more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""
+        yield f"warning: {name}: {warning}{more}"
 
 
 def refused(ready: PreparedExport, force: bool) -> bool:

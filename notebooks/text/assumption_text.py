@@ -21,7 +21,10 @@ def assumption_lines(found: Mapping[str, Any] | None) -> Iterator[str]:
     if found is None or not (found["moving"] or found["site"]):
         return
     yield ""
-    yield "What this depends on most, from the people and draws above:"
+    if found["moving"]:
+        yield "What this depends on most, from the people and draws above:"
+    else:
+        yield "What this depends on (no single assumption stands out from these people and draws):"
     for each in found["moving"]:
         yield f"  - {_moving(each)}"
     if found["site"] is not None:
