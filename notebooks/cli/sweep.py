@@ -58,9 +58,9 @@ def sweep(
     icons: Iterable[Icon],
     rig: Rig,
     key: str,
-    values: Sequence[float] | Sequence[str],
+    values: Sequence[float | str],
     *,
-    second: tuple[str, Sequence[float] | Sequence[str]] | None = None,
+    second: tuple[str, Sequence[float | str]] | None = None,
     tail_s: float = 0.0,
     measured: Measured | None = None,
     progress: Progress | None = None,
@@ -126,7 +126,7 @@ def sweep(
     played: list[Icon] = list(icons)
     rows: list[dict[str, Any]] = []
     for combination in combinations:
-        changes = dict(zip(keys, combination, strict=True))
+        changes: dict[str, float | str] = dict(zip(keys, combination, strict=True))
         rows += [{"icon": icon.name, **changes, **_run(icon, rig, changes, tail_s)} for icon in played]
         if measured is not None:
             _measure(rows, [icon.name for icon in played], rig, changes, measured)
@@ -318,7 +318,8 @@ def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], measure: Measure |
     rows = frame[(frame["icon"] == ALL) & frame["correct"].notna()]
     if rows.empty:
         return []
-    ends = [rows.loc[rows["correct"].idxmin()], rows.loc[rows["correct"].idxmax()]]
+    ordered = rows.sort_values("correct", kind="stable")
+    ends = [ordered.iloc[0], ordered.iloc[-1]]
     low, high = (
         f"{percent(row['correct'])} correct at {', '.join(_setting(key, row[key]) for key in keys)}" for row in ends
     )

@@ -141,5 +141,5 @@ def _series_name(artist: Any) -> str:
     return "" if label.startswith("_") else " ".join(label.split())
 
 
-def _text(value: float) -> str:
+def _text(value: Any) -> str:
     return "" if value is np.ma.masked or not np.isfinite(value) else f"{float(value):.9g}"

@@ -54,7 +54,8 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
     if look.data is not None:
         names = write_figure_data(figure, look.data, path.stem)
         note(f"wrote {names[0]}{f' to {names[-1]}' if len(names) > 1 else ''} into {look.data}")
-    with matplotlib.rc_context(dict(EMBEDDED)), complete_or_absent(path) as draft:
+    embedded: Any = dict(EMBEDDED)
+    with matplotlib.rc_context(embedded), complete_or_absent(path) as draft:
         restyle(figure, look)
         kind = path.suffix.lower().removeprefix(".")
         dpi = PAPER_DPI if look.style == "paper" or look.width_mm is not None else DPI
@@ -87,7 +88,8 @@ def restyle(figure: Figure, look: Look) -> None:
 
 def _drop_title(figure: Figure) -> None:
     """Titles of panels stay where there are several, since they say what each shows."""
-    title: Any = figure.get_suptitle() and figure._suptitle  # type: ignore[attr-defined]
+    held: Any = figure
+    title = figure.get_suptitle() and held._suptitle
     if title:
         title.set_in_layout(False)
         title.set_visible(False)
@@ -95,14 +97,15 @@ def _drop_title(figure: Figure) -> None:
     panels = panels_of(figure)
     if len(panels) == 1:
         for place in ("left", "center", "right"):
-            panels[0].set_title("", loc=place)  # type: ignore[arg-type]
+            panels[0].set_title("", loc=place)
 
 
 def _letter_panels(figure: Figure) -> None:
     panels = panels_of(figure)
     if len(panels) < 2:
         return
-    for place, ax in enumerate(panels):
+    for place, panel in enumerate(panels):
+        ax: Any = panel
         loc = next((loc for loc in ("left", "center") if ax.get_title(loc=loc)), None)
         if loc is None:
             ax.set_title(letter(place), loc="left", fontweight="bold")
@@ -128,10 +131,11 @@ def _resize(figure: Figure, width_mm: float, natural_mm: float) -> None:
 
 def _break_titles(figure: Figure) -> None:
     """What a title says in brackets goes to a second line."""
-    for ax in figure.axes:
+    axes: list[Any] = list(figure.axes)
+    for ax in axes:
         for loc in ("left", "center"):
-            if " (" in (title := ax.get_title(loc=loc)):  # type: ignore[arg-type]
-                ax.set_title(title.replace(" (", "\n("), loc=loc)  # type: ignore[arg-type]
+            if " (" in (title := ax.get_title(loc=loc)):
+                ax.set_title(title.replace(" (", "\n("), loc=loc)
 
 
 def _resize_letters(figure: Figure) -> None:
@@ -205,10 +209,11 @@ def _fit(figure: Figure, legend: Legend) -> None:
     held: Any = legend
     handles, labels = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
     size, side = legend.get_texts()[0].get_fontsize(), held._outside_loc or "upper"
-    renderer = FigureCanvasAgg(figure).get_renderer()
+    canvas: Any = FigureCanvasAgg(figure)
+    renderer, whole = canvas.get_renderer(), canvas.figure
     for columns in range(held._ncols, 0, -1):
         legend.remove()
-        legend = figure.legend(
+        legend = whole.legend(
             handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False, fontsize=size,
             handlelength=2.2, columnspacing=1.2,
         )  # fmt: skip
