@@ -122,8 +122,8 @@ def test_a_figure_folder_that_is_a_file(cli: Cli, two: Path) -> None:
 
 
 def test_a_figure_folder_with_the_name_of_a_picture(cli: Cli, two: Path, tmp_path: Path) -> None:
-    said = cli("rank", two, "--people", 100_000, "--figure", tmp_path / "fig.png")
-    refused(said, "--figure", "fig.png is the name of a file; give a folder, such as ", "fig, for all figures", code=2)
+    said = cli("rank", two, "--people", 100_000, "--figure", tmp_path / "fig.gif")
+    refused(said, "--figure", "fig.gif is the name of a file; give a folder, such as ", "fig, for all figures", code=2)
 
 
 DRIVES = [

@@ -10,7 +10,7 @@ from thermicon.perception import Ranking, perceive, rank
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "
-    "confusion set persons goal chosen map"
+    "confusion set persons assumptions goal chosen map"
 )
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
