@@ -14,8 +14,6 @@ import hashlib
 import logging
 import multiprocessing
 import pickle
-import platform
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -31,7 +29,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from .userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from .userfolder import NotPrivate, compiled_folder, private_folder, read_private, write_private
 
 HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0
@@ -135,9 +133,8 @@ class _Store:
 @cache
 def kept_in() -> Path | None:
     """The folder of compiled code; None, with one line on stderr, where no folder is safe to read from."""
-    tools = f"numba-{numba.__version__}-llvmlite-{llvmlite.__version__}-{sys.implementation.cache_tag}"
     try:
-        folder = private_folder(cache_folder() / "compiled" / f"{tools}-{platform.machine()}")
+        folder = private_folder(compiled_folder(numba.__version__, llvmlite.__version__))
     except NotPrivate as problem:
         if multiprocessing.parent_process() is None:
             logging.getLogger("thermicon").warning(

@@ -53,7 +53,7 @@ from . import (
 from .app import Commands
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
-PLAY, NOTEBOOKS = "Play on hardware", "Notebooks"
+PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
 """Jobs, as the headings of ``thermicon --help``."""
 
 RANKED_BY = ("model", "rules")
@@ -320,6 +320,19 @@ def library_command() -> None:
     show_library()
 
 
+def doctor_command(
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of lines.")] = False,
+) -> None:
+    """Check the installation: versions, extras, outside programs, cache, fonts, Jupyter, and a self-test.
+
+    Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code
+    is 1.
+    """
+    from ..doctor.examine import doctor
+
+    raise typer.Exit(doctor(json))
+
+
 for _name, _command, _panel in (
     ("convert", text_commands.convert_command, WRITE),
     ("cite", text_commands.cite_command, WRITE),
@@ -340,6 +353,7 @@ for _name, _command, _panel in (
     ("export", hardware_commands.export_command, PLAY),
     ("devices", hardware_commands.devices_command, PLAY),
     ("lab", lab.lab_command, NOTEBOOKS),
+    ("doctor", doctor_command, INSTALLATION),
 ):
     app.command(_name, rich_help_panel=_panel)(_command)
 
