@@ -1,6 +1,6 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
-from .startup import guard
+from .startup import guard, print_anywhere
 
 
 def _examine(error: BaseException) -> int:
@@ -8,6 +8,7 @@ def _examine(error: BaseException) -> int:
 
     from .doctor.examine import doctor
 
+    print_anywhere()
     return doctor("--json" in sys.argv, error)
 
 

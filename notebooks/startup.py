@@ -1,5 +1,6 @@
 """Start of the command: Ctrl-C during imports, libraries that are missing, and a copy that hides the installed one."""
 
+import io
 import os
 import sys
 from collections.abc import Callable, Iterable
@@ -67,6 +68,13 @@ def warn_if_hidden() -> None:
         sentence = hidden_by(os.path.dirname(__file__), installed_folders())  # noqa: PTH120
         if sentence is not None:
             print(sentence, file=sys.stderr)
+
+
+def print_anywhere() -> None:
+    """Let text be printed wherever the output goes: characters that it has no code for become question marks."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
 
 
 def cannot_import(error: BaseException) -> str | None:

@@ -6,7 +6,6 @@ of this package.
 
 from __future__ import annotations
 
-import io
 import math
 import sys
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from ..startup import is_command, warn_if_hidden
+from ..startup import is_command, print_anywhere, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
 from ..text.options import (
@@ -363,9 +362,7 @@ def main() -> None:
     try:
         if is_command():
             warn_if_hidden()
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, io.TextIOWrapper):
-                stream.reconfigure(errors="replace")
+        print_anywhere()
         app(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)

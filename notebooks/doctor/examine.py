@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict
 from importlib import import_module
 from itertools import chain
 
@@ -77,9 +76,9 @@ def doctor(as_json: bool = False, cannot_start: BaseException | None = None) -> 
         data = {
             PROGRAM: installed_version(PROGRAM),
             "ok": not count["fault"],
-            "findings": [asdict(each) for each in findings],
+            "findings": [each.to_dict() for each in findings],
         }
-        sys.stdout.write(json.dumps(data, ensure_ascii=False, indent=1) + "\n")
+        sys.stdout.write(json.dumps(data, indent=1) + "\n")
     else:
         sys.stdout.write(f"\n{summary(count['fault'], count['note'])}\n")
     return FAULTY if count["fault"] else 0

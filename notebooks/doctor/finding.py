@@ -53,7 +53,21 @@ class Finding:
     def line(self) -> str:
         """The finding as one line of text."""
         cure = "" if self.cure is None else f"; {self.cure}"
-        return f"{self.state:<5}  {self.check}: {self.text}{cure}"
+        return readable(f"{self.state:<5}  {self.check}: {self.text}{cure}")
+
+    def to_dict(self) -> dict[str, str | None]:
+        """The finding as plain data, for JSON."""
+        cure = None if self.cure is None else readable(self.cure)
+        return {"check": self.check, "state": self.state, "text": readable(self.text), "cure": cure}
+
+
+def readable(text: str) -> str:
+    """Return text with the letters of paths that Python read without knowing their encoding, as with LC_ALL=C.
+
+    >>> readable("/home/Gr\\udcc3\\udcb6")
+    '/home/Grö'
+    """
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 def first_line(error: BaseException) -> str:

@@ -71,7 +71,7 @@ def check_python() -> Iterator[Finding]:
     from packaging.specifiers import SpecifierSet
 
     metadata = distribution(PROGRAM).metadata
-    required = metadata["Requires-Python"] if "Requires-Python" in metadata else ""
+    required = metadata["Requires-Python"] if "Requires-Python" in metadata else ""  # noqa: SIM401
     if not SpecifierSet(required).contains(running, prereleases=True):
         cure = f"make an environment with a Python {required} and install thermicon there"
         yield Finding("Python", "fault", f"{text}, but thermicon requires {required}", cure)

@@ -233,16 +233,6 @@ def drives(draw: st.DrawFn) -> Drive:
     return Drive(times, values, held=draw(st.booleans()))
 
 
-def agree(rig: Rig, drive: Drive, ngspice: str) -> None:
-    try:
-        simulate_current(drive, rig)
-    except RigError:
-        assume(False)
-    with tempfile.TemporaryDirectory() as folder:
-        found = played(rig, drive, ngspice, Path(folder))
-    assert found.small(), found
-
-
 @settings(
     max_examples=40,
     derandomize=True,
