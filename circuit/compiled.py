@@ -18,7 +18,7 @@ import platform
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import cache
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
@@ -31,7 +31,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from .userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from thermicon.icons.userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
 
 HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0
@@ -71,7 +71,8 @@ class _KernelCache(FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled function for a signature; None for any fault, since compiling again is the cure."""
         try:
-            return super().load_overload(sig, target_context)
+            _ready(target_context)
+            return self._load_overload(sig, target_context)
         except Exception:
             return None
 
@@ -79,6 +80,27 @@ class _KernelCache(FunctionCache):
         """Keep a compiled function; where that fails, later runs compile it again."""
         with suppress(Exception):
             super().save_overload(sig, data)
+
+
+@cache
+def _ready(target_context: Any) -> None:
+    """Load what numba needs to run anything, once a process: numba repeats it for every function."""
+    with _no_search_for_blas():
+        target_context.refresh()
+
+
+@contextmanager
+def _no_search_for_blas() -> Iterator[None]:
+    """Spare numba the import of scipy.linalg, by which it learns that BLAS is there: it is, as scipy is required."""
+    from numba.np import linalg
+
+    search, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    try:
+        from numba.np import arraymath
+    finally:
+        linalg.ensure_blas = search
+    arraymath.ensure_blas = search
+    yield
 
 
 class _Reduced:
