@@ -8,7 +8,7 @@ import pytest
 from thermicon.icons.language import grammar_tables
 from thermicon.icons.language.grammar_tables import HASH_BYTES, built, grammar, packed, unpacked
 
-CUE = "icon up {\n  warm by 3 K in 1 s\n  hold 2 s\n  back in 1 s\n}\n"
+CUE = resources.files("thermicon.icons").joinpath("library", "six-icons.cue").read_text(encoding="utf-8")
 
 
 @pytest.fixture
