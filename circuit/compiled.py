@@ -20,6 +20,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -94,9 +95,10 @@ def _no_search_for_blas() -> Iterator[None]:
     """Spare numba the import of scipy.linalg, by which it learns that BLAS is there: it is, as scipy is required."""
     from numba.np import linalg
 
-    search, linalg.ensure_blas = linalg.ensure_blas, lambda: None
+    search = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
     try:
-        from numba.np import arraymath
+        arraymath: Any = import_module("numba.np.arraymath")
     finally:
         linalg.ensure_blas = search
     arraymath.ensure_blas = search

@@ -51,7 +51,8 @@ def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
             inverse = 1.0 / (cap[r, i] / half + g[r, i] + g[r, i + 1] + perf[r, i] - g[r, i + 1] * share)
             share = g[r, i] * inverse
             keep[i], link[i], elim[i] = cap[r, i] / half * inverse, g[r, i + 1] * inverse, share
-        x[:] = 0.0
+        for i in range(x.size):
+            x[i] = 0.0
         for k in range(rows):
             for q in range(readings):
                 at = places[r, q]
@@ -83,7 +84,8 @@ def superpose(lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_a
         r, c = rig_of[lane], cue_of[lane]
         for q in range(readings + 1):
             unit = response[r, q]
-            course[:] = begin[lane, q]
+            for k in range(periods):
+                course[k] = begin[lane, q]
             for j in range(corner_at.shape[1]):
                 first, slope = corner_at[c, j], corner_K[c, j]
                 if first < 0:
@@ -91,7 +93,8 @@ def superpose(lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_a
                 for k in range(first, periods):
                     course[k] += slope * unit[k - first]
             if q == readings:
-                flow[lane] = course
+                for k in range(periods):
+                    flow[lane, k] = course[k]
             else:
                 for k in range(row_at.size):
                     out[q, lane, k] = course[row_at[k]]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -41,8 +43,8 @@ class Timing:
 
     def over(self, count: int) -> Timing:
         """The time of one of so many things that a run does."""
-        shares = (tuple(each / count for each in times) for times in (self.seconds, self.processor))
-        return Timing(*shares, self.memory_MB)
+        seconds, processor = (tuple(each / count for each in times) for times in (self.seconds, self.processor))
+        return Timing(seconds, processor, self.memory_MB)
 
 
 def timed(run: Callable[[], Any], *, most: int = 10, budget_s: float = 2.0) -> Timing:
@@ -69,19 +71,24 @@ def command_timed(words: Sequence[str], times: int, environment: Mapping[str, st
     """
     seconds: list[float] = []
     processor: list[float] = []
+    memory_MB = 0.0
     for _ in range(times):
-        start, used = time.perf_counter(), _processor_s()
-        ended = subprocess.run(
-            [sys.executable, "-c", COMMAND, *words],
-            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-            env=None if environment is None else dict(environment),
-        )  # fmt: skip
-        seconds.append(time.perf_counter() - start)
-        processor.append(max(0.0, _processor_s() - used))
-        if ended.returncode:
-            said = ended.stderr.strip()[-300:]
-            raise RuntimeError(f"thermicon {' '.join(words)} ended with {ended.returncode}: {said}")
-    return Timing(tuple(seconds), tuple(processor), _largest_child_MB() or None)
+        with tempfile.TemporaryFile() as messages:
+            start, used = time.perf_counter(), _processor_s()
+            run = subprocess.Popen(
+                [sys.executable, "-c", COMMAND, *words],
+                stdout=subprocess.DEVNULL,
+                stderr=messages,
+                env=None if environment is None else dict(environment),
+            )
+            memory_MB = max(memory_MB, _waited_MB(run))
+            seconds.append(time.perf_counter() - start)
+            processor.append(max(0.0, _processor_s() - used))
+            if run.returncode:
+                messages.seek(0)
+                said = messages.read().decode(errors="replace").strip()[-300:]
+                raise RuntimeError(f"thermicon {' '.join(words)} ended with {run.returncode}: {said}")
+    return Timing(tuple(seconds), tuple(processor), memory_MB or None)
 
 
 def _processor_s() -> float:
@@ -94,10 +101,11 @@ def _processor_s() -> float:
     return time.process_time() + children.ru_utime + children.ru_stime
 
 
-def _largest_child_MB() -> float:
-    """The most memory in MB that any child of this process had; 0 where the system does not say."""
-    try:
-        import resource
-    except ImportError:  # Windows
+def _waited_MB(run: subprocess.Popen[bytes]) -> float:
+    """Wait for a process; the most memory in MB that it had, 0 where the system does not say."""
+    if not hasattr(os, "wait4"):  # Windows
+        run.wait()
         return 0.0
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / (1024.0 if sys.platform != "darwin" else 1024.0**2)
+    _, status, usage = os.wait4(run.pid, 0)
+    run.returncode = os.waitstatus_to_exitcode(status)
+    return float(usage.ru_maxrss) / (1024.0 if sys.platform != "darwin" else 1024.0**2)

@@ -120,4 +120,4 @@ def picture(figure: Figure) -> bytes:
 
 
 def _named(name: str, timing: Timing) -> str:
-    return name if timing.memory_MB is None else f"{name}, at most {timing.memory_MB:.0f} MB"
+    return name if timing.memory_MB is None else f"{name}, {timing.memory_MB:.0f} MB"

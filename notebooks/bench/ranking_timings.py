@@ -35,7 +35,7 @@ def percept_section() -> Section:
 
 
 def command_section(short: bool) -> Section:
-    """Commands as they are typed, each in a process of its own, with the most memory that any has had."""
+    """Commands as they are typed, each in a process of its own, with the most memory that it had."""
     times, entries = 2 if short else 10, []
     if not short:
         with tempfile.TemporaryDirectory() as name:
@@ -46,7 +46,9 @@ def command_section(short: bool) -> Section:
     entries.append(Entry(f"rank {SET} (200 people, intervals, edit)", command_timed(["rank", SET], times)))
     if not short:
         entries.append(Entry("validate", command_timed(["validate"], 1)))
-    return Section("Commands", "Elapsed time from the key press to the prompt.", tuple(entries))
+    return Section(
+        "Commands", "From the key press to the prompt, with the most memory that the process had.", tuple(entries)
+    )
 
 
 def ranking_curves(rig: Rig, short: bool) -> tuple[Curve, ...]:

@@ -85,9 +85,8 @@ def test_the_command_prints_tables_or_writes_a_page(tmp_path: Path, monkeypatch:
     written = CliRunner().invoke(app, ["bench", "--full", "-o", str(tmp_path / "page")])
     assert written.exit_code == 0
     assert asked == [True, False]
-    names = sorted(
-        str(path.relative_to(tmp_path / "page")) for path in (tmp_path / "page").rglob("*") if path.is_file()
-    )
+    folder = tmp_path / "page"
+    names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
     assert names == ["figures/growth.png", "speed.html", "speed.md"]
     assert "data:image/png" in (folder / "speed.html").read_text(encoding="utf-8")
 
