@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -124,7 +125,7 @@ def _others(rig: Rig) -> list[Entry]:
         period = 1.0 / rig.driver.update_Hz
         inverse = timed(lambda: run_follow(bank, lanes, zero, period, target, False, start.copy())).over(LANES)
     played = {
-        probes: timed(lambda probes=probes: simulate_many(icons, rigs, nominal=rig, end_s=18.0, probes=probes))
+        probes: timed(partial(simulate_many, icons, rigs, nominal=rig, end_s=18.0, probes=probes))
         for probes in (RECEPTORS, PROBES)
     }
     quick, full = (played[probes].over(PEOPLE * len(icons)) for probes in (RECEPTORS, PROBES))

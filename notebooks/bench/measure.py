@@ -102,10 +102,17 @@ def _processor_s() -> float:
 
 
 def _waited_MB(run: subprocess.Popen[bytes]) -> float:
-    """Wait for a process; the most memory in MB that it had, 0 where the system does not say."""
+    """Wait for a process; the most memory in MB that it had, 0 where the system does not say.
+
+    A new process begins as a copy of this one, so that less than what this one had is not known.
+    """
     if not hasattr(os, "wait4"):  # Windows
         run.wait()
         return 0.0
+    import resource
+
     _, status, usage = os.wait4(run.pid, 0)
     run.returncode = os.waitstatus_to_exitcode(status)
-    return float(usage.ru_maxrss) / (1024.0 if sys.platform != "darwin" else 1024.0**2)
+    copied = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    most = usage.ru_maxrss if usage.ru_maxrss > copied else 0
+    return float(most) / (1024.0 if sys.platform != "darwin" else 1024.0**2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -62,8 +63,8 @@ def ranking_curves(rig: Rig, short: bool) -> tuple[Curve, ...]:
         return rank(replace(pool, entries=chosen), rig, people=people, parameters=0)
 
     most = 2 if short else 5
-    by_icons = [timed(lambda n=n: ranked(n, few), most=most, budget_s=2.0) for n in sizes]
-    by_people = [timed(lambda n=n: ranked(6, n), most=most, budget_s=2.0) for n in crowds]
+    by_icons = [timed(partial(ranked, n, few), most=most, budget_s=2.0) for n in sizes]
+    by_people = [timed(partial(ranked, 6, n), most=most, budget_s=2.0) for n in crowds]
     return (
         Curve(f"Ranking over icons ({few} people)", "icons", sizes, tuple(by_icons)),
         Curve("Ranking over people (6 icons)", "people", crowds, tuple(by_people)),
