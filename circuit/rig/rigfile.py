@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -318,6 +319,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
         raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
 
 
+@cache
 def rig_keys() -> tuple[str, ...]:
     """All dotted keys of a rig file; those of a layer have 0 as its place."""
     return tuple(_keys(RigTable, ""))

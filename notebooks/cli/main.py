@@ -13,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+from ..bench.command import bench_command
 from ..startup import is_command, print_anywhere, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
@@ -347,6 +348,7 @@ for _name, _command, _panel in (
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
     ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
+    ("bench", bench_command, PREDICT),
     ("session", session.session_command, PLAY),
     ("study", study.study_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),

@@ -22,7 +22,7 @@ WRITTEN = "ABC abc 0123 °μΔψ′²⁻–−×…"
 
 def check_cache() -> Iterator[Finding]:
     """Look whether compiled code can be kept, how much is kept, and whether some of it is of other versions."""
-    from thermicon.circuit.userfolder import NotPrivate, cache_folder, compiled_folder, private_folder
+    from thermicon.icons.userfolder import NotPrivate, cache_folder, compiled_folder, private_folder
 
     cache = cache_folder()
     current = compiled_folder(version("numba"), version("llvmlite"))
