@@ -57,9 +57,8 @@ def judged(laboratories: int, truths: int, participants: int) -> dict[str, float
 @pytest.mark.slow
 def test_intervals_cover_two_hundred_laboratories_of_measurements() -> None:
     found = judged(1000, 200, 4)
-    print(found)
     assert found["effective"] > 40.0
     assert 0.90 <= found["set"] <= 0.995
     assert 0.90 <= found["limits"] <= 0.995
-    assert found["limits narrower"] > 1.25
-    assert found["set narrower"] > 0.95
+    assert 1.15 <= found["limits narrower"] <= 1.35  # docs/how-to/your-pilot.md says 1.24
+    assert 1.03 <= found["set narrower"] <= 1.16  # and 1.09
