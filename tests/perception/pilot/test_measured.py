@@ -14,7 +14,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measured import condition_on_measurements
-from thermicon.perception.pilot.measurement_conditioning import reweight
+from thermicon.perception.pilot.measurement_conditioning import Reweighted, reweight
 from thermicon.perception.pilot.measurement_likelihood import (
     groups_of,
     log_errors,
@@ -29,6 +29,7 @@ from thermicon.perception.pilot.synthetic_measurements import USUAL, synthetic_m
 
 RIG = Rig.load("thenar")
 CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
+SHARP = (CHOICE, *USUAL[:2])
 RATING = Condition("rating", "magnitude", "warm", 32.0, 6.0, 5.0, 0.7)
 
 
@@ -80,7 +81,7 @@ def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior
 def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
     prior: LaboratoryPrior, factor: float, sign: float
 ) -> None:
-    conditions = (CHOICE, *USUAL[:2])
+    conditions = SHARP
     usual = synthetic_measurements(RIG, participants=6, seed=3, conditions=conditions)
     before = prior.first(500, 1)
     each = predicted(prior, before, Setting.of(RIG), conditions)
@@ -98,26 +99,36 @@ def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
         assert sign * (high - low) > 0.08
 
 
-def test_too_few_draws_are_refreshed_and_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
-    conditions = USUAL[:2]
-    some = synthetic_measurements(RIG, participants=16, trials=100, seed=7, conditions=conditions)
+def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Reweighted]:
+    """Measurements that so few draws do not carry, and the laboratories conditioned on them."""
+    some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
 
     def simulate(laboratories: Laboratories) -> Predicted:
-        return predicted(prior, laboratories, Setting.of(RIG), conditions)
+        return predicted(prior, laboratories, Setting.of(RIG), SHARP)
 
-    many = prior.first(1000, 5)
-    own = simulate(many)
-    weights = normalised_weights(log_likelihood(some, own))
-    assert effective(weights) > 25.0
-    expected = weights @ own.mean
-    spread = np.sqrt(weights @ np.square(own.mean - expected))
-    few = prior.first(120, 2)
-    found = reweight(some, few, simulate, seed=0, kept=120)
-    assert found.rounds, "this test needs measurements that 120 draws do not carry"
-    assert found.effective_after >= 0.25 * 120
+    return some, reweight(some, prior.first(draws, 2), simulate, seed=0, kept=kept)
+
+
+def test_too_few_draws_are_refreshed(prior: LaboratoryPrior) -> None:
+    _, found = refreshed(prior, 80, 40)
+    assert found.effective < 20.0
+    assert 1 <= found.rounds <= 3
+    assert found.effective_after >= 10.0
+    assert len(found.after) == len(found.predicted_after.mean) == 40
+
+
+@pytest.mark.slow
+def test_refreshed_laboratories_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
+    some, found = refreshed(prior, 200, 150)
+    assert found.rounds
+    many = predicted(prior, prior.first(1000, 5), Setting.of(RIG), SHARP)
+    weights = normalised_weights(log_likelihood(some, many))
+    assert effective(weights) > 100.0
+    expected = weights @ many.mean
+    spread = np.sqrt(weights @ np.square(many.mean - expected))
     np.testing.assert_array_less(np.abs(found.predicted_after.mean.mean(axis=0) - expected), 0.5 * spread)
     ratio = found.predicted_after.mean.std(axis=0) / spread
-    assert ((ratio > 0.6) & (ratio < 1.6)).all()
+    assert ((ratio > 0.7) & (ratio < 1.4)).all()
 
 
 def test_ratings_count_by_their_ratios_alone(prior: LaboratoryPrior) -> None:
