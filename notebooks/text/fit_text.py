@@ -30,7 +30,7 @@ def parameter_table(fitted: RigFit) -> Table:
     rows = table("key", "fitted", "95 % interval", "±", numbers=("fitted", "±"), names=("key",))
     for item in fitted.parameters:
         width = item.interval.removeprefix("±") if item.identified else "unknown"
-        digits = _digits(item.value, 0.5 * (item.high - item.low)) if item.identified else USUAL_DIGITS
+        digits = _digits(item.value, 0.5 * (item.high - item.low)) if item.identified else None
         ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}"
         rows.add_row(item.key, _short(item.value, digits), ends, width)
     return rows
@@ -98,8 +98,8 @@ def _width(width: float, log: bool, known: bool, key: str) -> str:
     return text if known else f"({text})"
 
 
-def _short(value: float, digits: int) -> str:
-    text = f"{value:#.{digits}g}" if digits > USUAL_DIGITS else f"{value:.{digits}g}"
+def _short(value: float, digits: int | None) -> str:
+    text = f"{value:.{USUAL_DIGITS}g}" if digits is None else f"{value:#.{digits}g}"
     return text.replace("-", "−").removesuffix(".")
 
 
