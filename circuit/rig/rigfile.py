@@ -22,6 +22,7 @@ from ..inputs import (
 )
 from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
+from .load import LoadTable, load_faults
 from .modules import module_faults
 from .rig_faults import display_faults, landing_faults
 from .rules import faults_of
@@ -289,6 +290,7 @@ class RigTable(_Table):
     thermode: ThermodeTable | None = None
     contact: ContactTable
     ambient: AmbientTable
+    load: LoadTable | None = None
     skin: SkinTable
     blood: BloodTable
     probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)
@@ -298,7 +300,7 @@ class RigTable(_Table):
 
     @model_validator(mode="after")
     def _whole(self) -> RigTable:
-        if faults := display_faults(self) or landing_faults(self):
+        if faults := display_faults(self) or load_faults(self) or landing_faults(self):
             raise ValueError("\n".join(faults))
         return self
 
@@ -331,6 +333,7 @@ _OPTIONAL_TABLES: dict[str, type[BaseModel]] = {
     "driver": DriverTable,
     "controller": ControllerTable,
     "thermode": ThermodeTable,
+    "load": LoadTable,
 }
 
 

@@ -169,6 +169,15 @@ def simulate_command(
             help="Draw an overview; several icons give one file each, OUT-NAME.png.",
         ),
     ] = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(
+            "--measured",
+            metavar="LOG",
+            readable=False,
+            help="Lay a measured log beside the trace, in the figure too: rms and largest miss of every column.",
+        ),
+    ] = None,
     power: Annotated[
         bool, typer.Option("--power", help="With -o: add the electrical power of the module, power_W.")
     ] = False,
@@ -196,9 +205,9 @@ def simulate_command(
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
-        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power)
+        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power, measured)
     elif file is not None:
-        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power)
+        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power, measured)
 
 
 @app.command("rank", rich_help_panel=PREDICT)
