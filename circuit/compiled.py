@@ -14,12 +14,11 @@ import hashlib
 import logging
 import multiprocessing
 import pickle
-import platform
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -31,7 +30,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from .userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from thermicon.icons.userfolder import NotPrivate, compiled_folder, private_folder, read_private, write_private
 
 HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0
@@ -71,7 +70,8 @@ class _KernelCache(FunctionCache):
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled function for a signature; None for any fault, since compiling again is the cure."""
         try:
-            return super().load_overload(sig, target_context)
+            _ready(target_context)
+            return self._load_overload(sig, target_context)
         except Exception:
             return None
 
@@ -79,6 +79,26 @@ class _KernelCache(FunctionCache):
         """Keep a compiled function; where that fails, later runs compile it again."""
         with suppress(Exception):
             super().save_overload(sig, data)
+
+
+@cache
+def _ready(target_context: Any) -> None:
+    """Load what numba needs to run anything, once a process: numba repeats it for every function."""
+    _no_search_for_blas()
+    target_context.refresh()
+
+
+def _no_search_for_blas() -> None:
+    """Spare numba the import of scipy.linalg, by which it learns that BLAS is there: it is, as scipy is required."""
+    from numba.np import linalg
+
+    search = linalg.ensure_blas
+    linalg.ensure_blas = lambda: None
+    try:
+        arraymath: Any = import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = search
+    arraymath.ensure_blas = search
 
 
 class _Reduced:
@@ -135,9 +155,8 @@ class _Store:
 @cache
 def kept_in() -> Path | None:
     """The folder of compiled code; None, with one line on stderr, where no folder is safe to read from."""
-    tools = f"numba-{numba.__version__}-llvmlite-{llvmlite.__version__}-{sys.implementation.cache_tag}"
     try:
-        folder = private_folder(cache_folder() / "compiled" / f"{tools}-{platform.machine()}")
+        folder = private_folder(compiled_folder(numba.__version__, llvmlite.__version__))
     except NotPrivate as problem:
         if multiprocessing.parent_process() is None:
             logging.getLogger("thermicon").warning(

@@ -1,29 +1,45 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
-from .startup import guard
+from .startup import guard, print_anywhere
 
-guard()  # before anything that takes time to import
 
+def _examine(error: BaseException) -> int:
+    import sys
+
+    from .doctor.examine import doctor
+
+    print_anywhere()
+    return doctor("--json" in sys.argv, error)
+
+
+guard(_examine)  # before anything that takes time to import, or that may be broken
+
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
-
-from .figures.overview import overview, set_figure
-from .cli.sweep import sweep
-from .figures.sweep_figure import sweep_figure
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
+    from .cli.sweep import sweep as sweep
+    from .figures.overview import overview as overview, set_figure as set_figure
+    from .figures.sweep_figure import sweep_figure as sweep_figure
     from .workbench.workbench import Workbench as Workbench
 
 __all__ = ["overview", "set_figure", "sweep", "sweep_figure", "Workbench"]
 
+_ROOMS = {
+    "overview": "figures.overview",
+    "set_figure": "figures.overview",
+    "sweep": "cli.sweep",
+    "sweep_figure": "figures.sweep_figure",
+    "Workbench": "workbench.workbench",
+}
+
 
 def __getattr__(name: str) -> Any:
-    """Load the workbench when it is first asked for: commands that draw nothing do without."""
-    if name == "Workbench":
-        from .workbench.workbench import Workbench
-
-        return Workbench
+    """Load what is first asked for: commands do without, and where a library is missing, the others still work."""
+    if name in _ROOMS:
+        return getattr(import_module(f".{_ROOMS[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -1,25 +1,33 @@
-"""Start of the command: Ctrl-C during imports, and a warning when another copy of thermicon hides the installed one."""
+"""Start of the command: Ctrl-C during imports, libraries that are missing, and a copy that hides the installed one."""
 
+import io
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from types import TracebackType
 
 INTERRUPTED = 130
+BAD_INPUT = 1
 COMMANDS = ("thermicon", "thermicon.exe", "thermicon-script.py")
+MODULES = ("thermicon.notebooks", "thermicon.notebooks.cli.main")
+DOCTOR = "doctor"
 
 
 def is_command() -> bool:
     """Whether this process is the ``thermicon`` command, and not somebody's own program."""
     first = os.path.basename(sys.argv[0]) if sys.argv else ""  # noqa: PTH119 - pathlib takes too long to import
-    return first in COMMANDS or sys.orig_argv[1:3] == ["-m", "thermicon.notebooks.cli.main"]
+    words = sys.orig_argv
+    return first in COMMANDS or ("-m" in words[:-1] and words[words.index("-m") + 1] in MODULES)
 
 
-def guard() -> None:
-    """Let an interrupt that nothing catches end the command without a traceback."""
+def guard(examine: Callable[[BaseException], int]) -> None:
+    """Let an interrupt or a missing library, which nothing catches, end the command without a traceback.
+
+    Where the command line itself cannot be imported, ``thermicon doctor`` is ``examine``, which gives the exit code.
+    """
     if is_command():
-        sys.excepthook = _end
+        sys.excepthook = _ending(examine)
 
 
 def hidden_by(imported: str, known: Iterable[str]) -> str | None:
@@ -62,11 +70,45 @@ def warn_if_hidden() -> None:
             print(sentence, file=sys.stderr)
 
 
-def _end(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    if not issubclass(kind, KeyboardInterrupt):
-        sys.__excepthook__(kind, error, trace)
-        return
-    try:
-        os.write(2, b"interrupted\n")
-    finally:
-        os._exit(INTERRUPTED)
+def print_anywhere() -> None:
+    """Let text be printed wherever the output goes: characters that it has no code for become question marks."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def cannot_import(error: BaseException) -> str | None:
+    """Return a message when a library cannot be imported, None for every other error.
+
+    >>> cannot_import(ImportError("No module named 'lark'", name="lark"))
+    "thermicon cannot start: No module named 'lark'; thermicon doctor says what is missing and how to install it"
+    >>> cannot_import(ImportError("cannot import name 'x'", name="thermicon.icons"))
+    """
+    if not isinstance(error, ImportError) or (error.name or "").partition(".")[0] == "thermicon":
+        return None
+    words = str(error).strip().splitlines() or ["a library cannot be imported"]
+    return f"thermicon cannot start: {words[0]}; thermicon doctor says what is missing and how to install it"
+
+
+def _ending(examine: Callable[[BaseException], int]) -> Callable[..., None]:
+    """Return the last word on an error that nothing catches."""
+
+    def end(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        if issubclass(kind, KeyboardInterrupt):
+            try:
+                os.write(2, b"interrupted\n")
+            finally:
+                os._exit(INTERRUPTED)
+        if sys.argv[1:2] == [DOCTOR]:
+            with suppress(Exception):
+                code = examine(error)
+                sys.stdout.flush()
+                os._exit(code)
+        message = cannot_import(error)
+        if message is None:
+            sys.__excepthook__(kind, error, trace)
+            return
+        print(message, file=sys.stderr, flush=True)
+        os._exit(BAD_INPUT)
+
+    return end

@@ -4,40 +4,47 @@ The front door holds what a script or a notebook needs; everything else is in th
 `thermicon.perception.sensation.detection`. Compiled kernels and matplotlib load when they are first used.
 """
 
-from .observer.observer import CHANNELS, NORMS, Observer
-from .sensation.percept import Percept, perceive
-from .identification.distance import percept_distance
-from .identification.from_memory import dprime_from_memory
-from .identification.confusion import Confusion, confuse
-from .identification.measures import information_bits, proportion_correct
-from .observer.people import draw_people
-from .sensation.bench import Bench, Stimulus
-from .procedures.classical import choice_reaction_time, forced_choice, method_of_limits, yes_no
-from .procedures.levels import method_of_levels
-from .procedures.prepulse import CoolingAfterPulse, cooling_after_pulse
-from .procedures.psychometric import PsychometricFunction, psychometric_function
-from .procedures.rating import Ratings, magnitude_rating
-from .procedures.repeated_limits import RepeatedLimits, repeated_limits
-from .procedures.thermode_lag import ThermodeLag, thermode_lag
-from .comparison.distance_components import DistanceComponent, distance_components
-from .selection.goal import Goal
-from .selection.request import ChoiceError, Selection
-from .selection.choose import Choice, choose
-from .selection.edit import cheapest_edit
-from .selection.edit_result import Edit, NoEdit
-from .selection.search import SearchResult, search
-from .selection.robust import SetComparison, compare_sets
-from .ranking.ranking import Ranking
-from .ranking.scores import IconScore, PairScore
-from .identification.task import Task
-from .ranking.rank import rank
-from .ranking.frontier import Frontier, frontier
-from .identification.map import PerceptualMap, map_of, perceptual_map
-from .pilot.observed import observed
-from .pilot.plan import plan
+from typing import TYPE_CHECKING
+
+from thermicon.icons.front_door import door
+
+# Bound at once: the function has the name of its room, which would take its place.
 from .sensitivity.sensitivity import Sensitivity, sensitivity
-from .validation.validate import ValidationReport, validate
-from .identification.delivered import PerceivedChange, judge_delivered
+
+if TYPE_CHECKING:
+    from .observer.observer import CHANNELS, NORMS, Observer
+    from .sensation.percept import Percept, perceive
+    from .identification.distance import percept_distance
+    from .identification.from_memory import dprime_from_memory
+    from .identification.confusion import Confusion, confuse
+    from .identification.measures import information_bits, proportion_correct
+    from .observer.people import draw_people
+    from .sensation.bench import Bench, Stimulus
+    from .procedures.classical import choice_reaction_time, forced_choice, method_of_limits, yes_no
+    from .procedures.levels import method_of_levels
+    from .procedures.prepulse import CoolingAfterPulse, cooling_after_pulse
+    from .procedures.psychometric import PsychometricFunction, psychometric_function
+    from .procedures.rating import Ratings, magnitude_rating
+    from .procedures.repeated_limits import RepeatedLimits, repeated_limits
+    from .procedures.thermode_lag import ThermodeLag, thermode_lag
+    from .comparison.distance_components import DistanceComponent, distance_components
+    from .selection.goal import Goal
+    from .selection.request import ChoiceError, Selection
+    from .selection.choose import Choice, choose
+    from .selection.edit import cheapest_edit
+    from .selection.edit_result import Edit, NoEdit
+    from .selection.search import SearchResult, search
+    from .selection.robust import SetComparison, compare_sets
+    from .ranking.ranking import Ranking
+    from .ranking.scores import IconScore, PairScore
+    from .identification.task import Task
+    from .ranking.rank import rank
+    from .ranking.frontier import Frontier, frontier
+    from .identification.map import PerceptualMap, map_of, perceptual_map
+    from .pilot.observed import observed
+    from .pilot.plan import plan
+    from .validation.validate import ValidationReport, validate
+    from .identification.delivered import PerceivedChange, judge_delivered
 
 # In the order of the flow.
 __all__ = [
@@ -103,3 +110,48 @@ __all__ = [
     "thermode_lag",
     "ThermodeLag",
 ]
+
+if not TYPE_CHECKING:
+    __getattr__ = door(
+        __name__,
+        {
+            "observer.observer": "CHANNELS NORMS Observer",
+            "sensation.percept": "Percept perceive",
+            "identification.distance": "percept_distance",
+            "identification.from_memory": "dprime_from_memory",
+            "identification.confusion": "Confusion confuse",
+            "identification.measures": "information_bits proportion_correct",
+            "observer.people": "draw_people",
+            "sensation.bench": "Bench Stimulus",
+            "procedures.classical": "choice_reaction_time forced_choice method_of_limits yes_no",
+            "procedures.levels": "method_of_levels",
+            "procedures.prepulse": "CoolingAfterPulse cooling_after_pulse",
+            "procedures.psychometric": "PsychometricFunction psychometric_function",
+            "procedures.rating": "Ratings magnitude_rating",
+            "procedures.repeated_limits": "RepeatedLimits repeated_limits",
+            "procedures.thermode_lag": "ThermodeLag thermode_lag",
+            "comparison.distance_components": "DistanceComponent distance_components",
+            "selection.goal": "Goal",
+            "selection.request": "ChoiceError Selection",
+            "selection.choose": "Choice choose",
+            "selection.edit": "cheapest_edit",
+            "selection.edit_result": "Edit NoEdit",
+            "selection.search": "SearchResult search",
+            "selection.robust": "SetComparison compare_sets",
+            "ranking.ranking": "Ranking",
+            "ranking.scores": "IconScore PairScore",
+            "identification.task": "Task",
+            "ranking.rank": "rank",
+            "ranking.frontier": "Frontier frontier",
+            "identification.map": "PerceptualMap map_of perceptual_map",
+            "pilot.observed": "observed",
+            "pilot.plan": "plan",
+            "validation.validate": "ValidationReport validate",
+            "identification.delivered": "PerceivedChange judge_delivered",
+        },
+    )
+
+
+def __dir__() -> list[str]:
+    """Return the names of the front door, whether loaded yet or not."""
+    return sorted({*globals(), *__all__})

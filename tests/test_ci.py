@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -105,3 +106,27 @@ def test_contributing_names_folders_that_exist() -> None:
     named = re.findall(r"`([\w.]+/[\w./]*)`", table)
     assert len(named) > 40
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_the_workflow_covers_every_python_on_every_system() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    declared = [line.rpartition(" :: ")[2] for line in project["classifiers"] if " :: Python :: 3." in line]
+    jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8"))["jobs"]
+    assert all(job["strategy"]["matrix"]["python"] == declared for job in jobs.values())
+    assert [name.partition("-")[0] for name in jobs["platforms"]["strategy"]["matrix"]["os"]] == [
+        "ubuntu",
+        "macos",
+        "windows",
+    ]
+    commands = [step["run"] for step in jobs["platforms"]["steps"] if "run" in step]
+    assert "thermicon rank six-icons --people 20" in commands
+    assert "python -m pytest" in commands
+
+
+def test_the_conda_recipe_requires_what_the_package_requires() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    recipe = yaml.safe_load((ROOT / "conda-recipe" / "recipe.yaml").read_text(encoding="utf-8"))
+    listed = [each.replace(" ", "").replace("matplotlib-base", "matplotlib") for each in recipe["requirements"]["run"]]
+    python, *packages = listed
+    assert packages == [each.replace(" ", "") for each in project["dependencies"]]
+    assert python == f"python{project['requires-python']}".replace("3.11", "${{python_min}}")

@@ -20,7 +20,7 @@ LADDER = {
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
         *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),
     ),
-    "notebooks": ("text", "files", "figures", "pages", "study", "cli", "editing", "workbench"),
+    "notebooks": ("doctor", "text", "files", "figures", "pages", "study", "bench", "cli", "editing", "workbench"),
 }
 """Rooms from the bottom up. Modules that stand in no room are below all of them, the front door is above."""
 MOST_MODULES = 25
@@ -72,11 +72,11 @@ def room_named(package: str, name: tuple[str, ...]) -> str | None:
 
 
 def modules(package: str) -> list[Path]:
-    """Every module of a package but its front door."""
+    """Every module of a package but its front doors, for imports and for ``python -m``."""
     return [
         path
         for path in sorted((ROOT / package).rglob("*.py"))
-        if path.parent.name != package or path.stem != "__init__"
+        if path.parent.name != package or path.stem not in {"__init__", "__main__"}
     ]
 
 

@@ -14,6 +14,7 @@ from thermicon.icons import Icon
 from thermicon.icons.number_text import signed
 
 from ..arrays import Array
+from ..rig.load import refuse_load
 from ..rig.rig import Rig
 from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
@@ -67,6 +68,7 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
     >>> deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     DeliveredDrive('cooling-step' on dac-12, 8.01 s at 100 Hz, skin 26.92 … 32.05 °C)
     """
+    refuse_load(rig, "safety for people")
     refuse_landing(rig, "what a device delivers is judged for a hand that rests on the display")
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)

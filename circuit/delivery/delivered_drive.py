@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from thermicon.icons import Icon
 
 from ..rig.rig import Rig
-from ..solver.delivery_deviation import DeliveryDeviation, delivery_deviation
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
+from .delivery_deviation import DeliveryDeviation, delivery_deviation
 from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples

@@ -16,6 +16,7 @@ from ..rig.rig import Rig
 from .checks import aligned, check_clocks, check_sensors, remarks, unsteady
 from .identify import T95, Parameter, cures, is_identified
 from .keys import FitError, FitKey, free_keys, value_of
+from .left_out import left_out
 from .log import Log
 from .log_files import read_log
 from .problem import FREE_START, STEADY, STEADY_BEFORE, Problem
@@ -158,7 +159,7 @@ def _result(
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
     if not measured:  # a voltage alone cannot show what the rig leaves out
         notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters):
+    elif stated := uncertainties(keys, parameters, skin=start.bench_load is None):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
         fitted = fitted.with_(**changes, **{"uncertainty.reason": reason_of(start, sources)})
     alike = [
@@ -170,7 +171,7 @@ def _result(
     stopped = () if solution.converged else ("the fit did not come to rest; free fewer keys",)
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
-        (*notes, *remarks(problem, solution.theta), *alike, *stopped), solution.converged,
+        (*notes, *remarks(problem, solution.theta), *alike, *left_out(problem, solution), *stopped), solution.converged,
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import InputError
+from ..rig.load import METAL
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened
@@ -92,12 +93,23 @@ _KEYS = {
                "a thermometer in the room"),
         FitKey("skin.rest_C", "skin at rest", False, 8.0, 1.0, "", "an infrared thermometer on the bare skin"),
         FitKey("controller.lag_s", "lag of the controller's thermistor", False, 30.0, 0.1, "", _LAG),
+        FitKey("load.capacity_J_per_K", "load", True, 30.0, 0.3, "", "the mass of the block times its specific heat"),
+        FitKey("load.conductance_W_per_K", "load to the room", True, 30.0, 0.3, "",
+               "how fast the warm block alone cools in the room"),
+        FitKey("load.film_W_per_m2K", "film of air", True, 30.0, 0.3, "", "a log of the display in still air"),
         FitKey("thermode.lag_s", "lag of the thermode", False, 10.0, 0.1, "", "the set-points, logged as setpoint_C"),
         FitKey("thermode.slew_K_per_s", "ramp rate of the thermode", True, 30.0, 0.3, "",
                "a step of 10 K, logged as setpoint_C and display_C"),
     )
 }  # fmt: skip
 _PROBE = re.compile(r"probe\.(?P<name>[\w-]+)\.lag_s")
+
+GIVEN = ("heat_sink.capacity_J_per_K", *(key for key in _KEYS if key.startswith("load.")))
+"""Keys that can be fitted only where the rig has them."""
+
+WITHOUT_SKIN = ("skin.rest_C",)
+WITHOUT_CONTACT = (*WITHOUT_SKIN, "contact.resistance_m2K_per_W")
+"""Keys that act on nothing under a block of metal, and under air."""
 
 COMMON = ("contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm")
 """What a log of display and voltage identifies on every rig with a module."""
@@ -109,14 +121,18 @@ def fittable(rig: Rig) -> tuple[str, ...]:
     >>> fittable(Rig.load("tcs2"))[:2]
     ('contact.resistance_m2K_per_W', 'contact.area_cm2')
     """
-    stated = {"controller": rig.controller is not None, "thermode": rig.thermode is not None}
+    parts = {"load": rig.bench_load, "controller": rig.controller, "thermode": rig.thermode}
+    stated = {table: part is not None for table, part in parts.items()}
+    without = () if rig.bench_load is None else WITHOUT_SKIN if rig.bench_load.site == METAL else WITHOUT_CONTACT
     pumped = {"module", "heat_sink", "driver"}
     known = []
     for key in _KEYS:
         table = key.partition(".")[0]
         if (table in pumped and rig.pump is None) or not stated.get(table, True):
             continue
-        if key == "heat_sink.capacity_J_per_K" and value_of(rig, key) is None:
+        if key in GIVEN and value_of(rig, key) is None:
+            continue
+        if key in without:
             continue
         known.append(key)
     return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
@@ -155,7 +171,7 @@ def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
     hint = did_you_mean(name, known, 1)
     generic = re.sub(r"\.(layer|probe)\.[^.]+\.", r".\1.0.", name)
     if generic in rig_keys():
-        return f"{name}: is a key of a rig, but no log of temperatures identifies it; {hint}"
+        return f"{name}: is a key of a rig, but no log identifies it; keys that can be fitted: {', '.join(known)}"
     if hint.startswith("did you"):
         return f"{name}: cannot be fitted; {hint}"
     return f"{unknown_key(name)}; keys that can be fitted: {', '.join(known)}"

@@ -11,9 +11,9 @@ from thermicon.icons import Icon, load_library
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
+from .identify import NOISE_K, NOISE_V
 from .log import Log
 
-NOISE_K, NOISE_V, NOISE_A = 0.02, 0.005, 0.0
 OFFSET_SD_K = 0.1
 COLUMNS = ("display_C", "voltage_V")
 DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"

@@ -38,6 +38,10 @@ ASIDE = ("#", "sep=")
 
 NOTHING = "n/a"
 """An empty cell of a TSV."""
+NOTHINGS = (NOTHING, "na", "nan")
+"""What loggers write for a missing number."""
+MISSPELT = 0.85
+"""A name of a column that is so much alike a known one is taken for a slip of the pen."""
 
 SESSION_TIME = ("time_s", "onset", "time", "t")
 
@@ -121,7 +125,8 @@ def _from_text(where: Path, text: str, digest: str) -> Log:
         raise LogError(f"{where}:{lines.line_num}: this row cannot be read ({problem}); save it as CSV") from None
     assert header is not None
     wanted = [k for k, name in enumerate(header) if name == "time_s" or is_known(name) or _session_name(name)]
-    values = {header[k]: _numbers(cells, places, k, header[k], mark) for k in wanted}
+    gaps: list[str] = []
+    values = {header[k]: _numbers(cells, places, k, header[k], mark, gaps) for k in wanted}
     merged = _session(values)
     columns = merged or values
     _check_columns(where.name, columns, header)
@@ -129,7 +134,8 @@ def _from_text(where: Path, text: str, digest: str) -> Log:
     used = set(values) if merged else set(columns)
     left_out = [name for name in header if name not in used and name != "icon"]
     more = (f"{where.name}: columns that are not used: {', '.join(left_out[:8])}",) if left_out else ()
-    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *more), rows=places)
+    texts = tuple(f"{where.name}: {gap}" for gap in gaps)
+    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts, *more), rows=places)
 
 
 def _check_header(header: Sequence[str], place: str) -> None:
@@ -146,28 +152,53 @@ def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str
     missing = [] if "time_s" in columns else ["time_s (time in s)"]
     if not any(is_known(column) for column in columns):
         missing.append(f"one of {', '.join(DRIVES)}, or any of {', '.join(MEASURED)}")
+    known = ("time_s", *DRIVES, *MEASURED)
+    misspelt = [(cell, _misspelt(cell, known)) for cell in header if cell not in columns and cell not in OTHER_UNIT]
+    wrong += [f"{cell}: did you mean {name}? Rename it" for cell, name in misspelt if name and name not in columns]
     if not missing and not wrong:
         return
-    known = ("time_s", *DRIVES, *MEASURED)
     near = [(cell, nearest_words(cell, known)) for cell in header if cell not in columns and cell not in OTHER_UNIT]
-    hints = [f"{cell}: did you mean {close[0]}?" for cell, close in near if close and close[0] not in columns]
+    named = dict(misspelt)
+    hints = [
+        f"{cell}: did you mean {close[0]}?"
+        for cell, close in near
+        if close and close[0] not in columns and not named[cell]
+    ]
     parts = [f"missing: {', and '.join(missing)}"] if missing else []
     parts += [*wrong, *hints, f"found {', '.join(header[:12])}"]
     raise LogError(f"{name}: {'; '.join(parts)}")
 
 
-def _numbers(cells: Sequence[Sequence[str]], places: Sequence[str], at: int, name: str, mark: str) -> Array:
-    """A column (rows,) of cells; empty cells and NaN become NaN, a text is an error with its line."""
-    values = np.empty(len(cells))
+def _misspelt(cell: str, known: Sequence[str]) -> str | None:
+    """The known column that a name is but for case or a letter."""
+    close = nearest_words(cell.lower(), [name.lower() for name in known], 1, MISSPELT)
+    return next((name for name in known if close and name.lower() == close[0]), None)
+
+
+def _numbers(
+    cells: Sequence[Sequence[str]], places: Sequence[str], at: int, name: str, mark: str, gaps: list[str]
+) -> Array:
+    """A column (rows,) of cells; empty cells and NaN become NaN, a text is an error with its line.
+
+    What stands for a missing number is counted in `gaps`.
+    """
+    values, texts = np.empty(len(cells)), dict[str, int]()
     for k, row in enumerate(cells):
         cell = row[at].strip() if at < len(row) else ""
         if mark != "," and "," in cell:
             cell = cell.replace(",", ".")
+        if cell.lower() in NOTHINGS:
+            texts[cell] = texts.get(cell, 0) + 1
+            cell = ""
         try:
-            values[k] = float(cell) if cell and cell != NOTHING else np.nan
+            values[k] = float(cell) if cell else np.nan
         except ValueError:
             raise LogError(f"{places[k]}: {name} is {quoted(cell)}, not a number; leave the cell empty") from None
     values[~np.isfinite(values)] = np.nan
+    gaps += [
+        f"{name} is {quoted(text)} in {count:,} of {len(cells):,} rows, which are taken as gaps"
+        for text, count in texts.items()
+    ]
     return values
 
 

@@ -30,15 +30,18 @@ LARGEST = {
 """The largest uncertainty that a rig file may state."""
 
 
-def uncertainties(keys: Sequence[FitKey], parameters: Sequence[Parameter]) -> dict[str, float]:
+def uncertainties(keys: Sequence[FitKey], parameters: Sequence[Parameter], *, skin: bool = True) -> dict[str, float]:
     """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
 
-    Both plates share one key: it is the wider of both, and nothing where only one was fitted.
+    Both plates share one key: it is the wider of both, and nothing where only one was fitted. Contact with a load
+    (`skin` is False) says nothing of contact with skin.
     """
     stated: dict[str, float] = {}
     identified = {item.key for item in parameters if item.identified}
     for key, item in zip(keys, parameters, strict=True):
         if not key.uncertainty or not item.identified or (key.key in PLATES and not set(PLATES) <= identified):
+            continue
+        if not skin and key.uncertainty == "contact_resistance_relative":
             continue
         least = LEAST_SHARE * getattr(_SHIPPED, key.uncertainty)
         width = min(max(least, _rounded_up(item.half_width)), LARGEST[key.uncertainty])
@@ -63,9 +66,13 @@ def named(sources: Sequence[tuple[str, str]]) -> str:
     return ", ".join([*few[:MOST_LOGS_NAMED], *more])
 
 
-def fitted_text(rig: Rig, parameters: Sequence[Parameter], sources: Sequence[tuple[str, str]]) -> str:
-    """Return the TOML of a fitted rig; every fitted value has its interval and logs under [source]."""
+def fitted_text(
+    rig: Rig, parameters: Sequence[Parameter], sources: Sequence[tuple[str, str]], name: str | None = None
+) -> str:
+    """Return the TOML of a fitted rig, by a `name` of its own; every fitted value has interval and logs in [source]."""
     document: dict[str, Any] = _without_nothing(json.loads(rig.document))
+    if name:
+        document["name"] = name
     origin = document.setdefault("source", {})
     for item in parameters:
         doubt = "" if item.identified else "; not identified by these logs"

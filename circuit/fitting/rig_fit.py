@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..inputs import LONGEST_NAME
 from ..rig.rig import Rig
 from .identify import Parameter
 from .rig_file import fitted_text
@@ -144,17 +145,19 @@ class RigFit:
 
         return plot_residuals(self, ax, column)
 
-    def rig_text(self) -> str:
-        """Return the rig file of the fitted rig, with where its numbers come from."""
-        return fitted_text(self.rig, self.parameters, self.sources)
+    def rig_text(self, name: str | None = None) -> str:
+        """Return the rig file of the fitted rig, with where its numbers come from; None keeps the name of the rig."""
+        return fitted_text(self.rig, self.parameters, self.sources, name)
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the fitted rig as a rig file with its provenance.
 
         Parameters
         ----------
         path
             A file whose name ends in `.toml`; an existing file is replaced.
+        name
+            Name of the fitted rig; None: that of the file.
 
         Raises
         ------
@@ -166,4 +169,4 @@ class RigFit:
         where = Path(path)
         if where.suffix != ".toml":
             raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
-        where.write_text(self.rig_text(), encoding="utf-8")
+        where.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")

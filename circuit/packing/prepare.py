@@ -10,13 +10,13 @@ from thermicon.icons import Icon
 
 from ..delivery.deliver import deliver
 from ..delivery.delivered_drive import DeliveredDrive
+from ..delivery.delivery_deviation import DeliveryDeviation
 from ..delivery.device import Device
 from ..delivery.formats import Format
 from ..delivery.spread import OpenLoopSpread, open_loop_spread
 from ..rig.rig import Rig
 from ..safety.checks import Check
 from ..safety.repeated import check_pause
-from ..solver.delivery_deviation import DeliveryDeviation
 from .refusal import Refusal, refusals_of
 from .worstcase import worst_case, worst_cases
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Literal
 
 from thermicon.icons.number_text import signed
 
+from ..delivery.delivery_deviation import DeliveryDeviation, loss_limit
 from ..delivery.setpoints import Setpoints
 from ..rig.rig import Rig
 from ..safety.checks import more_and_cure
-from ..solver.delivery_deviation import DeliveryDeviation, loss_limit
 from ..solver.inverse import design
 from ..solver.simulate import duration_s
 from ..solver.trace import Outcome

@@ -8,6 +8,7 @@ from dataclasses import asdict, fields
 from typing import Any
 
 from ..delivery.delivered_drive import DeliveredDrive
+from ..delivery.delivery_deviation import DeliveryDeviation, loss_table
 from ..delivery.device import Device
 from ..delivery.formats.form import Format, events_in
 from ..delivery.samples import Samples
@@ -17,7 +18,6 @@ from ..delivery.thermode import lag_of
 from ..program import own_version, this_program
 from ..records import Record
 from ..safety.summary import summarise
-from ..solver.delivery_deviation import DeliveryDeviation, loss_table
 from .digests import digest, digest_of_content, plain
 
 NO_CLEARANCE = (

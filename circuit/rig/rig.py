@@ -14,6 +14,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
 from .heat_sink import heat_sink_of
+from .load import AIR, NO_CONTACT_M2K_PER_W, Load, load_of
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import (
@@ -79,6 +80,8 @@ class Rig:
         Temperature controller around the module, if any.
     thermode
         Limits of a thermode, which takes temperatures in place of a current.
+    bench_load
+        What the display touches in place of skin, if anything; the deep node is then the room.
     changes
         What differs from the file, as `key=value`.
 
@@ -108,6 +111,7 @@ class Rig:
     probes: tuple[Probe, ...] = ()
     controller: Controller | None = None
     thermode: Thermode | None = None
+    bench_load: Load | None = None
     changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
@@ -116,10 +120,10 @@ class Rig:
             if self.thermode is None
             else f"thermode {self.thermode.lowest_C:g} … {self.thermode.highest_C:g} °C"
         )
-        return (
-            f"Rig({self.name!r}, {self.skin.site}, {self.contact.area_m2 * 1e4:g} cm², "
-            f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C, {source})"
-        )
+        rest = f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C"
+        if self.bench_load is not None:
+            rest = f"room {self.deep_C:.1f} °C"
+        return f"Rig({self.name!r}, {self.site}, {self.contact.area_m2 * 1e4:g} cm², {rest}, {source})"
 
     def __hash__(self) -> int:
         return hash(self.document)
@@ -213,8 +217,8 @@ class Rig:
 
     @property
     def site(self) -> str:
-        """Skin site, as in `thenar`."""
-        return self.skin.site
+        """Skin site, as in `thenar`; on a load, what that is."""
+        return self.skin.site if self.bench_load is None else self.bench_load.site
 
     @property
     def blood_C(self) -> float:
@@ -368,15 +372,19 @@ def _assemble(table: RigTable, document: str) -> Rig:
         None if skin.elements is None else tuple(skin.elements),
         skin.depth_from,
     )
-    column = column_of(body, table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK)
+    area, load = contact.area_cm2 * 1e-4, load_of(table.load, contact.area_cm2 * 1e-4)
+    blood = table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK
+    column = column_of(body, blood) if load is None else load.column(area)
     loss = table.ambient.film_W_per_m2K * (skin.rest_C - table.ambient.temperature_C)
     deep = skin.deep_C if skin.deep_C is not None else skin.rest_C - column.steady_drop_K(-loss)
+    deep = deep if load is None else table.ambient.temperature_C
+    touch = NO_CONTACT_M2K_PER_W if load is not None and load.site == AIR else contact.resistance_m2K_per_W
     return Rig(
         table.name,
         table.title,
         tuple(table.notes),
         _pump(table),
-        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W, contact.lands_s),
+        Contact(area, touch, contact.lands_s),
         Ambient(**table.ambient.model_dump()),
         body,
         column,
@@ -387,4 +395,5 @@ def _assemble(table: RigTable, document: str) -> Rig:
         probes_of(table.probe, body.thickness_m),
         None if table.controller is None else Controller(**table.controller.model_dump()),
         None if table.thermode is None else Thermode(**table.thermode.model_dump()),
+        load,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
+from .load import with_article
 from .parts import Thermode
 
 if TYPE_CHECKING:
@@ -17,14 +18,20 @@ def rig_summary(rig: Rig) -> str:
     """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text."""
     flux = -rig.resting_flux_W_per_m2
     how = "from the heat balance" if rig.skin.deep_C is None else "given"
-    rows = [
-        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
+    skin = [
         (
             "rest",
             f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), "
             f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
         ),
         ("receptors", str(rig.receptor_depths())),
+    ]
+    if (load := rig.bench_load) is not None:
+        words = f"{load.capacity_J_per_K:.3g} J/K, {load.conductance_W_per_K:.3g} W/K to a room of {rig.deep_C:g} °C"
+        skin = [("load", f"{with_article(load.site)} in place of skin: {words}; nothing is judged for people")]
+    rows = [
+        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
+        *skin,
         ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
         *(("warning", text) for text in rig.warnings),
         *(("note", text) for text in rig.notes),

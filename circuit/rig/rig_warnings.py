@@ -27,6 +27,23 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
     >>> rig_warnings(Rig.load("thenar").with_(**{"ambient.film_W_per_m2K": 30}))[0]
     'skin at rest loses ... W/m², over the 150 W/m² that bare skin in room air can lose'
     """
+    sentences = [] if rig.bench_load is not None else _skin_sentences(rig)
+    if loosened := rig.limits.loosened:
+        sentences.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {rig.limits.reason}")
+    if claims := tightened(rig.uncertainty):
+        sentences.append(
+            f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {rig.uncertainty.reason}"
+        )
+    sentences += rig.limits.hidden
+    if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
+        sentences.append(resting)
+    sentences += _beyond_the_command(rig)
+    origin = () if rig.pump is None else rig.pump.origin.warnings
+    return (*sentences, *origin, *_left_from_another_module(rig), *_left_from_another_site(rig))
+
+
+def _skin_sentences(rig: Rig) -> list[str]:
+    """What is unusual about heat loss and blood."""
     sentences = []
     loss_W_per_m2 = -rig.resting_flux_W_per_m2
     if loss_W_per_m2 > HIGH_RESTING_FLUX_W_PER_M2:
@@ -41,18 +58,7 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
             f"blood at {rig.deep_C:.2f} °C lies outside the {LIVING_C[0]:g} … {LIVING_C[1]:g} °C of living limbs; "
             f"check skin.rest_C and the ambient"
         )
-    if loosened := rig.limits.loosened:
-        sentences.append(f"limits of safety are loosened: {'; '.join(loosened)}. Reason given: {rig.limits.reason}")
-    if claims := tightened(rig.uncertainty):
-        sentences.append(
-            f"the worst case of safety is milder: {'; '.join(claims)}. Reason given: {rig.uncertainty.reason}"
-        )
-    sentences += rig.limits.hidden
-    if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
-        sentences.append(resting)
-    sentences += _beyond_the_command(rig)
-    origin = () if rig.pump is None else rig.pump.origin.warnings
-    return (*sentences, *origin, *_left_from_another_module(rig), *_left_from_another_site(rig))
+    return sentences
 
 
 def _beyond_the_command(rig: Rig) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -21,6 +22,7 @@ from ..inputs import (
 )
 from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
+from .load import LoadTable, load_faults
 from .modules import module_faults
 from .rig_faults import display_faults, landing_faults
 from .rules import faults_of
@@ -288,6 +290,7 @@ class RigTable(_Table):
     thermode: ThermodeTable | None = None
     contact: ContactTable
     ambient: AmbientTable
+    load: LoadTable | None = None
     skin: SkinTable
     blood: BloodTable
     probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)
@@ -297,7 +300,7 @@ class RigTable(_Table):
 
     @model_validator(mode="after")
     def _whole(self) -> RigTable:
-        if faults := display_faults(self) or landing_faults(self):
+        if faults := display_faults(self) or load_faults(self) or landing_faults(self):
             raise ValueError("\n".join(faults))
         return self
 
@@ -318,6 +321,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
         raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
 
 
+@cache
 def rig_keys() -> tuple[str, ...]:
     """All dotted keys of a rig file; those of a layer have 0 as its place."""
     return tuple(_keys(RigTable, ""))
@@ -329,6 +333,7 @@ _OPTIONAL_TABLES: dict[str, type[BaseModel]] = {
     "driver": DriverTable,
     "controller": ControllerTable,
     "thermode": ThermodeTable,
+    "load": LoadTable,
 }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from .modules import PARAMETERS, build_of, module_names
 from .rigfile import RigError, parse_toml, rig_keys, unknown_key
 
-_OPTIONAL = ("controller", "uncertainty", "safety")
+_OPTIONAL = ("controller", "load", "uncertainty", "safety")
 """Tables that a rig need not have; setting a key creates one."""
 
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..rig.load import LOAD_SITES, without_skin
+from ..rig.rigfile import RigError
 from ..rig.rules import Limits
 from ..solver.trace import Trace
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
@@ -65,6 +67,11 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     SafetyVerdict
         Colour, and the worst value of every rule.
 
+    Raises
+    ------
+    RigError
+        For a trace of a rig with a load in place of skin.
+
     Notes
     -----
     This is one run of the rig as given. `gate` also covers uncertainty, endings, repetition and single faults.
@@ -76,6 +83,8 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     >>> judge_safety(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))).colour
     'green'
     """
+    if trace.site in LOAD_SITES:
+        raise RigError(f"rig {trace.rig_name}: {without_skin(trace.site, 'safety for people')}")
     columns = {name: getattr(trace, name)[np.newaxis] for name in WATCHED}
     if not trace.has_current:  # a thermode has no hot plate; its display stands in, so that no rule is lost
         columns["hot_plate_C"] = columns["display_C"]

@@ -11,6 +11,7 @@ import numpy as np
 from thermicon.icons import Icon
 
 from ..arrays import Array
+from ..rig.load import refuse_load
 from ..rig.rig import Rig
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
@@ -56,6 +57,7 @@ def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: s
     """
     if tracking not in TRACKINGS:
         raise SessionError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
+    refuse_load(rig, "safety for people")
     refuse_landing(rig, "a session is played to a hand that rests on the display")
     lasting = {name: duration_s(icons[name], rig) for name in plan.names}
     total = check_length([lasting[name] for name in plan.order], plan.gap_s)

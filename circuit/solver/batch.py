@@ -13,13 +13,14 @@ from thermicon.icons import Icon
 from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .batch_inputs import Bank, cut, run_follow, run_forward, run_regulate
+from .batch_inputs import Bank, Intervals, cut, run_follow, run_forward, run_regulate
 from .displayed import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
 from .landing import ahead, common_lead, led, start_after, start_holding, start_under
 from .network import network_of
 from .simulate import rows_until, simulate
 from .steady import state_under_current, steady_state
+from .superposed import corners_of, is_linear, superposed
 
 TRACKINGS = ("replay", "display", "ideal")
 """What each rig plays: the nominal current open loop, the nominal display trajectory, or its own solution."""
@@ -248,6 +249,8 @@ class _Stage:
         lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
         lead, owners = common_lead(self.rigs), [rig for rig in self.rigs for _ in bases]
         states = [start_holding(rig, state) for rig, (_, state) in zip(owners, lanes, strict=True)]
+        if control == "display" and (values := self._superposed(targets, bases, states)) is not None:
+            return values
         targets = ahead(targets, np.array(bases), lead)
         if self.nominal.controller is None:
             currents = self._follow(control, targets, states)
@@ -258,6 +261,29 @@ class _Stage:
             every = np.arange(len(rig_of), dtype=np.int64)
             states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, bank.states(states)))
         return self._play(currents[:, lead:], icons, states)
+
+    def _superposed(self, targets: Array, bases: Sequence[float], states: Sequence[Array]) -> Array | None:
+        """As `track`, where the skin alone decides; lanes near a limit are solved in full. None: solve all in full."""
+        if not is_linear(self.rigs, self.nominal, self.probes, self.rows):
+            return None
+        displays = np.concatenate([np.array(bases)[:, np.newaxis], targets], axis=1)
+        if (corners := corners_of(displays)) is None:
+            return None
+        bank, update_Hz = Bank.of([network_of(rig) for rig in self.rigs]), self.nominal.driver.update_Hz
+        start = bank.states(states)
+        result = superposed(bank, displays, corners, start, self.probes, 1.0 / update_Hz, self.rows)
+        if (near := np.flatnonzero(~result.fine)).size:
+            rig_of, cue_of = (places[near] for places in self._lanes(len(targets)))
+            lanes = np.arange(len(near))
+            currents = run_follow(bank, rig_of, cue_of, 1.0 / update_Hz, targets, False, start[near])[0]
+            intervals = self._held(currents)
+            result.values[:, near] = run_forward(bank, rig_of, lanes, intervals, start[near], self.probes)
+        return result.values.reshape(len(self.probes), len(self.rigs), len(targets), len(self.rows))
+
+    def _held(self, currents: Array) -> Intervals:
+        """Time cut for currents (…, periods) held over the driver's periods."""
+        times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
+        return cut(self.rows, times, np.concatenate([currents, currents[:, -1:]], axis=1), held=True)
 
     def _lanes(self, cues: int) -> tuple[Index, Index]:
         """Rig and cue of every lane, all cues of a rig together."""
@@ -287,12 +313,9 @@ class _Stage:
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
-        times = np.concatenate([[0.0], periods(self.nominal, self.end_s)])
-        extended = np.concatenate([currents, currents[:, -1:]], axis=1)
         bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
-        intervals = cut(self.rows, times, extended, held=True)
-        out = run_forward(bank, rig_of, cue_of, intervals, bank.states(states), self.probes)
+        out = run_forward(bank, rig_of, cue_of, self._held(currents), bank.states(states), self.probes)
         return out.reshape(len(self.probes), *shape, len(self.rows))

@@ -104,8 +104,8 @@ def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[
 def _lagged(probe: Probe, time_s: Array, value: Array) -> Array:
     if not probe.lag_s:
         return value
-    from . import kernel_probes
+    from . import kernel_modes
 
     out = np.empty_like(value)
-    kernel_probes.lagged(time_s, value, probe.lag_s, out)
+    kernel_modes.lagged(time_s, value, probe.lag_s, out)
     return out

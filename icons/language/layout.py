@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
+from .grammar_tables import grammar
 from .parse import parse
-from .recover import grammar
 from .source import Source, decode
 
 _UNITS = ("ABSOLUTE", "DIFFERENCE", "RATE", "TIME", "CURRENT", "CURRENT_RATE", "UNIT")

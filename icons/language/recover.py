@@ -4,17 +4,17 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from importlib import resources
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..model.errors import MOST_ERRORS, MOST_READ
 from .diagnose import VOCABULARY, diagnose
 from .failed_statement import FailedStatement
+from .grammar_tables import grammar
 from .source import Edit, Finding, Piece, Source
 
 if TYPE_CHECKING:
-    from lark import Lark, Token, Tree
+    from lark import Token, Tree
 
 DEEPEST = 20
 _OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
@@ -39,15 +39,6 @@ class Reading:
     tree: "Tree[Any]"
     findings: tuple[Finding, ...]
     more: int
-
-
-@cache
-def grammar() -> "Lark":
-    """Return the parser made of ``grammar.lark``; made once, on first use."""
-    from lark import Lark
-
-    text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False)
 
 
 def read(source: Source) -> Reading:

@@ -27,7 +27,9 @@ def first_control(text: str, allowed: str = "") -> str | None:
     >>> first_control("a\\x1b[2J"), first_control("two\\nlines", "\\n")
     ('U+001B', None)
     """
-    bad = next((char for char in text if char not in allowed and acts(char)), None)
+    if text.isprintable():  # said by the interpreter at once; a rig file has thousands of letters
+        return None
+    bad = next((char for char in text if not char.isprintable() and char not in allowed and acts(char)), None)
     return None if bad is None else f"U+{ord(bad):04X}"
 
 

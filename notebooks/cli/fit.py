@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from thermicon.circuit.inputs import LONGEST_NAME, line_fault
+
 from ..figures.figure_look import (
     SCREEN,
     FigureData,
@@ -43,6 +45,7 @@ class Request:
     offset_K: float = OFFSET_K
     output: Path | None = None
     figure: Path | None = None
+    name: str | None = None
     look: Look = SCREEN
 
 
@@ -57,11 +60,23 @@ def fit_command(
     ] = None,
     free: Annotated[
         list[str] | None,
-        typer.Option("--free", metavar="KEY,KEY", help="Keys of the rig to fit, such as contact.resistance_m2K_per_W."),
+        typer.Option(
+            "--free",
+            metavar="KEY,KEY",
+            help="Required: keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
+            "seebeck_V_per_K, resistance_ohm, thermal_resistance_K_per_W, hot_plate_J_per_K, cold_plate_J_per_K; "
+            "heat_sink. with temperature_C, resistance_K_per_W, capacity_J_per_K; driver.transconductance_A_per_V; "
+            "ambient.temperature_C; skin.rest_C; load. with capacity_J_per_K, conductance_W_per_K, film_W_per_m2K; "
+            "lags: controller.lag_s, probe.NAME.lag_s, thermode.lag_s; thermode.slew_K_per_s.",
+        ),
     ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="NEW.toml", readable=False, help="Write the fitted rig as a rig file."),
+    ] = None,
+    name: Annotated[
+        str | None,
+        typer.Option("--name", metavar="NAME", help="Name of the fitted rig.  [default: that of the file of -o]"),
     ] = None,
     figure: FigureFile = None,
     width: FigureWidth = None,
@@ -103,10 +118,14 @@ def fit_command(
         raise usage("prints a table only; leave out -o and --figure", "--plan")
     if not plan and not logs:
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
+    if name is not None and output is None:
+        raise usage("names the rig that -o writes; give -o NEW.toml", "--name")
+    if name is not None and (fault := line_fault(name, LONGEST_NAME)):
+        raise usage(fault, "--name")
     if not 0 <= offset <= MOST_OFFSET_K:
         raise usage(f"{offset:g} K is outside 0 to {MOST_OFFSET_K:g} K", "--offset")
     look = figure_look(figure, width, style, no_title, figure_data)
-    request = Request(keys, hold, fit_start, offset, output, figure, look)
+    request = Request(keys, hold, fit_start, offset, output, figure, name, look)
     if plan:
         show_plan(load_rig(rig, changes or []), request)
     else:
@@ -127,7 +146,7 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
     )
     if request.output is not None:
         with complete_or_absent(request.output) as draft:
-            draft.write_text(fitted.rig_text(), encoding="utf-8")
+            draft.write_text(fitted.rig_text(request.name or request.output.stem[:LONGEST_NAME]), encoding="utf-8")
     if request.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
 

@@ -13,7 +13,7 @@ from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWid
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.choices import OBJECTIVES, MostTime, check_totals
 from ..text.messages import check_changes, load_observer, load_rig, progress_bar, usage
-from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_tracking
+from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_norm_option, check_tracking
 from ..text.tables import show, table
 
 if TYPE_CHECKING:
@@ -67,13 +67,11 @@ def frontier_command(
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     check_separate(files, [output, figure])
     from thermicon.perception import frontier
-    from thermicon.perception.observer.channels import NORMS
 
     from ..files.cues import read_set, warn_of_frames
     from .sweep import write_study
 
-    if norm not in NORMS:
-        raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
+    check_norm_option(norm)
     icons, where, model = read_set(files), load_rig(rig, changes or []), load_observer(observer)
     warn_of_frames(files, icons, where)
     with progress_bar("choosing") as progress:

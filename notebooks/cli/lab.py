@@ -81,6 +81,9 @@ def lab_command(
     port: Annotated[
         int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 with --page]")
     ] = None,
+    allow_root: Annotated[
+        bool, typer.Option("--allow-root", help="Let JupyterLab run as root, as in a container.")
+    ] = False,
     force: Annotated[
         bool, typer.Option("--force", help="Also replace notebooks that you changed by the shipped ones.")
     ] = False,
@@ -96,6 +99,8 @@ def lab_command(
     if rig is not None and not page:
         raise usage("is for --page; in a notebook, write Workbench(rig=...)", "--rig")
     file = folder if page and folder.suffix.lower() == CUE else None
+    if allow_root and (page or files_only):
+        raise usage("is for JupyterLab; nothing else refuses to run as root", "--allow-root")
     if file is None and folder.suffix.lower() in FILES:
         raise usage(f"{str(folder)!r} is the name of a file, not of a folder; give one, such as {FOLDER}", "DIR")
     program = "voila" if page else "jupyterlab"
@@ -109,7 +114,8 @@ def lab_command(
         return
     report_copies(copy_notebooks(folder, force), folder)
     if not files_only:
-        serve(command_of(folder, page, no_browser, port), program, shown if page else {})
+        command = command_of(folder, page, no_browser, port)
+        serve([*command, *(["--allow-root"] if allow_root else [])], program, shown if page else {})
 
 
 def page_environment(place: Path, file: Path | None, rig: str | None) -> dict[str, str]:

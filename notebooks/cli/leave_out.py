@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.circuit.userfolder import cache_folder, private_folder
+from thermicon.icons.userfolder import cache_folder, private_folder
 
 from ..files.outputs import check_folder, complete_or_absent
 from ..text.messages import fail, note, progress_bar

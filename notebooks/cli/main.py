@@ -6,7 +6,6 @@ of this package.
 
 from __future__ import annotations
 
-import io
 import math
 import sys
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Annotated
 
 import typer
 
+from ..bench.command import bench_command
 from ..figures.figure_look import (
     FigureData,
     FigureFolder,
@@ -23,7 +23,7 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..startup import is_command, warn_if_hidden
+from ..startup import is_command, print_anywhere, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
 from ..text.messages import check_changes, interrupted, load_rig, usage
 from ..text.options import (
@@ -62,7 +62,7 @@ from . import (
 from .app import Commands
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
-PLAY, NOTEBOOKS = "Play on hardware", "Notebooks"
+PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
 """Jobs, as the headings of ``thermicon --help``."""
 
 RANKED_BY = ("model", "rules")
@@ -182,6 +182,15 @@ def simulate_command(
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
     figure_data: FigureData = None,
+    measured: Annotated[
+        Path | None,
+        typer.Option(
+            "--measured",
+            metavar="LOG",
+            readable=False,
+            help="Lay a measured log beside the trace, in the figure too: rms and largest miss of every column.",
+        ),
+    ] = None,
     power: Annotated[
         bool, typer.Option("--power", help="With -o: add the electrical power of the module, power_W.")
     ] = False,
@@ -210,9 +219,9 @@ def simulate_command(
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
-        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power, look)
+        simulate_drive(current, hold, load_rig(rig, changes or []), rate, output, figure, power, measured, look)
     elif file is not None:
-        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power, look)
+        simulate_file(file, icon, load_rig(rig, changes or []), rate, tail, output, figure, power, measured, look)
 
 
 @app.command("rank", rich_help_panel=PREDICT)
@@ -337,6 +346,19 @@ def library_command() -> None:
     show_library()
 
 
+def doctor_command(
+    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of lines.")] = False,
+) -> None:
+    """Check the installation: versions, extras, outside programs, cache, fonts, Jupyter, and a self-test.
+
+    Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code
+    is 1.
+    """
+    from ..doctor.examine import doctor
+
+    raise typer.Exit(doctor(json))
+
+
 for _name, _command, _panel in (
     ("convert", text_commands.convert_command, WRITE),
     ("cite", text_commands.cite_command, WRITE),
@@ -352,11 +374,13 @@ for _name, _command, _panel in (
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
     ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
+    ("bench", bench_command, PREDICT),
     ("session", session.session_command, PLAY),
     ("study", study.study_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),
     ("devices", hardware_commands.devices_command, PLAY),
     ("lab", lab.lab_command, NOTEBOOKS),
+    ("doctor", doctor_command, INSTALLATION),
 ):
     app.command(_name, rich_help_panel=_panel)(_command)
 
@@ -366,9 +390,7 @@ def main() -> None:
     try:
         if is_command():
             warn_if_hidden()
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, io.TextIOWrapper):
-                stream.reconfigure(errors="replace")
+        print_anywhere()
         app(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,9 +14,19 @@ from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWid
 from ..figures.print_figure import write_figure
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
-from ..text.options import Changes, NormName, ObserverFile, OneFile, RigName, Tracking, check_tracking
+from ..text.options import (
+    Changes,
+    NormName,
+    ObserverFile,
+    OneFile,
+    RigName,
+    Tracking,
+    check_norm_option,
+    check_tracking,
+)
 
 if TYPE_CHECKING:
+    from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
 LEAST_DRAWS, MOST_DRAWS = 20, 20_000
@@ -35,7 +45,9 @@ def observed_command(
         typer.Argument(
             metavar="TRIALS.csv",
             readable=False,
-            help="Answers: columns participant, trial, presented, responded and, if recorded, time_s.",
+            help="Answers: columns participant, trial, presented, responded and, if recorded, time_s. Or measurements: "
+            "participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, unit, "
+            "standard_error, trials.",
         ),
     ],
     file: OneFile,
@@ -66,10 +78,11 @@ def observed_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Compare the answers of an identification experiment with the prediction, and sharpen the prediction by them.
+    """Compare answers or measurements of your participants with the prediction, and sharpen the prediction by them.
 
-    FILE is the set that was presented; its icons are all the answers there were. A laboratory is one draw of the
-    posterior with people of its own: those that make the answers likely count more.
+    FILE is the set that was presented; its icons are all the answers there were. With a table of thresholds, reaction
+    times and ratings, FILE is any set to predict. A laboratory is one draw of the posterior with people of its own:
+    those that make the answers likely count more.
     """
     check_changes(changes or [])
     check_numbers(draws, seed, norm)
@@ -86,57 +99,67 @@ def observed_command(
             raise usage("- is not a file; give a name such as lab.toml", "--keep")
         check_output(drawn, (".csv",), "a table of draws")
     check_separate([trials, file, *(other or []), *([observer] if observer else [])], [json, figure, keep, drawn])
-    from thermicon.perception.pilot.observed import observed
+    from thermicon.perception.pilot.measured import condition_on_measurements
+    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+    from thermicon.perception.pilot.observed import Observed, observed
     from thermicon.perception.pilot.trials_file import read_trials
 
     from ..files.cues import read_set, warn_of_frames
+    from ..text.measured_text import show_measured
     from ..text.observed_text import show_observed
 
     icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
-    answers = read_trials(trials, [icon.name for icon in icons])
+    by_measurements = is_measurements(trials)
+    values = read_measurements(trials, where) if by_measurements else None
+    answers = None if by_measurements else read_trials(trials, [icon.name for icon in icons])
     others = [read_set([name]) for name in other or []]
     warn_of_frames([file], icons, where)
+    found: Observed | MeasuredPilot
     with progress_bar("simulating laboratories") as progress:
-        found = observed(
-            answers,
-            icons,
-            where,
-            others=others,
-            draws=draws,
-            seed=seed,
-            norm=norm,
-            tracking=tracking,
-            observer=model,
-            progress=progress,
-        )
+        how: Any = {"others": others, "draws": draws, "seed": seed, "norm": norm, "tracking": tracking}
+        how |= {"observer": model, "progress": progress}
+        if values is not None:
+            found = condition_on_measurements(values, icons, where, **how)
+        else:
+            assert answers is not None
+            found = observed(answers, icons, where, **how)
     _write(found, json, figure, keep, look)
     if json == STDOUT:
         typer.echo(found.to_json())
         return
-    show_observed(found, [file, *(other or [])])
+    files = [file, *(other or [])]
+    if isinstance(found, Observed):
+        show_observed(found, files)
+    else:
+        show_measured(found, files)
 
 
 def check_numbers(draws: int, seed: int, norm: str) -> None:
     """Fail with a usage error for draws or a seed out of range, and for a norm that there is not."""
-    from thermicon.perception.observer.channels import NORMS
-
     for option, value, least, most in (("--draws", draws, LEAST_DRAWS, MOST_DRAWS), ("--seed", seed, 0, 2**32 - 1)):
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)
-    if norm not in NORMS:
-        raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
+    check_norm_option(norm)
 
 
-def _write(found: Observed, json: Path | None, figure: Path | None, keep: Path | None, look: Look) -> None:
+def _write(
+    found: Observed | MeasuredPilot, json: Path | None, figure: Path | None, keep: Path | None, look: Look
+) -> None:
     """Write the outputs that were asked for, each complete or absent."""
     if json is not None and json != STDOUT:
         with complete_or_absent(json) as draft:
             draft.write_text(found.to_json() + "\n", encoding="utf-8")
         note(f"wrote {json}")
     if figure is not None:
+        from thermicon.perception.pilot.observed import Observed
+
+        from ..figures.measured_figure import measured_figure
         from ..figures.observed_figure import observed_figure
 
-        write_figure(observed_figure(found, stacked=look.narrow), figure, look)
+        drawn_figure = (
+            observed_figure(found, stacked=look.narrow) if isinstance(found, Observed) else measured_figure(found)
+        )
+        write_figure(drawn_figure, figure, look)
         note(f"wrote {figure}")
     if keep is not None:
         drawn = keep.with_suffix(".csv")

@@ -15,6 +15,7 @@ from ..files.cache import kept
 from ..files.cues import MOST_ICONS, read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import check_draws, load_observer, note, progress_bar, usage
+from ..text.options import check_norm_option
 from ..text.rank_text import show_ranking
 
 if TYPE_CHECKING:
@@ -82,12 +83,11 @@ def rank_files(
     look: Look = SCREEN,
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import NORMS, Task, rank
+    from thermicon.perception import Task, rank
     from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.goal import Goal
 
-    if request.norm not in NORMS:
-        raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
+    check_norm_option(request.norm)
     if json_out is not None:
         check_output(json_out, (), "JSON")
     check_report(report_out)

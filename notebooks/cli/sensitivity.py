@@ -11,7 +11,8 @@ from thermicon.icons.number_text import percent
 from ..figures.figure_look import SCREEN, Look
 from ..files.cues import read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..text.messages import check_draws, fail, load_observer, progress_bar, usage
+from ..text.messages import check_draws, fail, load_observer, progress_bar
+from ..text.options import check_norm_option
 from ..text.tables import show, table
 from .sweep import write_study
 
@@ -38,10 +39,9 @@ def sensitivity_file(
     file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None, look: Look = SCREEN
 ) -> None:
     """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import NORMS, sensitivity
+    from thermicon.perception import sensitivity
 
-    if request.norm not in NORMS:
-        raise usage(f"{request.norm!r} is not one of {', '.join(NORMS)}", "--norm")
+    check_norm_option(request.norm)
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
     if figure is not None:

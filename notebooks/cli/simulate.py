@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.icons.number_text import number, span
+from thermicon.icons.number_text import number, signed, span
 
 from ..figures.figure_look import SCREEN, Look
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
 from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import note
+from ..text.messages import note, usage
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
+    from thermicon.circuit.fitting.log import Log
     from thermicon.icons import Icon
 
 
@@ -31,6 +32,7 @@ def simulate_file(
     output: Path | None,
     figure: Path | None,
     power: bool = False,
+    measured: Path | None = None,
     look: Look = SCREEN,
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
@@ -38,6 +40,9 @@ def simulate_file(
 
     whole = read_set([file])
     icons = pick(whole, icon)
+    if measured is not None and len(icons) > 1:
+        raise usage(f"belongs to one icon, {file} has {len(icons)}: name it with --icon", "--measured")
+    log = None if measured is None else _log(measured)
     pictures = _figure_paths(figure, [each.name for each in icons])
     _check(file, output, pictures)
     warn_of_site(file, whole, rig)
@@ -45,9 +50,10 @@ def simulate_file(
     _write(traces, output, power)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, look)
+        draw_overview(played, picture, rig.changes, log, look)
     cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
     _report(traces, rig, output, pictures, cures, power)
+    _beside(log, traces[0], output)
 
 
 def simulate_drive(
@@ -58,6 +64,7 @@ def simulate_drive(
     output: Path | None,
     figure: Path | None,
     power: bool = False,
+    measured: Path | None = None,
     look: Look = SCREEN,
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
@@ -65,12 +72,41 @@ def simulate_drive(
 
     pictures = [] if figure is None else [figure]
     _check(drive, output, pictures)
+    log = None if measured is None else _log(measured)
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
     _write([trace], output, power)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes, look)
+        draw_overview(simulate_current(played, rig), picture, rig.changes, log, look)
     _report([trace], rig, output, pictures, [None], power)
+    _beside(log, trace, output)
+
+
+def _log(path: Path) -> Log:
+    from thermicon.circuit.fitting.log_files import read_log
+
+    log = read_log(path)
+    for sentence in log.notes:
+        note(f"note: {sentence}")
+    return log
+
+
+def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
+    """Report how far a log lies from the trace: on stdout, or beside a trace on stderr."""
+    if log is None:
+        return
+    beside = log.beside(trace)
+    lines = [f"measured − simulated ({log.name}, shifted by {number(beside.shift_s, 3)} s)"]
+    for each in beside.columns:
+        words, _, unit = each.column.rpartition("_")
+        unit = "K" if unit == "C" else unit
+        largest = f"{signed(each.largest, '.3g')} {unit} at {number(each.largest_s, 1)} s"
+        lines.append(f"  {words.replace('_', ' '):<9} rms {each.rms:.3g} {unit}, largest {largest}")
+    for line in lines:
+        if output == STDOUT:
+            note(line)
+        else:
+            typer.echo(line)
 
 
 def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
@@ -132,9 +168,12 @@ def _report(
 
 
 def unsafe(trace: Trace) -> list[str]:
-    """Return a sentence for every shipped safety limit that the run exceeds, with hard limits marked."""
+    """Return a sentence for every safety limit that the run exceeds, or one on why it cannot be judged."""
     from thermicon.circuit import judge_safety
+    from thermicon.circuit.rig.load import LOAD_SITES, without_skin
 
+    if trace.site in LOAD_SITES:
+        return [without_skin(trace.site, "safety for people")]
     findings = judge_safety(trace).findings
     return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
 
@@ -175,6 +214,8 @@ def _current(trace: Trace) -> str:
 
 def describe(trace: Trace) -> str:
     """Summarise a run: outcome, drive, extremes and changes at the receptors."""
+    from thermicon.circuit.rig.load import LOAD_SITES
+
     peaks = []
     for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):
         change = column - column[0]
@@ -187,4 +228,7 @@ def describe(trace: Trace) -> str:
         f"  skin      {span(float(trace.skin_C.min()), float(trace.skin_C.max()), '°C')}",
         f"  change    {'; '.join(peaks)}",
     ]
+    if trace.site in LOAD_SITES:
+        face = span(float(trace.skin_C.min()), float(trace.skin_C.max()), "°C")
+        lines[3:] = [f"  load      {face} ({trace.site})"]
     return "\n".join(lines)

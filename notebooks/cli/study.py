@@ -95,8 +95,11 @@ def report_lines(plan: Plan) -> list[str]:
         lines.append("  session   judged by its drives alone, repeated in any order: a thermode has no current")
     elif len(judged.sessions) < len(judged.drift_K):
         lines.append(
-            f"            these are the most extreme of {len(judged.drift_K)} orders, all run on the rig as given"
+            f"            of {len(judged.drift_K)} orders, those with the coldest and the warmest skin, the largest "
+            "dose and the largest drift are run in all corners of uncertainty; the others on the rig as given alone"
         )
+    if judged.sessions and study.trials is not None and study.trials.blocks > 1:
+        lines.append("            without their breaks, in which skin only comes nearer to rest")
     return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
 
 

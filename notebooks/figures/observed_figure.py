@@ -13,7 +13,9 @@ from .overview import COOL, INK, WARM
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
+    from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
 BROAD = "#b9bec4"
@@ -37,7 +39,6 @@ def observed_figure(found: Observed, stacked: bool = False) -> Figure:
     Panels stand beside one another, or, stacked, below one another.
     """
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
     icons = min(len(found.trials.icons), MOST_ICONS)
     tall = 0.36 * max(icons, 5)
@@ -47,14 +48,21 @@ def observed_figure(found: Observed, stacked: bool = False) -> Figure:
     left, middle, right = grid
     _icons(left, found)
     _pairs(middle, found)
-    _sets(right, found)
-    handles = [
-        Line2D([], [], color=BROAD, lw=6.0, label="predicted, 95 %"),
-        Line2D([], [], color=COOL, lw=2.5, label="predicted after the answers, 95 %"),
-        Line2D([], [], color=WARM, marker="o", ls="", label="observed"),
-    ]
+    draw_sets(right, found)
+    handles = legend_of("predicted after the answers, 95 %", "observed")
     figure.legend(handles=handles, loc="outside upper center", ncols=3, frameon=False, fontsize=9)
     return figure
+
+
+def legend_of(after: str, seen: str) -> list[Line2D]:
+    """Handles of the legend: before, after, and what was seen."""
+    from matplotlib.lines import Line2D
+
+    return [
+        Line2D([], [], color=BROAD, lw=6.0, label="predicted, 95 %"),
+        Line2D([], [], color=COOL, lw=2.5, label=after),
+        Line2D([], [], color=WARM, marker="o", ls="", label=seen),
+    ]
 
 
 def _icons(ax: Axes, found: Observed) -> None:
@@ -77,7 +85,8 @@ def _pairs(ax: Axes, found: Observed) -> None:
     ax.set_title("most confused pairs in this experiment\nper cent of trials", fontsize=10)
 
 
-def _sets(ax: Axes, found: Observed) -> None:
+def draw_sets(ax: Axes, found: Observed | MeasuredPilot) -> None:
+    """Draw the per cent correct of every set before and after."""
     rows = [
         Row(each.before.title or f"set {k + 1}", each.before.proportion_correct, each.after.proportion_correct)
         for k, each in enumerate(found.predictions)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from thermicon.circuit.rig.load import LOAD_SITES
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -73,15 +75,22 @@ def _temperatures(trace: Trace, ax: Axes) -> None:
     if isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
         ax.plot(t, trace.target_C, color=TARGET, lw=5.0, solid_capstyle="butt", label="target")
     ax.plot(t, trace.display_C, color=GREY, lw=1.2, ls=(0, (6, 2)), label="display")
-    ax.plot(t, trace.skin_C, color=INK, lw=1.6, label="skin")
-    ax.plot(t, trace.cold_receptor_C, color=COOL, lw=1.4, ls="-.", label="cold receptor")
-    ax.plot(t, trace.warm_receptor_C, color=WARM, lw=1.4, ls="--", label="warm receptor")
+    if trace.site in LOAD_SITES:
+        ax.plot(t, trace.skin_C, color=INK, lw=1.6, label=trace.site)
+    else:
+        ax.plot(t, trace.skin_C, color=INK, lw=1.6, label="skin")
+        ax.plot(t, trace.cold_receptor_C, color=COOL, lw=1.4, ls="-.", label="cold receptor")
+        ax.plot(t, trace.warm_receptor_C, color=WARM, lw=1.4, ls="--", label="warm receptor")
     ax.set_ylabel("temperature (°C)")
 
 
 def _heat_flow(trace: Trace, ax: Axes) -> None:
     t = trace.time_s
     ax.axhline(0.0, color=GREY, lw=0.6)
+    if trace.site in LOAD_SITES:
+        ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="display")
+        ax.set_ylabel(f"heat flow into\nthe {trace.site} (kW/m²)")
+        return
     ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="skin surface")
     ax.plot(t, trace.heat_flow_cold_receptor_W_per_m2 / 1e3, color=COOL, lw=1.4, ls="-.", label="cold receptor")
     ax.plot(t, trace.heat_flow_warm_receptor_W_per_m2 / 1e3, color=WARM, lw=1.4, ls="--", label="warm receptor")

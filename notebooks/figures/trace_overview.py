@@ -14,19 +14,32 @@ from .print_figure import write_figure
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
+    from thermicon.circuit.fitting.log import Log
 
 FELT_TAIL_S = 10.0
 """How long an overview follows sensation after the last corner, unless a tail is given."""
 
 
-def draw_overview(trace: Trace, picture: Path, rig_changes: Sequence[str] = (), look: Look = SCREEN) -> None:
-    """Write the overview figure of one trace, its percept included."""
+def draw_overview(
+    trace: Trace,
+    picture: Path,
+    rig_changes: Sequence[str] = (),
+    measured: Log | None = None,
+    look: Look = SCREEN,
+) -> None:
+    """Write the overview figure of one trace, its percept included where there is skin, beside a measured log."""
+    from thermicon.circuit.rig.load import LOAD_SITES
     from thermicon.perception import perceive
 
     from .overview import overview
 
     trace = on_one_clock(trace)
-    write_figure(overview(trace, perceive(trace), rig_changes), picture, look)
+    figure = overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
+    if measured is not None:
+        ax = figure.axes[0]
+        measured.draw_beside(trace, ax)
+        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
+    write_figure(figure, picture, look)
 
 
 def on_one_clock(trace: Trace) -> Trace:

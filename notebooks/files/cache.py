@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from thermicon.circuit.userfolder import cache_folder, private_folder
+from thermicon.icons.userfolder import cache_folder, private_folder
 
 from .outputs import check_folder
 

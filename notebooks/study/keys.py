@@ -16,7 +16,6 @@ Key = Annotated[Line, Field(pattern=r"^[a-z0-9]+$", max_length=20)]
 """The name of a key as PsychoPy calls it: space, escape, q."""
 
 MOST_PARTICIPANTS, MOST_BLOCKS, MOST_REPETITIONS = 500, 100, 500
-ORDERS = ("balanced", "williams", "random", "shuffled")
 Order = Literal["balanced", "williams", "random", "shuffled"]
 
 

@@ -10,8 +10,6 @@ from .keys import Study
 from .orders import orders_of
 from .study_file import StudyError, labels_of
 
-PRACTICE = "practice"
-
 
 @dataclass(frozen=True, slots=True)
 class Trial:

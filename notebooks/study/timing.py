@@ -27,7 +27,6 @@ GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 1
 """Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""
 
 LONGEST_LANDING_S = 1800.0
-HELD_WORDS = {True: "the display held at its baseline", False: "the resting current held, nothing corrected"}
 
 
 @dataclass(frozen=True, slots=True)

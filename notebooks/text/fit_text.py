@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ PLAN_HEAD = (
     "plate, S the skin; in brackets what is no better than assumed anyway."
 )
 LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
+USUAL_DIGITS, MOST_DIGITS = 4, 7
 CLOSE = 0.9
 """Correlations from here on are printed."""
 
@@ -28,7 +30,9 @@ def parameter_table(fitted: RigFit) -> Table:
     rows = table("key", "fitted", "95 % interval", "±", numbers=("fitted", "±"), names=("key",))
     for item in fitted.parameters:
         width = item.interval.removeprefix("±") if item.identified else "unknown"
-        rows.add_row(item.key, _short(item.value), f"{_short(item.low)} to {_short(item.high)}", width)
+        digits = _digits(item.value, 0.5 * (item.high - item.low)) if item.identified else None
+        ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}"
+        rows.add_row(item.key, _short(item.value, digits), ends, width)
     return rows
 
 
@@ -94,8 +98,17 @@ def _width(width: float, log: bool, known: bool, key: str) -> str:
     return text if known else f"({text})"
 
 
-def _short(value: float) -> str:
-    return f"{value:.4g}".replace("-", "−")
+def _short(value: float, digits: int | None) -> str:
+    text = f"{value:.{USUAL_DIGITS}g}" if digits is None else f"{value:#.{digits}g}"
+    return text.replace("-", "−").removesuffix(".")
+
+
+def _digits(value: float, half: float) -> int:
+    """Significant digits that show half an interval, at least the usual number."""
+    if not value or not half > 0.0:
+        return USUAL_DIGITS
+    places = math.floor(math.log10(abs(value))) - math.floor(math.log10(half)) + 1
+    return min(max(places, USUAL_DIGITS), MOST_DIGITS)
 
 
 def _signed(value: float, digits: int) -> str:

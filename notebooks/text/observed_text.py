@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from thermicon.perception.pilot.answers import AnswerScore
     from thermicon.perception.pilot.fit import Fit
+    from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
 MOST_PEOPLE, MOST_PAIRS, MOST_CONSTANTS = 20, 8, 8
@@ -87,8 +88,8 @@ def fit_sentences(found: Observed) -> list[str]:
         f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
         f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {pooled.bits_plugin:.2f} "
         "bits.",
-        f"Test of fit (posterior predictive): p = {_p(fit.p)} before, {_p(found.fit_after.p)} after the answers were "
-        f"used{_verdict(found)}",
+        f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
+        f"answers were used{_verdict(found)}",
     ]
     if fit.p_people is not None:
         lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
@@ -110,7 +111,8 @@ def pair_lines(fit: Fit) -> list[str]:
     return lines + [f"  - and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)
 
 
-def _p(p: float) -> str:
+def p_text(p: float) -> str:
+    """A p as people write it."""
     return "under 0.01" if p < 0.01 else f"{p:.2f}"
 
 
@@ -122,7 +124,7 @@ def _verdict(found: Observed) -> str:
     return ": the answers are what the prediction allows"
 
 
-def sets_table(found: Observed, files: Sequence[str]) -> Table:
+def sets_table(found: Observed | MeasuredPilot, files: Sequence[str]) -> Table:
     """Each set before and after: per cent correct and bits of people who did not take part."""
     made = table("set", "", "correct", "95 %", "bits", "95 %", "narrower", numbers=("correct", "bits", "narrower"))
     for file, each in zip(files, found.predictions, strict=True):
@@ -154,11 +156,19 @@ def draws_sentences(found: Observed) -> list[str]:
             f"{conditioned.rounds} rounds by their pooled answers"
         )
     lines.append(f"The answers weigh the draws: {carried}.")
-    if not found.constants:
-        return [*lines, "No constant moved by more than chance."]
-    lines.append("What moved or narrowed most (median and 95 %, before → after):")
-    for each in found.constants[:MOST_CONSTANTS]:
-        lines.append(f"  - {each.name}: {_three(each.before)} → {_three(each.after)}")
+    return lines + constant_lines(found)
+
+
+def constant_lines(found: Observed | MeasuredPilot) -> list[str]:
+    """The constants that moved, with units; offsets of the laboratories of the evidence are left out."""
+    header = found.prior.draws.header
+    moved = [each for each in found.constants if not header.is_offset(each.name)]
+    if not moved:
+        return ["No constant moved by more than chance."]
+    lines = ["What moved or narrowed most (median and 95 %, before → after):"]
+    for each in moved[:MOST_CONSTANTS]:
+        unit = f" {each.unit}" if each.unit else ""
+        lines.append(f"  - {each.name}: {_three(each.before)} → {_three(each.after)}{unit}")
     return lines
 
 

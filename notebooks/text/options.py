@@ -120,3 +120,14 @@ def check_pause(pause_s: float | None) -> None:
     """Fail with a usage error for a pause outside 0 to 10 min."""
     if pause_s is not None and not 0 <= pause_s <= LONGEST_PAUSE_S:
         raise usage(f"{pause_s:g} is not a time between plays of 0 to {LONGEST_PAUSE_S:g} s", "--pause")
+
+
+def check_norm_option(norm: str) -> None:
+    """Fail with a usage error for a norm that there is not."""
+    from thermicon.icons.near_words import nearest_words
+    from thermicon.perception.observer.channels import NORMS
+
+    if norm not in NORMS:
+        near = nearest_words(norm, NORMS)
+        hint = f"; did you mean {near[0]}?" if near else ""
+        raise usage(f"{norm!r} is not one of {', '.join(NORMS)}{hint}", "--norm")

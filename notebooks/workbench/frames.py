@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 3_000
 """Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
-DASHED, DOTTED, DASH_DOT = (7, 3), (2, 3), (8, 3, 2, 3)
+DASHED, DASH_DOT = (7, 3), (8, 3, 2, 3)
 Role = str
 
 

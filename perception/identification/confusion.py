@@ -23,6 +23,10 @@ SAMPLES = 10_240
 """Presentations of an icon to a person: no cell of that person's has a standard error of more than 0.00495."""
 
 
+SMALL_NOISE = 16_384
+"""Noise of a person that is kept for the next use has at most so many numbers: 128 persons take 17 MB."""
+
+
 @dataclass(frozen=True, slots=True)
 class Confusion:
     """Confusions of many people, and how accurate they are.
@@ -210,23 +214,34 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
 
     people, icons = points.shape[:2]
     counts = np.zeros((people, icons, icons))
-    strata = _strata(samples)
 
     def work(part: slice) -> None:
         for person in range(part.start, part.stop):
-            rng = np.random.default_rng(np.random.SeedSequence([seed, 1], spawn_key=(first + person,)))
             used = max(1, int(np.any(points[person] != 0.0, axis=0).sum()))
-            # One row per axis: the noise along an axis does not depend on the number of axes.
-            noise = rng.standard_normal((used, samples))
-            noise[0] = strata
-            if used > 1:
-                noise[1] = strata[rng.permutation(samples)]
+            drawn = _noise if used * samples > SMALL_NOISE else _kept_noise
+            noise = drawn(seed, first + person, used, samples)
             own = points[person, :, :used]
             gram = own @ own.T - (0.5 * (own**2).sum(axis=1) - favour[person])[:, None]
             kernels.nearest(gram, np.ascontiguousarray((own @ noise).T), counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
     return counts / samples
+
+
+def _noise(seed: int, person: int, axes: int, samples: int) -> Array:
+    """Noise (axes, samples) of a person, read-only; along an axis it does not depend on the number of axes."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 1], spawn_key=(person,)))
+    strata = _strata(samples)
+    noise = rng.standard_normal((axes, samples))
+    noise[0] = strata
+    if axes > 1:
+        noise[1] = strata[rng.permutation(samples)]
+    noise.setflags(write=False)
+    return noise
+
+
+_kept_noise = lru_cache(maxsize=128)(_noise)
+"""The draws of a posterior judge the same few people on the same noise."""
 
 
 @lru_cache(maxsize=8)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.solver.delivery_deviation import loss_limit
+from thermicon.circuit.delivery.delivery_deviation import loss_limit
 
 from ..arrays import Array
 from ..observer.channels import USUAL_NORM, Norm, check_norm

@@ -19,6 +19,9 @@ from .naming import SAMPLES as NAMED_SAMPLES
 from .naming import name_directly
 from .task import USUAL, Task
 
+PROBES = ("cold_receptor_C", "warm_receptor_C")
+"""What people are simulated for: a batch of these alone can be superposed."""
+
 
 @dataclass(frozen=True, slots=True)
 class ReceptorTemperatures:

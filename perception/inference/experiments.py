@@ -101,7 +101,7 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
             criterion = laboratory.values["criterion of yes and no"]
             passed = laboratory.passages(drive, samples_of(corners, end_s), channel, gain, criterion)[1]
             reported.append(passed.mean(axis=1))
-        log_half, log_width = _psychometric(np.stack(reported, axis=1), np.log(SIZES_K[channel]))
+        log_half, log_width = psychometric_logs(np.stack(reported, axis=1), np.log(SIZES_K[channel]))
         thresholds.append(log_half)
         yield ("E4", "threshold50_gm_age30", channel), float(log_half.mean())
         yield ("E4", "threshold_between_sd_log10_noise_removed", channel), float(log_half.std()) / LN10
@@ -119,7 +119,7 @@ HALVES = (0.16, 0.5, 0.84)
 """Shares one SD below, at and above the middle of a cumulative normal."""
 
 
-def _psychometric(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
+def psychometric_logs(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
     """Logs (people,) of the size at one half and of the SD, guesses taken out; reports are (people, sizes)."""
     from ..kernels.psychometric import psychometric
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-from .passage import survive
+from .passage import CERTAIN, GAP_FROM, GAP_STEP, MILLS, RISE, Z_MIDDLE, crossing_rate, cumulative, looked_up
 
 
 def _report(
@@ -30,23 +30,20 @@ def _report(
     (`reported` of no columns) only the probability is filled in. The last time holds all reports, however late.
     """
     samples, times = cold.shape[1], reported.shape[1]
-    louder, risen = np.empty(samples), np.empty((2, samples))
+    risen, risen_until = np.empty((2, samples)), np.zeros(2, dtype=np.int64)
     logs, arrived = np.empty((2, samples)), np.empty(times)
     for row in range(cold.shape[0]):
         for channel in range(2):
-            psi = cold[row] if channel == 0 else warm[row]
-            for t in range(samples):
-                risen[channel, t] = math.expm1(psi[t] / a) if psi[t] != 0.0 else 0.0
+            risen_until[channel] = 0
         unreported, by_cold = 0.0, 0.0
         arrived[:] = 0.0
         for gain in range(raised.size):
             for channel in range(2):
-                if raised[gain] == 1.0:
-                    louder[:] = cold[row] if channel == 0 else warm[row]
-                else:
-                    for t in range(samples):
-                        louder[t] = a * math.log1p(raised[gain] * risen[channel, t]) if risen[channel, t] else 0.0
-                survive(louder, dt, criterion[row, channel], tau, corrected, logs[channel])
+                psi = cold[row] if channel == 0 else warm[row]
+                risen_until[channel] = survive_louder(
+                    psi, raised[gain], a, risen[channel], risen_until[channel], dt, criterion[row, channel], tau,
+                    corrected, logs[channel],
+                )  # fmt: skip
             unreported += math.exp(logs[0, samples - 1] + logs[1, samples - 1]) / raised.size
             last_cold, last_warm, last_left = 0.0, 0.0, 1.0
             for k in range(times):
@@ -71,6 +68,40 @@ def _report(
         reported[row, times - 1] = probability[row]
 
 
+def _survive_louder(
+    psi: Any, raised: float, a: float, risen: Any, until: int, dt: float, criterion: float, tau: float, corrected: bool,
+    log_left: Any,
+) -> int:  # fmt: skip
+    """`passage.survive` of a sensation whose drive is larger; each sample is computed when the course reaches it.
+
+    `risen` (n_time,) is filled with e^(ψ/a) − 1 `until` a sample, and further where needed; returns how far it is.
+    A strong icon is certain to be reported soon after it begins, and what comes later is never computed.
+    """
+    silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
+    spared = silent if corrected else 0.0
+    left, last, first = 0.0 if corrected else math.log(cumulative(criterion)), 0.0, 0.0
+    for t in range(psi.size):
+        if t >= until:
+            risen[t] = math.expm1(psi[t] / a) if psi[t] != 0.0 else 0.0
+            until = t + 1
+        louder = psi[t]
+        if raised != 1.0:
+            louder = a * math.log1p(raised * risen[t]) if risen[t] else 0.0
+        if t == 0:
+            first = louder
+            log_left[0] = left
+            continue
+        now = abs(louder - first)
+        rate = silent if now == 0.0 and last == 0.0 else crossing_rate(last, now, dt, criterion, tau)
+        left -= dt * (rate - spared)
+        log_left[t] = left
+        last = now
+        if left < CERTAIN:
+            log_left[t:] = left
+            break
+    return until
+
+
 def _course_at(course: Any, place: float) -> float:
     """A course between its samples: 0 before the first, held after the last."""
     if place < 0.0:
@@ -83,4 +114,5 @@ def _course_at(course: Any, place: float) -> float:
 
 _compile: Any = kernel(nogil=True)
 course_at: Callable[..., float] = _compile(_course_at)
+survive_louder: Callable[..., int] = _compile(_survive_louder)
 report: Callable[..., None] = _compile(_report)

@@ -6,6 +6,7 @@ It is written by `thermicon calibrate`. Reading needs numpy alone and refuses a 
 from __future__ import annotations
 
 import csv
+import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from io import StringIO
@@ -23,6 +24,8 @@ from .variants import Model, Variable, check_variant
 FORM = 1
 """Version of the form; a table of another one is refused."""
 FIGURES = 6
+TABLE = "sha256 of the table"
+"""Label of the line with the digest of the draws."""
 FIRST_LINE = "# written by thermicon calibrate from inputs "
 CURE = "write it again with thermicon calibrate -o FILE"
 CONSTANTS = DATA / "constants.csv"
@@ -115,14 +118,32 @@ def shipped_file(variable: Variable, model: Model) -> Path:
 
 def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
     """The whole file, numbers to six figures."""
-    text = StringIO()
+    text, table = StringIO(), StringIO()
     text.write(f"{FIRST_LINE}{header.inputs}\n# form: {FORM}\n")
     for field, label in LABELS.items():
         text.write(f"# {label}: {_to_text(getattr(header, field))}\n")
-    writer = csv.writer(text, lineterminator="\n")
+    writer = csv.writer(table, lineterminator="\n")
     writer.writerow(names)
     writer.writerows([f"{value:.{FIGURES}g}" for value in row] for row in draws.tolist())
+    rows = table.getvalue()
+    text.write(f"# {TABLE}: {_digest(rows.splitlines())}\n{rows}")
     return text.getvalue()
+
+
+def _digest(rows: Sequence[str]) -> str:
+    """First 16 digits of the SHA-256 of the table below the header, whatever its line ends."""
+    return hashlib.sha256("\n".join(row.rstrip() for row in rows).encode("utf-8")).hexdigest()[:16]
+
+
+def _check_table(name: str, head: Sequence[str], rows: Sequence[str]) -> None:
+    """Refuse a table that is not the one the header was written for; tables without a digest are taken as they are."""
+    line = f"# {TABLE}: "
+    stated = next((text.removeprefix(line).strip() for text in head if text.startswith(line)), None)
+    if stated is not None and stated != (own := _digest(rows)):
+        raise RecordError(
+            f"{name}: the draws have sha256 {own}, the header says {stated}: the table was changed after it was "
+            f"written: use the original, or remove the line that begins with {line.strip()!r} to use it as it is"
+        )
 
 
 def _to_text(value: object) -> str:
@@ -144,6 +165,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array]:
     if not head or not head[0].startswith(FIRST_LINE):
         raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")
     header = _header(path.name, head)
+    _check_table(path.name, head, lines[len(head) :])
     rows = list(csv.reader(lines[len(head) :]))
     if len(rows) < 2:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")

@@ -49,9 +49,23 @@ def read_observer_file(path: Path, variant: tuple[str, str]) -> Table:
     if path.suffix.lower() == ".csv":
         return _nominal_draw(path, variant)
     try:
-        return load_records(path)
+        table = load_records(path)
+        check_units(table)
+        return table
     except UnicodeDecodeError as problem:
         raise RecordError(f"{path.name}: is not UTF-8 text (byte {problem.start}): {CURE}") from None
+
+
+def check_units(table: Table) -> None:
+    """Raise a RecordError where a quantity has another unit than the shipped one, since values are not converted."""
+    shipped = {record.quantity: record.unit for record in load_records(SHIPPED)}
+    for record in table:
+        unit = shipped.get(record.quantity, record.unit)
+        if record.unit != unit:
+            raise RecordError(
+                f"{table.name}: {record.quantity}: unit {record.unit!r}, but this quantity is in {unit!r}: convert the "
+                "value and its interval, and write that unit"
+            )
 
 
 def _nominal_draw(path: Path, variant: tuple[str, str]) -> Table:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit.records import Record
+from thermicon.circuit.rig.load import refuse_load
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
@@ -77,6 +78,7 @@ class People:
 
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
+        refuse_load(rig, "what people feel")
         columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
         return [_as_met(rig, contact, layer) for contact, layer in zip(*columns, strict=True)]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,11 +28,13 @@ class ChangedConstant:
     shift: float
     narrowed: float
     bits: float
+    unit: str = ""
 
     def to_dict(self) -> dict[str, object]:
         """Plain data for JSON."""
         return {
             "constant": self.name,
+            "unit": self.unit,
             "before": list(self.before),
             "after": list(self.after),
             "shift_sd": self.shift,
@@ -41,17 +43,20 @@ class ChangedConstant:
         }
 
 
-def changed(names: Sequence[str], before: Array, after: Array, effective: float) -> tuple[ChangedConstant, ...]:
+def changed(
+    names: Sequence[str], before: Array, after: Array, effective: float, units: Sequence[str] = ()
+) -> tuple[ChangedConstant, ...]:
     """Constants that changed by more than chance, the most changed first; columns of both arrays belong to `names`.
 
-    `effective` is how many independent draws stand behind `after`.
+    `effective` is how many independent draws stand behind `after`; `units` (none: empty) belong to `names` too.
 
     >>> rng = np.random.default_rng(0)
     >>> old, new = rng.standard_normal((400, 2)), rng.standard_normal((400, 2)) * [0.5, 1.0] + [1.0, 0.0]
     >>> [each.name for each in changed(["a", "b"], old, new, 400.0)]
     ['a']
     """
-    found = [_change(name, before[:, k], after[:, k]) for k, name in enumerate(names)]
+    known = units or [""] * len(names)
+    found = [replace(_change(name, before[:, k], after[:, k]), unit=known[k]) for k, name in enumerate(names)]
     least = CHANCE * (1.0 / effective + 1.0 / len(before))
     return tuple(sorted((each for each in found if each.bits >= least), key=lambda each: -each.bits))
 

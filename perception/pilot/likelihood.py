@@ -11,8 +11,6 @@ constants of the laboratory as the same answers of many would.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..arrays import Array
@@ -74,9 +72,3 @@ def weighted_quantile(values: Array, weights: Array, shares: tuple[float, ...]) 
     order = np.argsort(values, kind="stable")
     place = np.cumsum(weights[order]) - 0.5 * weights[order]
     return tuple(float(q) for q in np.interp(shares, place, values[order]))
-
-
-def weighted_moments(values: Array, weights: Array) -> tuple[float, float]:
-    """Mean and SD of weighted values."""
-    mean = float(weights @ values)
-    return mean, math.sqrt(max(float(weights @ np.square(values - mean)), 0.0))

@@ -209,7 +209,7 @@ def observed(
     prior = LaboratoryPrior.of(observer, check_norm(norm))
     number = laboratories_for(max(len(names), *(len(list(other)) for other in others), 2), draws)
     before, kept = prior.first(number, seed), max(number // 2, 2)
-    step = _steps(progress, number + kept + len(others) * (number + kept))
+    step = counted(progress, number + kept + len(others) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=tracking)
     found = condition(main, trials.counts, before, seed=seed, sample=kept, step=step)
     predictions = [_changed(icons.title, found.confusions_before, found.confusions_after)]
@@ -226,7 +226,7 @@ def observed(
         fit=compare(trials, found.confusions_before, seed=seed),
         fit_after=compare(trials, found.confusions_after, seed=seed),
         predictions=tuple(predictions),
-        constants=changed(prior.names, prior.values(before), prior.values(found.after), effective),
+        constants=changed(prior.names, prior.values(before), prior.values(found.after), effective, prior.units),
         conditioned=found,
         prior=prior,
         rig=rig.name,
@@ -258,7 +258,8 @@ def _own(found: Conditioned, trials: Trials) -> tuple[Three, ...]:
     return tuple(rows)
 
 
-def _steps(progress: Progress | None, total: int) -> Callable[[], None]:
+def counted(progress: Progress | None, total: int) -> Callable[[], None]:
+    """A function that reports one more step to `progress` each time it is called."""
     done = 0
 
     def step() -> None:

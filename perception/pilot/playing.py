@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits
-from ..identification.population import ReceptorTemperatures, identify, respond
+from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
-from ..ranking.batches import PROBES, RATE_HZ
+from ..ranking.batches import RATE_HZ
 from ..ranking.rank import TAIL_S
 from .states import Laboratories, LaboratoryPrior
 

@@ -11,6 +11,7 @@ to simulated laboratories in the few directions in which they differ most agains
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
@@ -58,23 +59,23 @@ class PooledLikelihood:
         whitened: Array = np.linalg.solve(root, mean.T).T
         seen: Array = np.linalg.solve(root, counts.sum(axis=0).ravel() - mean.mean(axis=0))
         whitened = whitened - whitened.mean(axis=0)
-        features, pairs, smooth = _smooth(place, whitened, own)
+        features, pairs, smooth = smooth_features(place, whitened, own)
         # Directions of the smooth part: what differs by who the simulated people are is no sign of a laboratory.
         sizes, turned = np.linalg.eigh(np.cov(smooth.T, aweights=own))
         used = np.flatnonzero(sizes > LEAST_RATIO)[::-1][:DIRECTIONS]
         turned = turned[:, used] if used.size else turned[:, -1:]
-        coefficients, missed = _ridge(features, whitened @ turned, own)
+        coefficients, missed = ridge(features, whitened @ turned, own)
         left = np.maximum(missed - _people_share(played, shown, root, turned, own), 0.0)
         return cls(seen @ turned, coefficients, pairs, 1.0 + left)
 
     def __call__(self, place: Array) -> Array:
         """Ln likelihood (n,) at coordinates (n, d), up to a constant."""
-        off = self.observed - _features(place, self.pairs) @ self.coefficients
+        off = self.observed - features_of(place, self.pairs) @ self.coefficients
         found: Array = -0.5 * (np.square(off) / self.variance).sum(axis=1)
         return found
 
 
-def walk(start: Array, target: PooledLikelihood, rng: np.random.Generator) -> Array:
+def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generator) -> Array:
     """Sample coordinates (n, d) from a standard normal times the likelihood, by n Markov chains from `start`.
 
     Proposals √(1 − s²)·x + s·noise leave the normal as it is (preconditioned Crank–Nicolson), so that the likelihood
@@ -120,22 +121,23 @@ def _people_share(played: Confusions, shown: Array, root: Array, turned: Array, 
     return found
 
 
-def _smooth(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...], Array]:
+def smooth_features(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...], Array]:
     """Features, the products among them, and what linear terms and squares explain of values (n, cells)."""
-    plain = _features(place, ())
-    slopes, _ = _ridge(plain, values, weight)
+    plain = features_of(place, ())
+    slopes, _ = ridge(plain, values, weight)
     smooth = plain @ slopes
     strength = np.square(slopes[1 : 1 + place.shape[1]]).sum(axis=1)
     pairs = tuple(combinations(sorted(np.argsort(-strength)[:STRONGEST].tolist()), 2))
-    return _features(place, pairs), pairs, smooth
+    return features_of(place, pairs), pairs, smooth
 
 
-def _features(place: Array, pairs: tuple[tuple[int, int], ...]) -> Array:
+def features_of(place: Array, pairs: tuple[tuple[int, int], ...]) -> Array:
+    """Features (n, features) of coordinates: a constant, linear terms, squares, and the products of some pairs."""
     first, second = [a for a, _ in pairs], [b for _, b in pairs]
     return np.hstack([np.ones((len(place), 1)), place, np.square(place) - 1.0, place[:, first] * place[:, second]])
 
 
-def _ridge(features: Array, values: Array, weight: Array) -> tuple[Array, Array]:
+def ridge(features: Array, values: Array, weight: Array) -> tuple[Array, Array]:
     """Coefficients (features, targets) with each target's best penalty, and its leave-one-out mean square error."""
     root = np.sqrt(weight)[:, None]
     features, targets = features * root, values * root

@@ -103,6 +103,12 @@ class LaboratoryPrior:
         """Names of the constants, of memory, and of the offsets, as `values` has them."""
         return (*self.draws.names, *(parameter.name for parameter in self.memory), *OFFSETS)
 
+    @property
+    def units(self) -> tuple[str, ...]:
+        """Unit of each of `names`; empty for plain numbers."""
+        units = [*(scale.unit for scale in self._scales), *(own.unit for own in self.memory), *("ln" for _ in OFFSETS)]
+        return tuple("" if unit == "1" else unit for unit in units)
+
     def first(self, n: int, seed: int) -> Laboratories:
         """The draws themselves, evenly spaced (over and over where n is larger), each with a laboratory around it."""
         total = len(self.draws)

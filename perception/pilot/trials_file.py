@@ -107,10 +107,24 @@ def digest_of(path: Path) -> str:
     return hashlib.sha256(read_bytes(path, WHAT, MOST_MB, TrialsError)).hexdigest()[:16]
 
 
+def read_header(path: Path) -> tuple[str, ...]:
+    """Names of the columns of a CSV file, as they stand in its first line; empty where there is none."""
+    text = read_text(path, WHAT, MOST_MB, TrialsError)
+    head = _first_line(text)
+    try:
+        return tuple(cell.strip() for cell in next(csv.reader([head], delimiter=max(MARKS, key=head.count)), []))
+    except csv.Error:
+        return ()
+
+
+def _first_line(text: str) -> str:
+    return next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+
+
 def read_cells(path: Path, needed: Sequence[str], optional: Sequence[str], example: str, what: str) -> Cells:
     """Rows of a CSV file that has the needed columns; a TrialsError lists what is missing and what was found."""
     text = read_text(path, what, MOST_MB, TrialsError)
-    head = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    head = _first_line(text)
     mark = max(MARKS, key=head.count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
     header: tuple[str, ...] = ()

@@ -68,10 +68,6 @@ class Predictive:
         top = float(logs.max())
         return top + float(np.log(np.exp(logs - top).sum())) - float(np.log(self.row.sd * np.sqrt(2.0 * np.pi)))
 
-    def covers(self, share: float) -> bool:
-        """Whether the central interval of a share contains the published number."""
-        return abs(self.probability - 0.5) <= 0.5 * share
-
 
 def leave_out(
     posterior: Posterior,

@@ -22,7 +22,7 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised, sampling_error
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
-from ..identification.population import ReceptorTemperatures, identify, respond
+from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm
@@ -42,7 +42,6 @@ SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
 OTHER_SAMPLES, OTHER_NAMED = 512, 1152
 EXPERIMENTS = 20
-PROBES = ("cold_receptor_C", "warm_receptor_C")
 
 
 @dataclass(frozen=True, slots=True)

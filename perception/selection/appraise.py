@@ -12,7 +12,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import PopulationResponse, ReceptorTemperatures, memory_dprime, respond
+from ..identification.population import PROBES, PopulationResponse, ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, Observer
@@ -156,6 +156,6 @@ def population_response(
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
-    batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking)
+    batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
     return respond(played, crowd, nominal, [norm], detection=False), durations

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from thermicon.circuit.rig.load import refuse_load
+
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer
@@ -134,6 +136,7 @@ class Bench:
     surface: Surface = "skin"
 
     def __post_init__(self) -> None:
+        refuse_load(self.rig, "what people feel")
         if self.surface not in get_args(Surface):
             raise ValueError(f"a stimulus is prescribed at skin or display, not at {self.surface!r}")
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.population import ReceptorTemperatures
+from ..identification.population import PROBES, ReceptorTemperatures
 from ..observer.people import People, people_records
 from ..sensation.parameters import ObserverParameter
 
@@ -59,7 +59,9 @@ class UncertainRig:
                         "skin.layer.0.thickness_mm": layer.at(other),
                     }
                 )
-                batch = simulate_many(icons, people.rigs(moved), nominal=rig, end_s=end_s, rate_Hz=RATE_HZ)
+                batch = simulate_many(
+                    icons, people.rigs(moved), nominal=rig, end_s=end_s, rate_Hz=RATE_HZ, probes=PROBES
+                )
                 row.append(np.stack([batch.cold_C, batch.warm_C]))
                 time_s = batch.time_s
             grid.append(np.stack(row))

@@ -18,10 +18,10 @@ from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import load_library
+from thermicon.notebooks.bench.peers import CORNERS, ngspice_command, plain, run_ngspice
 
 pytestmark = pytest.mark.benchmark
 Tool = Callable[[str], str]
-CORNERS = Drive([0, 2, 4, 8, 10, 30], [0.1, 1.1, 0.3, 0.4, -0.5, 0.1])
 ROWS = np.arange(3001) / 100
 PROBES = ("skin_C", "cold_receptor_C", "warm_receptor_C")
 RIGS = {"shani2021": Rig.load("shani2021"), "thenar": Rig.load("thenar")}
@@ -39,36 +39,14 @@ def best_of(run: Callable[[], object], times: int) -> float:
 
 def ngspice_run(ngspice: str, folder: Path, texts: list[str]) -> float:
     """Least wall time in s of one ngspice process that runs all the circuits."""
-    names = []
-    for k, text in enumerate(texts):
-        alone = text.replace(".end\n", ".control\nrun\nquit 0\n.endc\n.end\n") if len(texts) == 1 else text
-        (folder / f"c{k}.cir").write_text(alone)
-        names.append(f"c{k}.cir")
-    if len(names) == 1:
-        command = [ngspice, "-b", names[0]]
-    else:
-        script = "\n".join(f"source {name}\nrun\ndestroy all\nremcirc" for name in names)
-        (folder / "all.sp").write_text(f"* all\n.control\n{script}\nquit 0\n.endc\n.end\n")
-        command = [ngspice, "-b", "all.sp"]
-
-    def run() -> None:
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
-        assert done.returncode == 0, done.stdout + done.stderr
-
-    return best_of(run, 5 if len(names) == 1 else 2)
+    command = ngspice_command(ngspice, folder, texts)
+    return best_of(lambda: run_ngspice(command, folder), 5 if len(texts) == 1 else 2)
 
 
 def tight(rig: Rig, drive: Drive) -> dict[str, np.ndarray]:
     """The reference: steps of 1 ms."""
     fine = simulate_current(drive, rig, rate_Hz=1000)
     return {probe: getattr(fine, probe)[::10] for probe in PROBES}
-
-
-def plain(text: str) -> str:
-    """The circuit at ngspice's own default tolerance and step, with nothing written."""
-    lines = [line for line in text.splitlines() if not line.startswith((".options", ".tran"))]
-    end = lines.index(".end")
-    return "\n".join([*lines[:end], ".tran 10m 30 0 10m", ".end", ""])
 
 
 def ngspice_error(ngspice: str, folder: Path, rig: Rig, reference: dict[str, np.ndarray]) -> float:

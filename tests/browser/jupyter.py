@@ -210,13 +210,6 @@ def reload(page: Page) -> None:
     _wait_until_open(page, name)
 
 
-def go_to_cell(page: Page, place: int) -> Locator:
-    """Bring the cell at a place, counted from 0, into view, and return it."""
-    cell = page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Notebook .jp-Cell").nth(place)
-    cell.scroll_into_view_if_needed()
-    return cell
-
-
 def dark(page: Page, wanted: bool = True) -> None:
     """Put JupyterLab into its dark theme, or back into its light one; the choice is kept until the server ends."""
     theme = f"JupyterLab {'Dark' if wanted else 'Light'}"

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit import compiled
-from thermicon.circuit.userfolder import NotPrivate, private_folder, read_private, write_private
+from thermicon.icons.userfolder import NotPrivate, private_folder, read_private, write_private
 
 POSIX = sys.platform != "win32"
 

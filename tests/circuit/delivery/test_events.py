@@ -3,14 +3,14 @@
 import pytest
 
 from thermicon.circuit import Drive, Rig, simulate_current
-from thermicon.circuit.delivery.events import events_of
-from thermicon.circuit.solver.delivery_deviation import (
+from thermicon.circuit.delivery.delivery_deviation import (
     DeliveryDeviation,
     Deviation,
     delivery_deviation,
     loss_limit,
     loss_table,
 )
+from thermicon.circuit.delivery.events import events_of
 from thermicon.icons import load_library
 from thermicon.icons.model.corners import Corners
 

@@ -14,7 +14,10 @@ from thermicon.circuit.fitting.keys import FitError, fittable, free_keys, value_
         ([], "no key to fit; name one or several, such as contact.resistance_m2K_per_W"),
         (["contact.area_cm2", "contact.area_cm2"], r"contact\.area_cm2: is given twice; name each key once"),
         (["module.sebeck_V_per_K"], r"module\.sebeck_V_per_K: cannot be fitted; did you mean module\.seebeck_V_per_K"),
-        (["skin.layer.dermis.thickness_mm"], "is a key of a rig, but no log of temperatures identifies it"),
+        (
+            ["skin.layer.dermis.thickness_mm"],
+            "is a key of a rig, but no log identifies it; keys that can be fitted: c",
+        ),
         (["colour"], "colour: unknown key; .*keys that can be fitted: contact"),
         (["thermode.lag_s"], r"rig thenar has no thermode with this key; it has contact\.resistance"),
         (["probe.a.lag_s"], r"rig thenar has no such probe; describe the sensor first, as with --set 'probe="),

@@ -8,7 +8,7 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, Trace, simulate, simulate_current, write_trace
 from thermicon.circuit.rig.probes import insulation_records
-from thermicon.circuit.solver.kernel_probes import lagged
+from thermicon.circuit.solver.kernel_modes import lagged
 from thermicon.circuit.solver.trace import COLUMNS
 from thermicon.icons import load_library
 

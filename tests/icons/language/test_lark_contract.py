@@ -2,7 +2,7 @@
 
 from lark import Token
 
-from thermicon.icons.language.recover import grammar
+from thermicon.icons.language.grammar_tables import grammar
 
 TEXT = "cue 1\nicon a { hold for 1 s }\n"
 

@@ -93,3 +93,50 @@ def test_bad_input_is_one_sentence_and_leaves_nothing(cli: Cli, log: Path, tmp_p
         assert not out.exists()
     said = cli("fit", log, "--free", CONTACT, "-o", log)
     assert said.exit_code == 1 and "a rig is written as .toml" in said.stderr
+
+
+def test_a_key_that_is_held_wrong_is_named_and_the_rig_gets_its_name(cli: Cli, tmp_path: Path) -> None:
+    path, rig = tmp_path / "sink.csv", tmp_path / "tuesday.toml"
+    truth = Rig.load("thenar").with_(**{CONTACT: 7e-4, "heat_sink.resistance_K_per_W": 0.5})
+    write_log(synthetic_log(truth, seed=1, rate_Hz=20.0), path)
+    said = cli("fit", path, "--free", CONTACT, "-o", rig, *RATE)
+    text = " ".join(said.stderr.split())
+    assert "display_C: residuals scatter by" in text and "the log's own noise is 2" in text
+    assert "what is held fixed is taken as right: free heat_sink.resistance_K_per_W" in text
+    assert Rig.load(rig).name == "tuesday"
+    named = cli("fit", path, "--free", f"{CONTACT},heat_sink.resistance_K_per_W", "-o", rig, "--name", "bench 2", *RATE)
+    assert "residuals scatter" not in named.stderr
+    assert Rig.load(rig).name == "bench 2"
+    assert cli("fit", path, "--free", CONTACT, "--name", "bench").exit_code == 2
+
+
+def test_misspelt_columns_and_text_cells_are_named(cli: Cli, log: Path, tmp_path: Path) -> None:
+    text = log.read_text(encoding="utf-8")
+    wrong = tmp_path / "wrong.csv"
+    wrong.write_text(text.replace("display_C", "Display_c"), encoding="utf-8")
+    said = cli("fit", wrong, "--free", CONTACT, *RATE)
+    assert said.exit_code == 1
+    assert "wrong.csv: Display_c: did you mean display_C? Rename it" in said.stderr
+    lines = text.splitlines()
+    place = lines[0].split(",").index("display_C")
+    for row in range(100, 110):
+        cells = lines[row].split(",")
+        cells[place] = "n/a"
+        lines[row] = ",".join(cells)
+    gaps = tmp_path / "gaps.csv"
+    gaps.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    said = cli("fit", gaps, "--free", CONTACT, *RATE)
+    assert "display_C is 'n/a' in 10 of" in said.stderr
+
+
+def test_a_log_is_laid_beside_a_trace(cli: Cli, log: Path, tmp_path: Path) -> None:
+    figure = tmp_path / "beside.png"
+    said = cli("simulate", "calibration-drive", "--measured", log, "--figure", figure, "--set", f"{CONTACT}=7e-4")
+    assert said.exit_code == 0, said.stderr
+    assert "measured − simulated (rig.csv, shifted by" in said.stdout
+    line = next(line for line in said.stdout.splitlines() if line.startswith("  display   rms"))
+    assert 0.01 < float(line.split()[2]) < 0.1
+    assert figure.stat().st_size > 20_000
+    several = cli("simulate", "six-icons", "--measured", log)
+    assert several.exit_code == 2
+    assert "name it with --icon" in several.stderr

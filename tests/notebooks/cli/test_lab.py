@@ -137,7 +137,12 @@ def test_without_voila_the_cure_is_told_and_nothing_written(
 
 @pytest.mark.parametrize(
     ("words", "told"),
-    [(("--page", "--files-only"), "no page can be served"), (("--port", "70000"), "70000 is outside 1 to 65535")],
+    [
+        (("--page", "--files-only"), "no page can be served"),
+        (("--port", "70000"), "70000 is outside 1 to 65535"),
+        (("--page", "--allow-root"), "nothing else refuses to run as root"),
+        (("--files-only", "--allow-root"), "nothing else refuses to run as root"),
+    ],
 )
 def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple[str, ...], told: str) -> None:
     said = cli("lab", tmp_path / "mine", *words)
@@ -207,8 +212,7 @@ def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: 
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    (tmp_path / "config").mkdir()
-    (tmp_path / "config/jupyter_server_config.py").write_text("c.ServerApp.allow_root = True\n", encoding="utf-8")
+    words = words or ("--allow-root",)
     own = {f"JUPYTER_{name.upper()}_DIR": str(tmp_path / name) for name in ("config", "data", "runtime")}
     command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "lab", tmp_path / "mine", "--no-browser"]
     program = subprocess.Popen(

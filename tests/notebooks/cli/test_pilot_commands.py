@@ -142,3 +142,50 @@ def test_bad_options_of_plan(cli: Cli, two: Path, options: tuple[object, ...], t
     said = cli("plan", two, *options)
     assert (said.exit_code, said.stdout) == (2, "")
     assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+VALUES = """participant,kind,method,channel,size_K,value,unit,standard_error,trials
+ann,threshold,limits,cold,,1.4,K,,10
+ann,reaction_time,,warm,6,2100,ms,150,
+ann,rating,,cold,6,40,points,,
+bob,threshold,limits,cold,,2.3,K,,10
+bob,reaction_time,,warm,6,1.7,s,,12
+"""
+
+
+def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path, lab, picture, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.png", "v.json"))
+    path.write_text(VALUES, encoding="utf-8")
+    said = cli("observed", path, two, "--draws", 40, "--keep", lab, "--figure", picture, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert "cold, limits, 1 K/s 2 1.79 K" in words
+    assert "warm, choice reaction 2 1.89 s" in words
+    assert "Test of fit (posterior predictive): p = " in words
+    assert "1 of 5 values have neither standard_error nor trials: an error of 10 % is assumed." in words
+    assert "Ratings count by their ratios" in words
+    assert "two.cue before" in words
+    assert "effective sample size " in words and " of 40 draws" in words
+    found = json.loads(out.read_text(encoding="utf-8"))
+    assert (found["participants"], found["values"], found["errors_assumed"]) == (2, 5, 1)
+    assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 20
+    assert picture.stat().st_size > 10_000
+    kept = cli("observed", path, two, "--draws", 20, "--observer", lab.with_suffix(".csv"))
+    assert kept.exit_code == 0, kept.stderr
+
+
+def test_bad_measurements_are_refused_in_words(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path = tmp_path / "v.csv"
+    path.write_text(VALUES.replace("2.3,K", "305,K"), encoding="utf-8")
+    said = cli("observed", path, two)
+    assert said.exit_code == 1
+    assert "v.csv:5: value is '305' K, a threshold lies within 0.005 to 20 K" in said.stderr
+    metal = cli("observed", path, two, "--set", "load.film_W_per_m2K=10")
+    assert metal.exit_code == 1
+
+
+def test_a_misspelt_norm_gets_a_hint(cli: Cli, two: Path) -> None:
+    for command in (("rank", two), ("observed", "t.csv", two), ("plan", two), ("frontier", two), ("sensitivity", two)):
+        said = cli(*command, "--norm", "epsodes")
+        assert said.exit_code == 2
+        assert "did you mean episodes?" in " ".join(said.stderr.split())

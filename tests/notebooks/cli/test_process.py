@@ -27,6 +27,12 @@ def test_the_version(process: Cli) -> None:
     assert (said.exit_code, said.stdout, said.stderr) == (0, f"thermicon {version('thermicon')}\n", "")
 
 
+def test_the_package_runs_as_a_module(tmp_path: Path) -> None:
+    command = [sys.executable, "-P", "-m", "thermicon.notebooks", "--version"]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout, run.stderr) == (0, f"thermicon {version('thermicon')}\n", "")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
 def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     program = (

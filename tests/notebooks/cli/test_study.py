@@ -201,7 +201,7 @@ def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path,
 def test_of_many_participants_the_extreme_sessions_are_judged(tmp_path: Path, cli: Cli) -> None:
     text = QUICK.replace('labels = ["A", "B"]', "count = 9").replace("repetitions = 2", "repetitions = 1")
     said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
-    assert "these are the most extreme of 9 orders, all run on the rig as given" in said.stdout
+    assert "of 9 orders, those with the coldest and the warmest skin, the largest dose and the" in said.stdout
     facts = json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))
     assert len(facts["baseline_drift_K"]) == 9
     assert 1 <= len(facts["sessions"]) <= 4

@@ -130,3 +130,20 @@ def test_draws_that_did_not_converge_warn(posterior: PosteriorDraws, tmp_path: P
     path.write_text(to_text(header, posterior.names, posterior.draws[:5]), encoding="utf-8")
     with pytest.warns(UserWarning, match=r"mine.csv: NOT CONVERGED, .* not to be trusted"):
         PosteriorDraws.load(path)
+
+
+def test_a_table_that_was_changed_after_it_was_written_is_refused(tmp_path: Path) -> None:
+    from thermicon.perception.observer.draws_file import to_text
+
+    drawn = PosteriorDraws.load()
+    text = to_text(drawn.header, drawn.names, drawn.draws[:5])
+    path = tmp_path / "draws.csv"
+    path.write_text(text, encoding="utf-8")
+    assert len(PosteriorDraws.load(path)) == 5
+    lines = text.splitlines()
+    lines[-1] = lines[-1].replace(lines[-1].split(",")[3], "0.123", 1)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with pytest.raises(RecordError, match=r"draws\.csv: the draws have sha256 .*: the table was changed after it was"):
+        PosteriorDraws.load(path)
+    path.write_text("\n".join(line for line in lines if "sha256 of the table" not in line) + "\n", encoding="utf-8")
+    assert len(PosteriorDraws.load(path)) == 5

@@ -95,3 +95,13 @@ def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     path.write_bytes(b"[[record]]\nquantity = '\xff'")
     with pytest.raises(RecordError, match=r"^binary.toml: is not UTF-8 text \(byte 23\): begin with a copy"):
         Observer.load(path)
+
+
+def test_a_quantity_in_another_unit_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    text = SHIPPED.read_text(encoding="utf-8")
+    path.write_text(text.replace('unit = "s"', 'unit = "ms"', 1), encoding="utf-8")
+    with pytest.raises(
+        RecordError, match=r"mine\.toml: .*: unit 'ms', but this quantity is in '.+': convert the value"
+    ):
+        Observer.load(path)

@@ -10,7 +10,7 @@ from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
 from thermicon.perception.identification.delivered_people import detected_as_delivered, run_end_s
-from thermicon.perception.identification.population import ReceptorTemperatures, population_detection
+from thermicon.perception.identification.population import PROBES, ReceptorTemperatures, population_detection
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking import batches
 
@@ -43,7 +43,7 @@ def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_of_many_it_is_the_mean_over_them(ranking: Ranking) -> None:
     crowd = draw_people(PEOPLE, 0)
-    batch = simulate_many(list(ICONS), crowd.rigs(RIG), nominal=RIG, end_s=END_S, probes=batches.PROBES)
+    batch = simulate_many(list(ICONS), crowd.rigs(RIG), nominal=RIG, end_s=END_S, probes=PROBES)
     met = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, RIG.site, RIG.contact.area_m2)
     each = population_detection(met, crowd, Observer.load()).probability
     assert each.shape == (PEOPLE, 2)

@@ -9,7 +9,7 @@ from importlib import resources
 import numpy as np
 
 from ..records import Table, load_records
-from .trace import Trace
+from ..solver.trace import Trace
 
 PLACES = {"skin": "skin_C", "cold receptor": "cold_receptor_C", "warm receptor": "warm_receptor_C"}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import platform
 import stat
 import sys
 from pathlib import Path
@@ -19,6 +20,12 @@ def cache_folder() -> Path:
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Caches" / "thermicon"
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "thermicon"
+
+
+def compiled_folder(numba: str, llvmlite: str) -> Path:
+    """The folder of machine code that these versions compiled for this Python and this kind of processor."""
+    tools = f"numba-{numba}-llvmlite-{llvmlite}-{sys.implementation.cache_tag}"
+    return cache_folder() / "compiled" / f"{tools}-{platform.machine()}"
 
 
 class NotPrivate(OSError):

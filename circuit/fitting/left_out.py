@@ -1,0 +1,86 @@
+"""Residuals beyond the noise of a log: what the fit holds fixed that would explain most of them.
+
+Intervals come from what the free keys leave. Where a key that is held fixed is wrong, the free ones make up for it and
+their intervals are too narrow, however small the noise is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..arrays import Array
+from .keys import fittable, free_keys, value_of
+from .problem import Problem
+from .runs import Channel
+from .solve import Solution
+
+BEYOND = 2.0
+"""Residuals that scatter by so many times the noise are more than noise."""
+WORTH = 0.3
+"""Share of the sum of squares that a freed key must take away to be named."""
+MOST_NAMED = 2
+
+
+def left_out(problem: Problem, solution: Solution) -> tuple[str, ...]:
+    """Sentences on channels whose residuals exceed the noise of the log, and on keys to free."""
+    beyond = [
+        f"{channel.file}: {channel.column}: residuals scatter by {_milli(sd, channel)}, the log's own noise is "
+        f"{_milli(noise, channel)}"
+        for (_, _, channel), sd in zip(problem.channels(), solution.sigma, strict=True)
+        if sd > BEYOND * (noise := noise_of(channel))
+    ]
+    if not beyond:
+        return ()
+    keys = explaining(problem, solution)
+    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
+    return (*beyond, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}")
+
+
+def noise_of(channel: Channel) -> float:
+    """SD of what changes from row to row, by second differences, which leave slow changes out.
+
+    >>> rng = np.random.default_rng(0)
+    >>> time = np.arange(600) / 10
+    >>> slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * rng.standard_normal(600))
+    >>> round(noise_of(slow), 2)
+    0.02
+    """
+    bends = np.diff(channel.values, 2)
+    own = 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
+    return float(max(own, channel.resolution / np.sqrt(12.0)))
+
+
+def explaining(problem: Problem, solution: Solution) -> tuple[str, ...]:
+    """Keys that are held fixed, and would take away most of the residuals if they were free, the best first."""
+    rig = problem.rig_at(solution.theta)
+    own = [key.key for key in problem.keys]
+    others = [key for key in fittable(rig) if key not in own and _can_move(value_of(rig, key))]
+    keys = free_keys([*own, *others], rig)
+    wide = Problem.of(rig, keys, problem.runs, start_count=problem.start_count, offset_sd_K=problem.offset_sd_K)
+    theta = wide.first.copy()
+    theta[len(keys) :] = solution.theta[len(own) :]
+    residuals = wide.residuals(theta, solution.sigma)
+    if wide.predictions(theta) is None:
+        return ()
+    jacobian = wide.jacobian(theta, solution.sigma)
+    usual = [*range(len(own)), *range(len(keys), len(theta))]
+    before = _left(residuals, jacobian[:, usual])
+    gains = {key: 1.0 - _left(residuals, jacobian[:, [*usual, len(own) + k]]) / before for k, key in enumerate(others)}
+    worth = sorted((key for key in others if gains[key] >= WORTH), key=lambda key: -gains[key])
+    return tuple(worth[:MOST_NAMED])
+
+
+def _left(residuals: Array, jacobian: Array) -> float:
+    """Sum of squares after one step of Gauss and Newton, far outliers cut."""
+    clipped = np.clip(residuals, -10.0, 10.0)
+    step = np.linalg.lstsq(jacobian, -clipped, rcond=None)[0]
+    return float(np.square(clipped + jacobian @ step).sum())
+
+
+def _can_move(value: float | None) -> bool:
+    """Whether there is a value to move; a lag of 0 has a bound there."""
+    return value is not None and value != 0.0
+
+
+def _milli(value: float, channel: Channel) -> str:
+    return f"{1e3 * value:.2g} m{'K' if channel.temperature else 'V'}"

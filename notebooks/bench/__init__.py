@@ -1,0 +1,1 @@
+"""Speed of thermicon beside other programs that compute the same, as a page of figures."""

@@ -1,0 +1,112 @@
+r"""How likely measurements are in a laboratory.
+
+Logs of the values of participant j are normal, and participants share what the model misses and the scale of ratings:
+
+    y_j = μ(ℓ) + b_j + e_j + δ,   b_j ~ N(0, Σ(ℓ)),   e_j ~ N(0, errors²),   δ ~ N(0, D)
+
+μ and Σ are means and covariances of simulated people (`simulated_measurements`). Participants measured under the same
+conditions with the same errors enter by their mean and scatter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..inference.rows import DISCREPANCY, UNSTATED
+from .measurements import Measurements
+from .simulated_measurements import Predicted
+
+RATING_SCALE = 0.7
+"""SD (ln) by which another laboratory's scale of ratings may differ from the published one: a factor of 2; assumed."""
+RATING_PEOPLE = 0.4
+"""SD (ln) by which people differ in their use of a scale; E2 has an SD of 23 points at a mean of 51."""
+NUGGET = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Participants with values under the same `conditions` (numbers), with the same errors.
+
+    `mean` (conditions,) and `scatter` (conditions, conditions) of their log values; `stated` (conditions,) are errors
+    of logs as given (NaN: by `trials`, and where these are NaN too, as assumed).
+    """
+
+    conditions: NDArray[np.int64]
+    count: int
+    mean: Array
+    scatter: Array
+    stated: Array
+    trials: Array
+
+
+def groups_of(measured: Measurements, *, alike: bool = False) -> tuple[Group, ...]:
+    """Participants by what is known of them; `alike` takes the mean square of errors that differ, which is faster."""
+    stated, trials = measured.errors / measured.values, measured.trials
+    by: dict[tuple[float, ...], list[int]] = {}
+    for person, there in enumerate(measured.given):
+        known = np.where(np.isnan(stated[person]), np.where(np.isnan(trials[person]), 2.0, 1.0), 0.0)
+        own = known if alike else np.nan_to_num(np.concatenate([known, stated[person], trials[person]]), nan=-1.0)
+        by.setdefault(tuple(np.concatenate([there, own]).tolist()), []).append(person)
+    found = []
+    for members in by.values():
+        people = np.array(members, dtype=np.int64)
+        used = np.flatnonzero(measured.given[people[0]])
+        logs = np.log(measured.values[np.ix_(people, used)])
+        off = logs - logs.mean(axis=0)
+        error = np.sqrt(np.square(stated[np.ix_(people, used)]).mean(axis=0))
+        number = 1.0 / (1.0 / trials[np.ix_(people, used)]).mean(axis=0)
+        found.append(Group(used, len(people), logs.mean(axis=0), off.T @ off, error, number))
+    return tuple(found)
+
+
+def shared_covariance(measured: Measurements) -> Array:
+    """D (conditions, conditions): what the model may miss, and the laboratory's scale of ratings."""
+    rated = _rated(measured)
+    return DISCREPANCY**2 * np.eye(len(rated)) + RATING_SCALE**2 * np.outer(rated, rated)
+
+
+def person_covariance(measured: Measurements, between: Array) -> Array:
+    """Σ (..., conditions, conditions): people as simulated, and their use of the scale of ratings."""
+    rated = _rated(measured)
+    found: Array = between + RATING_PEOPLE**2 * np.outer(rated, rated) + NUGGET * np.eye(len(rated))
+    return found
+
+
+def log_errors(measured: Measurements, within: Array) -> Array:
+    """Standard errors (participants, conditions) of logs: as stated, else by trials, else `UNSTATED`."""
+    return _errors(measured.errors / measured.values, measured.trials, within)
+
+
+def log_likelihood(measured: Measurements, each: Predicted, groups: tuple[Group, ...] | None = None) -> Array:
+    """Ln likelihood (laboratories,) of all values, up to a constant."""
+    shared, spread = shared_covariance(measured), person_covariance(measured, each.between)
+    count = len(shared)
+    precision, weighted = np.zeros((len(each.mean), count, count)), np.zeros((len(each.mean), count))
+    found = np.zeros(len(each.mean))
+    for group in groups_of(measured) if groups is None else groups:
+        used = group.conditions
+        error = _errors(group.stated, group.trials, each.within[:, used])
+        own = spread[:, used[:, None], used] + np.square(error)[:, :, None] * np.eye(len(used))
+        inverse = np.linalg.inv(own)
+        off = group.mean - each.mean[:, used]
+        along = np.einsum("nkl,nl->nk", inverse, off)
+        found -= 0.5 * group.count * (np.linalg.slogdet(own)[1] + (along * off).sum(axis=1))
+        found -= 0.5 * np.einsum("nkl,kl->n", inverse, group.scatter)
+        precision[:, used[:, None], used] += group.count * inverse
+        weighted[:, used] += group.count * along
+    inner = np.linalg.inv(shared) + precision
+    found += 0.5 * (weighted * np.linalg.solve(inner, weighted[:, :, None])[:, :, 0]).sum(axis=1)
+    return np.asarray(found - 0.5 * np.linalg.slogdet(inner)[1])
+
+
+def _errors(stated: Array, trials: Array, within: Array) -> Array:
+    by_trials = within / np.sqrt(trials)
+    return np.where(np.isnan(stated), np.where(np.isnan(by_trials), UNSTATED, by_trials), stated)
+
+
+def _rated(measured: Measurements) -> Array:
+    return np.array([float(each.kind == "rating") for each in measured.conditions])

@@ -1,0 +1,246 @@
+"""The door for thresholds, reaction times and ratings: a CSV file of values, or what is wrong with it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, cast, overload
+
+import numpy as np
+
+from thermicon.circuit.inputs import quoted
+from thermicon.icons.near_words import nearest_words
+
+from ..observer.channels import CHANNELS, Channel
+from .measurements import ADAPTIVE, METHODS, Condition, Kind, Measurements
+from .trials_file import Cells, TrialsError, check_labels, digest_of, label, read_cells, read_header
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+COLUMNS = ("participant", "kind", "channel", "value", "unit")
+OPTIONAL = ("method", "size_K", "rate_K_per_s", "hold_s", "baseline_C", "standard_error", "trials")
+EXAMPLE = ",".join((*COLUMNS, "method", "size_K", "standard_error"))
+WHAT = "table of measurements"
+MARKS_OF_KIND = ("kind", "value")
+"""Columns by which a table of measurements is recognised."""
+MOST_CONDITIONS = 40
+
+FACTORS: Mapping[Kind, Mapping[str, float]] = {
+    "threshold": {"K": 1.0, "°C": 1.0, "degC": 1.0, "C": 1.0, "mK": 1e-3},
+    "reaction_time": {"s": 1.0, "ms": 1e-3},
+    "rating": {"points": 1.0, "%": 1.0},
+}
+"""What each unit is multiplied by; thresholds are changes, so that K and °C are alike."""
+RANGES: Mapping[Kind, tuple[float, float, str]] = {
+    "threshold": (0.005, 20.0, "thresholds are changes from the baseline, without sign"),
+    "reaction_time": (0.1, 60.0, "reaction times count from the start of the change; check s against ms"),
+    "rating": (
+        0.1,
+        100.0,
+        "ratings are points of 100: multiply those of a scale of 10, and leave out what was not felt",
+    ),
+}
+RATES = {"yes_no": 2.5, "choice": 5.0, "simple": 5.0, "magnitude": 5.0}
+HOLDS = {"forced_choice": 3.0, "yes_no": 1.5, "magnitude": 0.7}
+LIMIT_K = 12.0
+"""Where a ramp of limits ends, if the table does not say it. Rates are 1 K/s and holds 0 s unless named above."""
+NUMBERS = {
+    "size_K": (0.01, 25.0, "K"),
+    "rate_K_per_s": (0.01, 100.0, "K/s"),
+    "hold_s": (0.0, 60.0, "s"),
+    "baseline_C": (10.0, 45.0, "°C"),
+    "trials": (1.0, 10_000.0, ""),
+}
+LONGEST_RAMP_S = 120.0
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of the table: who, under which condition, and what was found."""
+
+    participant: str
+    condition: Condition
+    value: float
+    error: float
+    trials: float
+
+
+def is_measurements(path: str | Path) -> bool:
+    """Whether the header of a file is that of measurements, not of trials."""
+    header = {cell.lower() for cell in read_header(Path(path))}
+    return "presented" not in header and any(mark in header for mark in MARKS_OF_KIND)
+
+
+def read_measurements(path: str | Path, rig: Rig) -> Measurements:
+    """Read thresholds, reaction times and ratings of participants.
+
+    Parameters
+    ----------
+    path
+        A CSV file with the columns participant, kind, channel, value, unit and, where they apply, method, size_K,
+        rate_K_per_s, hold_s, baseline_C, standard_error and trials.
+    rig
+        The rig that they were measured on, whose resting skin is the baseline where the table names none.
+
+    Returns
+    -------
+    Measurements
+        Participants and conditions in the order of the file.
+
+    Raises
+    ------
+    TrialsError
+        For a file that cannot be read or has no rows, missing columns, unknown kinds, methods, channels and units,
+        numbers out of range, and a value that stands twice.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from thermicon.circuit import Rig
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "values.csv"
+    ...     _ = path.write_text("participant,kind,method,channel,value,unit\\nP1,threshold,limits,cold,1.1,K\\n")
+    ...     read_measurements(path, Rig.load("thenar"))
+    Measurements(1 participant, 1 value, 1 condition)
+    """
+    file = Path(path)
+    cells = read_cells(file, COLUMNS, OPTIONAL, EXAMPLE, WHAT)
+    _check_columns(file, cells)
+    rows = [_row(row, f"{file}:{line}", rig) for row, line in zip(cells.rows, cells.lines, strict=True)]
+    first: dict[tuple[str, Condition], int] = {}
+    for row, line in zip(rows, cells.lines, strict=True):
+        key = (row.participant, row.condition)
+        if key in first:
+            raise TrialsError(
+                f"{file}:{line}: participant {quoted(row.participant)} has {row.condition.label} twice, also in line "
+                f"{first[key]}; give one row with the mean, its standard_error and the number of trials"
+            )
+        first[key] = line
+    people = list(dict.fromkeys(row.participant for row in rows))
+    check_labels(file, people)
+    conditions = list(dict.fromkeys(row.condition for row in rows))
+    if len(conditions) > MOST_CONDITIONS:
+        raise TrialsError(f"{file}: {len(conditions)} conditions; at most {MOST_CONDITIONS} are taken at once")
+    values, errors, trials = (np.full((len(people), len(conditions)), np.nan) for _ in range(3))
+    for row in rows:
+        place = people.index(row.participant), conditions.index(row.condition)
+        values[place], errors[place], trials[place] = row.value, row.error, row.trials
+    return Measurements(tuple(conditions), tuple(people), values, errors, trials, file.name, digest_of(file))
+
+
+def _check_columns(file: Path, cells: Cells) -> None:
+    """Refuse columns that look like misspelt ones; others, such as notes, are nobody's business here."""
+    known = (*COLUMNS, *OPTIONAL)
+    for name in cells.header:
+        if name not in known and (close := nearest_words(name, known, 1, 0.75)):
+            raise TrialsError(
+                f"{file}: there is no column {quoted(name)}; did you mean {close[0]}? Rename it, or remove it"
+            )
+
+
+def _row(cells: Mapping[str, str], where: str, rig: Rig) -> Row:
+    kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(METHODS), where))
+    channel = cast("Channel", _one_of(cells["channel"], "channel", CHANNELS, where))
+    methods = METHODS[kind]
+    method = cells.get("method", "")
+    if not method and kind == "threshold":
+        raise TrialsError(
+            f"{where}: the method of a threshold is missing, and thresholds differ tenfold by it; add the "
+            f"column method with {', '.join(methods)}"
+        )
+    method = _one_of(method, "method", methods, where) if method else methods[0]
+    factor = FACTORS[kind][_one_of(cells["unit"], "unit", tuple(FACTORS[kind]), where, f" of a {_words(kind)}")]
+    low, high, cure = RANGES[kind]
+    value = factor * _number(cells["value"], "value", where)
+    if not low <= value <= high:
+        unit = {"threshold": "K", "reaction_time": "s", "rating": "points"}[kind]
+        raise TrialsError(
+            f"{where}: value is {quoted(cells['value'])} {cells['unit']}, a {_words(kind)} lies within {low:g} to "
+            f"{high:g} {unit}; {cure}"
+        )
+    condition = _condition(cells, kind, method, channel, where, rig)
+    if method == "limits" and condition.size_K is not None and value > condition.size_K:
+        raise TrialsError(
+            f"{where}: value is {value:g} K, and the ramp ends at {condition.size_K:g} K; give size_K, where the ramp "
+            "really ended"
+        )
+    error = (
+        factor * _number(cells["standard_error"], "standard_error", where) if cells.get("standard_error") else math.nan
+    )
+    if not math.isnan(error) and not 0.0 < error <= 2.0 * value:
+        raise TrialsError(
+            f"{where}: standard_error is {quoted(cells['standard_error'])}, for a value of {cells['value']}; it "
+            "is above 0, in the unit of the value; leave it empty where it is not known"
+        )
+    trials = _within(cells, "trials", math.nan, where)
+    if trials != trials // 1 and not math.isnan(trials):
+        raise TrialsError(f"{where}: trials is {quoted(cells['trials'])}, not a whole number")
+    return Row(label(cells["participant"], "participant", where), condition, value, error, trials)
+
+
+def _condition(cells: Mapping[str, str], kind: Kind, method: str, channel: Channel, where: str, rig: Rig) -> Condition:
+    adaptive = method in ADAPTIVE
+    size = _within(cells, "size_K", LIMIT_K if method == "limits" else None, where)
+    if adaptive and size is not None:
+        raise TrialsError(f"{where}: size_K belongs to limits, reaction times and ratings; leave it empty for {method}")
+    if not adaptive and size is None:
+        raise TrialsError(
+            f"{where}: size_K is missing: give the change of the display in K, without sign, that was "
+            f"{'timed' if kind == 'reaction_time' else 'rated'}"
+        )
+    rate = _within(cells, "rate_K_per_s", RATES.get(method, 1.0), where)
+    if size is not None and size / rate > LONGEST_RAMP_S:
+        raise TrialsError(f"{where}: a ramp of {size:g} K at {rate:g} K/s takes more than {LONGEST_RAMP_S:g} s")
+    return Condition(
+        kind,
+        method,
+        channel,
+        _within(cells, "baseline_C", rig.skin.rest_C, where),
+        size,
+        rate,
+        _within(cells, "hold_s", HOLDS.get(method, 0.0), where),
+    )
+
+
+def _one_of(text: str, column: str, known: tuple[str, ...], where: str, of: str = "") -> str:
+    if text in known:
+        return text
+    if not text:
+        raise TrialsError(f"{where}: {column} is empty; choose of {', '.join(known)}")
+    same = [name for name in known if name.casefold() == text.casefold().replace(" ", "_").replace("-", "_")]
+    hint = f"did you mean {same[0]}?" if same else f"choose of {', '.join(known)}"
+    raise TrialsError(f"{where}: {column} is {quoted(text)}, which is not a {column}{of}; {hint}")
+
+
+def _number(text: str, column: str, where: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise TrialsError(
+            f"{where}: {column} is {quoted(text) if text else 'empty'}, not a number with a decimal point"
+        )
+    return value
+
+
+@overload
+def _within(cells: Mapping[str, str], column: str, default: float, where: str) -> float: ...
+@overload
+def _within(cells: Mapping[str, str], column: str, default: float | None, where: str) -> float | None: ...
+def _within(cells: Mapping[str, str], column: str, default: float | None, where: str) -> float | None:
+    text = cells.get(column, "")
+    if not text:
+        return default
+    value, (low, high, unit) = _number(text, column, where), NUMBERS[column]
+    if not low <= value <= high:
+        hint = "; that looks like kelvin" if column == "baseline_C" and 280.0 < value < 320.0 else ""
+        raise TrialsError(f"{where}: {column} is {text}, outside {low:g} to {high:g} {unit}{hint}".rstrip())
+    return value
+
+
+def _words(kind: Kind) -> str:
+    return kind.replace("_", " ")

@@ -1,0 +1,177 @@
+"""Thresholds, reaction times and ratings condition the prediction: what they move, and by how much."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import read_cue
+from thermicon.perception.inference.laboratory import Laboratory
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.observer import Observer
+from thermicon.perception.pilot.likelihood import effective, normalised_weights
+from thermicon.perception.pilot.measured import condition_on_measurements
+from thermicon.perception.pilot.measurement_conditioning import Reweighted, reweight
+from thermicon.perception.pilot.measurement_likelihood import (
+    groups_of,
+    log_errors,
+    log_likelihood,
+    person_covariance,
+    shared_covariance,
+)
+from thermicon.perception.pilot.measurements import Condition, Measurements
+from thermicon.perception.pilot.simulated_measurements import MeasuringLaboratory, Predicted, Setting, predicted
+from thermicon.perception.pilot.states import OFFSETS, Laboratories, LaboratoryPrior
+from thermicon.perception.pilot.synthetic_measurements import USUAL, synthetic_measurements
+
+RIG = Rig.load("thenar")
+CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
+SHARP = (CHOICE, *USUAL[:2])
+RATING = Condition("rating", "magnitude", "warm", 32.0, 6.0, 5.0, 0.7)
+
+
+@pytest.fixture(scope="module")
+def prior() -> LaboratoryPrior:
+    return LaboratoryPrior(PosteriorDraws.load(), "episodes")
+
+
+def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> None:
+    from scipy.stats import multivariate_normal
+
+    conditions = (*USUAL[:2], RATING)
+    made = synthetic_measurements(RIG, participants=4, seed=1, conditions=conditions)
+    values, errors = made.values.copy(), made.errors.copy()
+    values[0, 1], errors[2, 0], errors[3, 2] = np.nan, 0.2, 4.0
+    some = Measurements(conditions, made.participants, values, errors, made.trials)
+    each = predicted(prior, prior.first(3, 0), Setting.of(RIG), conditions)
+    found = log_likelihood(some, each)
+    people, which = np.nonzero(some.given)
+    expected = []
+    for k in range(3):
+        error = log_errors(some, each.within[k])[people, which]
+        own = person_covariance(some, each.between[k])[np.ix_(which, which)] * (people[:, None] == people)
+        whole = own + shared_covariance(some)[np.ix_(which, which)] + np.diag(error**2)
+        expected.append(multivariate_normal(each.mean[k][which], whole).logpdf(np.log(values[people, which])))
+    np.testing.assert_allclose(np.diff(found), np.diff(expected), rtol=1e-6)
+
+
+def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
+    values = {**prior.draws.draw(0), "own cold": 0.0, "own warm": 0.0, "thenar cold": 0.0}
+    setting = Setting("thenar", values["contact resistance of a thermode"], 9.0)
+    logs, _ = MeasuringLaboratory(values).measure(setting, CHOICE)
+    plain = Laboratory(values)
+    size = float(np.exp(logs.mean()))
+    drive = plain.drive("thenar", "cold", 32.0, [(size, -size)], size + 3.0).max()
+    assert drive * plain.gain("cold", 9.0, "thenar", "hand", 25.0) == pytest.approx(1.0, rel=0.03)
+
+
+def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior) -> None:
+    limits = Condition("threshold", "limits", "warm", 32.0, 12.0, 1.0, 0.0)
+    time = Condition("reaction_time", "choice", "cold", 31.0, 26.0, 5.0, 0.0)
+    each = predicted(prior, prior.first(40, 0), Setting("forearm", 2.5e-4, 9.8), (limits, time))
+    middle = np.exp(np.median(each.mean, axis=0))
+    assert 1.4 < middle[0] < 2.5  # E3: 1.86 K
+    assert 0.5 < middle[1] < 1.2  # E1, five strips
+
+
+@pytest.mark.parametrize(("factor", "sign"), [(2.5, 1.0), (0.4, -1.0)])
+def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
+    prior: LaboratoryPrior, factor: float, sign: float
+) -> None:
+    conditions = SHARP
+    usual = synthetic_measurements(RIG, participants=6, seed=3, conditions=conditions)
+    before = prior.first(500, 1)
+    each = predicted(prior, before, Setting.of(RIG), conditions)
+    thresholds = [
+        np.log(prior.values(before)[:, prior.names.index(f"{channel} threshold drive")])
+        - prior.values(before)[:, prior.names.index(offset)]
+        for channel, offset in zip(("cold", "warm"), OFFSETS, strict=True)
+    ]
+    shifted = synthetic_measurements(RIG, participants=6, seed=3, numb=factor, conditions=conditions)
+    means = []
+    for some in (usual, shifted):
+        weights = normalised_weights(log_likelihood(some, each))
+        means.append([float(weights @ own) for own in thresholds])
+    for low, high in zip(*means, strict=True):
+        assert sign * (high - low) > 0.08
+
+
+def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Reweighted]:
+    """Measurements that so few draws do not carry, and the laboratories conditioned on them."""
+    some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
+
+    def simulate(laboratories: Laboratories) -> Predicted:
+        return predicted(prior, laboratories, Setting.of(RIG), SHARP)
+
+    return some, reweight(some, prior.first(draws, 2), simulate, seed=0, kept=kept)
+
+
+def test_too_few_draws_are_refreshed(prior: LaboratoryPrior) -> None:
+    _, found = refreshed(prior, 80, 40)
+    assert found.effective < 20.0
+    assert 1 <= found.rounds <= 3
+    assert found.effective_after >= 10.0
+    assert len(found.after) == len(found.predicted_after.mean) == 40
+
+
+@pytest.mark.slow
+def test_refreshed_laboratories_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
+    some, found = refreshed(prior, 200, 150)
+    assert found.rounds
+    many = predicted(prior, prior.first(1000, 5), Setting.of(RIG), SHARP)
+    weights = normalised_weights(log_likelihood(some, many))
+    assert effective(weights) > 100.0
+    expected = weights @ many.mean
+    spread = np.sqrt(weights @ np.square(many.mean - expected))
+    np.testing.assert_array_less(np.abs(found.predicted_after.mean.mean(axis=0) - expected), 0.5 * spread)
+    ratio = found.predicted_after.mean.std(axis=0) / spread
+    assert ((ratio > 0.7) & (ratio < 1.4)).all()
+
+
+def test_ratings_count_by_their_ratios_alone(prior: LaboratoryPrior) -> None:
+    small = Condition("rating", "magnitude", "warm", 32.0, 3.0, 5.0, 0.7)
+    made = synthetic_measurements(RIG, participants=5, seed=2, conditions=(small, RATING))
+    each = predicted(prior, prior.first(60, 0), Setting.of(RIG), (small, RATING))
+    values = 0.9 * made.values
+    halved = Measurements(made.conditions, made.participants, values, made.errors, made.trials)
+    first, second = (normalised_weights(log_likelihood(some, each)) for some in (made, halved))
+    assert float(np.abs(first - second).sum()) < 0.35
+    steeper = made.values * np.array([0.6, 1.5])
+    third = normalised_weights(
+        log_likelihood(Measurements(made.conditions, made.participants, steeper, made.errors, made.trials), each)
+    )
+    assert float(np.abs(first - third).sum()) > 0.35
+
+
+def test_what_was_measured_is_kept_as_an_observer(tmp_path: Path) -> None:
+    some = synthetic_measurements(RIG, participants=4, seed=2)
+    calls: list[tuple[int, int]] = []
+    found = condition_on_measurements(
+        some, read_cue("six-icons"), RIG, draws=40, progress=lambda done, total: calls.append((done, total))
+    )
+    toml, drawn = found.files()
+    (tmp_path / "lab.toml").write_text(toml, encoding="utf-8")
+    (tmp_path / "lab.csv").write_text(drawn, encoding="utf-8")
+    assert len(PosteriorDraws.load(tmp_path / "lab.csv")) == 20
+    assert Observer.load(tmp_path / "lab.toml").drive_unit == "K"
+    assert "# values: 16" in drawn
+    assert calls[-1][0] <= calls[-1][1]
+    data = found.to_dict()
+    assert data["effective_sample_size"] > 1.0
+    assert [each["unit"] for each in data["fit_before"]["conditions"]] == ["K", "K", "s", "s"]
+
+
+def test_a_site_without_skin_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"thenar, forearm, hand-dorsum, fingertip; thenar is at 'lip'"):
+        Setting.of(RIG.with_(**{"skin.site": "lip"}))
+
+
+def test_groups_hold_participants_of_one_pattern() -> None:
+    made = synthetic_measurements(RIG, participants=3, seed=2)
+    values = made.values.copy()
+    values[1, 0] = np.nan
+    some = Measurements(made.conditions, made.participants, values, made.errors, made.trials)
+    assert sorted(group.count for group in groups_of(some)) == [1, 2]
