@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
     from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
+    from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
 QUICK, WELL = (6, 0), (200, 128)
@@ -65,8 +66,11 @@ def rank_set(
     choosing: Selection | None = None,
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
+    goal: Goal | None = None,
 ) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
+
+    A ``goal`` about a share of people is judged with draws of the parameters only.
 
     >>> from thermicon.circuit import Rig
     >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s; return at 2 K/s }; icon glow { pulse warm by 3 K for 2 s }"
@@ -80,7 +84,10 @@ def rank_set(
     reading = read_text(text)
     if (why := why_not(reading)) is not None or reading.icons is None:
         raise ValueError(why)
-    made = rank(reading.icons, rig, people=people, parameters=parameters, choosing=choosing, progress=progress)
+    judged = goal if goal is None or parameters or not goal.single_people else None
+    made = rank(
+        reading.icons, rig, people=people, parameters=parameters, choosing=choosing, goal=judged, progress=progress
+    )
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     return RankedSet(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig, Trace
     from thermicon.perception import Percept, Ranking
+    from thermicon.perception.selection.goal import Goal
 
     from .design_view import DesignView
     from .export_view import ExportView
@@ -44,6 +45,8 @@ class Workbench:
         Name of the icon that is shown first; None: the first.
     folder
         Folder into which drives are exported.
+    goal
+        What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
 
     Raises
     ------
@@ -52,7 +55,7 @@ class Workbench:
     RigError
         For a rig that does not exist, or cannot be.
     ValueError
-        For an icon that the set does not have.
+        For an icon that the set does not have, and for a goal that cannot be read (`GoalError`).
 
     Examples
     --------
@@ -69,6 +72,7 @@ class Workbench:
         rig: str | Path | Rig | None = None,
         icon: str | None = None,
         folder: str | Path = "drives",
+        goal: Goal | str | None = None,
     ) -> None:
         from thermicon.circuit import Rig
 
@@ -81,6 +85,7 @@ class Workbench:
         name = document.path.name if document is not None else _name_of(source)
         self.project = Project(self._design, document, name, autosaves=has_kernel())
         self._folder = Path(folder)
+        self._goal = _goal_text(goal)
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
@@ -197,6 +202,7 @@ class Workbench:
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = ProjectBar(self.project, design)
         ranked.keep = self.project.keep_only
+        ranked.goal.text.value = self._goal
         design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}
         tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
 
@@ -256,6 +262,15 @@ def text_of(source: str | Path | Icon | IconSet | None) -> str:
     if data is None:
         return str(read_cue(source))  # JSON, or the reason why there is no such file
     return data.decode("utf-8-sig", errors="replace")
+
+
+def _goal_text(goal: Goal | str | None) -> str:
+    """A goal in canonical form, or as it was typed if that can be read; raises GoalError otherwise."""
+    from thermicon.perception.selection.goal import Goal
+
+    if goal is None:
+        return ""
+    return Goal.parse(goal).text if isinstance(goal, str) else goal.text
 
 
 def file_of(source: object) -> Path | None:
