@@ -17,6 +17,7 @@ from .scene import Scene, scene, with_notes
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.perception import Observer
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
@@ -63,6 +64,11 @@ class DesignModel:
         """The rig with the knobs set."""
         return self._applied.rig
 
+    @property
+    def observer(self) -> Observer:
+        """The nominal person, of the age that is set."""
+        return self._applied.observer
+
     def on_change(self, tell: Callable[[], None]) -> None:
         """Call a function after each message that changed text or rig."""
         self._tell.append(tell)
@@ -98,12 +104,12 @@ class DesignModel:
 
         return self._answer(act)
 
-    def take_rig(self, rig: Rig) -> CanvasFrame:
-        """Show the icons on another rig, with its own values."""
+    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> CanvasFrame:
+        """Show the icons on another rig, with its own values or with knobs set."""
 
         def act() -> None:
             self.nominal = rig
-            self._set({})
+            self._set(values or {})
 
         return self._answer(act)
 

@@ -24,6 +24,7 @@ class ProjectBar:
 
     def __init__(self, project: Project, view: DesignView) -> None:
         self.project, self.view = project, view
+        self._quiet = False
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
             name: self._button(name, hint, act)
@@ -105,7 +106,17 @@ class ProjectBar:
 
         self.view.take_rig(Rig.load(name))
 
+    def show_rig(self) -> None:
+        """Show which rig is used, after something else than this bar chose it."""
+        self._quiet = True
+        try:
+            self._offer_rigs()
+        finally:
+            self._quiet = False
+
     def _take_rig(self, name: str) -> None:
+        if self._quiet:
+            return
         path = self.project.folder / name
         self.take_rig(str(path) if name.endswith(".toml") else name)
         self.say("")

@@ -13,6 +13,7 @@ from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
 from ..files.cues import MOST_ICONS
 from .frames import CanvasFrame, traces_of
+from .overlaid import STYLES, series_of, values_on
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -143,14 +144,11 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     panels = []
     for key, title, height in PANELS:
         series = []
-        for part, name, (dash, width) in zip(parts, names, STYLES, strict=False):
-            values = _values(part, key, clock)
-            if values is None:
-                continue
-            buffers.append(values)
-            role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
-            series.append({"key": f"{key} {name}", "label": name, "buffer": len(buffers) - 1, "role": role,
-                           "dash": dash, "width": width, "step": False})  # fmt: skip
+        for part, name, style in zip(parts, names, STYLES, strict=False):
+            values = values_on(part, "temperature" if key == "skin" else "sensation", key, clock)
+            if values is not None:
+                role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
+                series.append(series_of(f"{key} {name}", name, values, role, style, buffers))
         panels.append({"key": key, "label": title, "height": height, "series": series})
     meta = {
         "type": "frame",
@@ -164,7 +162,6 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
 
 
 PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
-STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
 
 
 def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
@@ -182,14 +179,3 @@ def _traces(made: RankedSet, name: str) -> CanvasFrame:
 
     icon = next(icon for icon in made.icons if icon.name == name)
     return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))
-
-
-def _values(part: CanvasFrame, key: str, clock: Any) -> Any:
-    """The values of a curve on another clock; NaN behind its end."""
-    panel = "temperature" if key == "skin" else "sensation"
-    for each in part.meta["panels"]:
-        for series in each["series"]:
-            if each["key"] == panel and series["key"] == key:
-                own = part.meta["time"]["dt"] * np.arange(part.meta["time"]["n"])
-                return np.interp(clock, own, part.buffers[series["buffer"]], right=np.nan).astype(np.float32)
-    return None

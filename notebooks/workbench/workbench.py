@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from .project_bar import ProjectBar
     from .scene import Scene
     from .set_view import SetView
+    from .versions_model import Version
+    from .versions_view import VersionsView
 
 View = Literal["design", "set", "export"]
 VIEWS: tuple[View, ...] = ("design", "set", "export")
@@ -91,6 +93,7 @@ class Workbench:
         self.design_view: DesignView | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
+        self.versions_view: VersionsView | None = None
         self.bar: ProjectBar | None = None
 
     def _check_icon(self, icon: str | None) -> None:
@@ -195,27 +198,31 @@ class Workbench:
         from .export_view import ExportView
         from .project_bar import ProjectBar
         from .set_view import SetView
+        from .versions_view import VersionsView
 
         style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
         self.set_view = ranked = SetView(self._design, design.show_text)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = ProjectBar(self.project, design)
+        self.versions_view = versions = VersionsView(self._design, self._take_version, lambda: ranked.goal.goal)
         ranked.keep = self.project.keep_only
         ranked.goal.text.value = self._goal
         design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}
-        tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
+        views = [design.box, ranked.box, export.box, versions.box]
+        tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 
         def shown(change: Any) -> None:
             bar.beside(design=change["new"] == 0)
             ranked.shown = change["new"] == 1
             export.shown = change["new"] == 2
-            for view in (ranked, export):
+            versions.shown = change["new"] == 3
+            for view in (ranked, export, versions):
                 view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
             bar.renew()
-            for view in (ranked, export):
+            for view in (ranked, export, versions):
                 view.renew()
 
         if has_kernel():
@@ -224,6 +231,16 @@ class Workbench:
         self._design.on_change(changed)
         self.tabs = tabs
         return widgets.VBox([style, bar.box, tabs]).add_class("thermicon")
+
+    def _take_version(self, version: Version) -> None:
+        """Put a version into the editor, as a step that can be undone, and show it on its rig."""
+        assert self.design_view is not None
+        assert self.bar is not None
+        if (version.nominal, dict(version.values)) != (self._design.nominal, self._design.values):
+            self.design_view.take_rig(version.nominal, version.values)
+            self.bar.show_rig()
+        self.design_view.show_text(version.text, version.icon)
+        self.bar.renew()
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
