@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from collections.abc import Callable, Mapping
@@ -13,10 +14,12 @@ from ..editing.history import Edited, History
 from .dragging import drag
 from .frames import CanvasFrame, frame_of
 from .knobs import apply, knobs_of
+from .measured import Measured, aligned
 from .scene import Scene, scene, with_notes
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Observer
 
 Message = Mapping[str, Any]
@@ -47,6 +50,7 @@ class DesignModel:
     def __init__(self, text: str, rig: Rig, icon: str | None = None) -> None:
         self.nominal = rig
         self.values: dict[str, float | str] = {}
+        self.measured: Measured | None = None
         self._applied = apply(rig, {})
         self._drag: _Drag | None = None
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
@@ -113,6 +117,28 @@ class DesignModel:
 
         return self._answer(act)
 
+    def take_log(self, log: Log | None) -> CanvasFrame:
+        """Lay a measured log over the curves, aligned with the icon that is shown; None takes it away.
+
+        Raises LogError where it has nothing in common with the icon, and ValueError where nothing is drawn.
+        """
+        self.measured = None if log is None else aligned(log, self._trace())
+        return self.frame()
+
+    def shift_log(self, shift_s: float | None) -> CanvasFrame:
+        """Set what is added to the times of the log, in s; None aligns it anew. Raises as ``take_log``."""
+        if self.measured is None:
+            raise ValueError("there is no log yet: load one first")
+        if shift_s is None:
+            return self.take_log(self.measured.log)
+        self.measured = Measured(self.measured.log, shift_s, by_hand=True)
+        return self.frame()
+
+    def _trace(self) -> Trace:
+        if self.scene.drawing is None:
+            raise ValueError("no icon is drawn that a log could be laid over: mend the text first")
+        return self.scene.drawing.trace
+
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""
         return self._answer(lambda: self.text)
@@ -134,7 +160,7 @@ class DesignModel:
             self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
-            made = frame_of(self.scene)
+            made = frame_of(self.scene, self.measured)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
@@ -224,10 +250,20 @@ class DesignModel:
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
         rig, observer, told = self._applied
+        shown = self.scene.icon
         self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
         if self.scene.icon != self.history.now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
             self.history = replace(self.history, now=replace(self.history.now, icon=self.scene.icon))
+        if shown != self.scene.icon:
+            self._align()
+
+    def _align(self) -> None:
+        """Align the log with another icon; one that does not fit it stays, and the frame says why it is not drawn."""
+        measured, drawing = self.measured, self.scene.drawing
+        if measured is not None and not measured.by_hand and drawing is not None:
+            with contextlib.suppress(ValueError):
+                self.measured = aligned(measured.log, drawing.trace)
 
 
 def _float(value: object) -> float:

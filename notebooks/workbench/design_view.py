@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from thermicon.circuit import Rig
+    from thermicon.circuit.fitting.log import Log
 
     from .design_model import DesignModel
 
@@ -73,6 +74,14 @@ class DesignView:
         """Show the icons on another rig, with knobs of its own, at their values or others."""
         self._send(self.design.take_rig(rig, values))
         self._make_knobs()
+
+    def take_log(self, log: Log | None) -> None:
+        """Lay a measured log over the curves, or take it away; raises LogError and ValueError."""
+        self._send(self.design.take_log(log))
+
+    def shift_log(self, shift_s: float | None) -> None:
+        """Shift the log by so many s; None aligns it anew."""
+        self._send(self.design.shift_log(shift_s))
 
     def _make_knobs(self) -> None:
         self.sliders, self._labels = {}, {}

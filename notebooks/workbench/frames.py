@@ -14,8 +14,12 @@ import numpy as np
 
 from thermicon.icons.number_text import signed
 
+from .measured import DOTS, Measured, beside, shown_curves
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from thermicon.circuit.fitting.overlay import Overlay
 
     from ..editing.cue_check import Trouble
     from .scene import Drawing, Scene
@@ -71,8 +75,10 @@ class _Curves:
         }
 
 
-def frame_of(scene: Scene) -> CanvasFrame:
+def frame_of(scene: Scene, measured: Measured | None = None) -> CanvasFrame:
     """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
+
+    A ``measured`` log lies over the curves, and ``meta["measured"]`` says how far apart they are.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.notebooks.workbench.scene import scene
@@ -84,15 +90,18 @@ def frame_of(scene: Scene) -> CanvasFrame:
     if scene.drawing is None:
         empty = {"time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": [], "handles": []}
         return CanvasFrame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
-    drawn = traces_of(scene.drawing)
+    laid = None
+    if measured is not None:
+        laid, meta["measured"] = beside(measured, scene.drawing.trace)
+    drawn = traces_of(scene.drawing, laid)
     handles = [] if scene.stale else _handles(scene.drawing)
     return CanvasFrame(
         {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
     )
 
 
-def traces_of(drawing: Drawing) -> CanvasFrame:
-    """Return clock, panels and arrays of one drawing: what the design view and an overlay have in common."""
+def traces_of(drawing: Drawing, laid: Overlay | None = None) -> CanvasFrame:
+    """Return clock, panels and arrays of one drawing, with what was measured beside it."""
     from thermicon.perception.sensation.percept import uniform_clock
 
     trace, percept = drawing.trace, drawing.percept
@@ -104,6 +113,10 @@ def traces_of(drawing: Drawing) -> CanvasFrame:
         panels.append(_current(drawing, curves))
     if len(percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
+    for panel, key, label, role, values in () if laid is None else shown_curves(laid, trace.time_s):
+        for each in panels:
+            if each["key"] == panel:
+                each["series"].append(curves.take(key, label, values, role, *DOTS))
     time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
     return CanvasFrame({"time": time, "panels": panels}, tuple(curves.buffers))
 

@@ -117,7 +117,7 @@ class Project:
             name = source.removeprefix(SHIPPED)
             document, text = None, text_of(name)
         else:
-            name, path = source, self._place(source)
+            name, path = source, self.place(source)
             document = open_document(path)
             text = document.text
         self.document, self.name, self._base = document, name, text
@@ -138,7 +138,7 @@ class Project:
         wanted = name.strip()
         if not wanted:
             raise OutputError("give the name of a file, such as alerts.cue")
-        path = self._place(wanted if Path(wanted).suffix else f"{wanted}.cue")
+        path = self.place(wanted if Path(wanted).suffix else f"{wanted}.cue")
         self._saved(create_document(path, self.design.text, overwrite))
         return self._path
 
@@ -162,6 +162,12 @@ class Project:
         """Remove all icons but these."""
         self.design.show_text(only(self.design.text, icons))
 
+    def place(self, name: str) -> Path:
+        """The path of a name in the folder of the set, or of a path; OutputError outside the folder of a page."""
+        path = Path(name).expanduser()
+        whole = path if path.is_absolute() else self.folder / path
+        return below_start(whole.parent) / whole.name
+
     def _saved(self, document: CueDocument) -> None:
         self.document, self._base, self._overwrites = document, document.text, False
         before, self._autosave = self._autosave, self._new_autosave()
@@ -172,11 +178,6 @@ class Project:
     def _path(self) -> Path:
         assert self.document is not None
         return self.document.path
-
-    def _place(self, name: str) -> Path:
-        path = Path(name).expanduser()
-        whole = path if path.is_absolute() else self.folder / path
-        return below_start(whole.parent) / whole.name
 
     def _new_autosave(self) -> Autosave | None:
         if not self._autosaves:

@@ -11,6 +11,7 @@ from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_librar
 from ..files.cue_document import open_document
 from ..files.start_folder import started_rig, started_with
 from .design_model import DesignModel
+from .measured import read_measured
 from .project import Project
 
 if TYPE_CHECKING:
@@ -49,6 +50,8 @@ class Workbench:
         Folder into which drives are exported.
     goal
         What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
+    measured
+        Path of a measured log that is laid over the curves of the design view, aligned with the icon.
 
     Raises
     ------
@@ -57,7 +60,8 @@ class Workbench:
     RigError
         For a rig that does not exist, or cannot be.
     ValueError
-        For an icon that the set does not have, and for a goal that cannot be read (`GoalError`).
+        For an icon that the set does not have, a goal that cannot be read (`GoalError`), and a log that cannot be
+        used (`LogError`).
 
     Examples
     --------
@@ -75,6 +79,7 @@ class Workbench:
         icon: str | None = None,
         folder: str | Path = "drives",
         goal: Goal | str | None = None,
+        measured: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
 
@@ -83,6 +88,8 @@ class Workbench:
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
         self._design = DesignModel(text_of(source), loaded, icon)
         self._check_icon(icon)
+        if measured is not None:
+            self._design.take_log(read_measured(Path(measured)))
         document = open_document(found) if (found := file_of(source)) is not None else None
         name = document.path.name if document is not None else _name_of(source)
         self.project = Project(self._design, document, name, autosaves=has_kernel())
