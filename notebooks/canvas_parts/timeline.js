@@ -42,6 +42,7 @@ class Timeline {
     this.nothing = make("p", { class: "tm-nothing", hidden: true }, "Nothing to draw yet.");
     this.tip = make("div", { class: "tm-tip", role: "tooltip", hidden: true });
     this.element = make("div", { class: "tm-timeline" }, help, this.stage, this.staleTag, this.nothing, this.tip);
+    this.element.timeline = this; // for tests and measurements
   }
 
   /** Draws a frame at once; call it inside of requestAnimationFrame. */
@@ -142,12 +143,20 @@ class Timeline {
       const surface = parts.lay && fitted(parts.over);
       if (!surface) return;
       this.drawCursor(surface.context, this.frame.panels[k], parts);
+      this.handles.drawGuide(surface.context, parts.key, this.targetStart(this.frame.panels[k]), parts.lay, this.palette);
       this.handles.draw(surface.context, parts.key, parts.lay, this.palette);
     });
     const axis = fitted(this.axis);
     if (axis) drawTimeAxis(axis, this.view, this.cursor, this.palette);
     this.panels.forEach((parts, k) => this.readOut(this.frame.panels[k], parts)); // texts last: they undo the layout
     this.showTip();
+  }
+
+  /** Where the target of a panel begins, or null. */
+  targetStart(panel) {
+    const target = panel.series.find(({ role, key }) => role === "target" || key === "current");
+    const y = target ? this.frame.arrays[target.buffer]?.[0] : NaN;
+    return Number.isFinite(y) ? { t: this.frame.time.t0, y } : null;
   }
 
   drawCursor(context, panel, { lay }) {

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..editing.cue_check import mended
 from ..editing.history import Edited, History
 from .dragging import drag
-from .frames import CanvasFrame, frame_of
+from .frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from .knobs import apply, knobs_of
 from .measured import Measured, aligned
 from .scene import Scene, scene, with_notes
@@ -160,7 +160,7 @@ class DesignModel:
             self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
-            made = frame_of(self.scene, self.measured)
+            made = frame_of(self.scene, self.measured, MOST_POINTS if self._drag is None else DRAGGED_POINTS)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 3_000
 """Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
+DRAGGED_POINTS = 750
+"""The same while a corner is dragged, which is more than the plot has pixels; the last frame of a drag is whole."""
 DASHED, DOTTED, DASH_DOT = (7, 3), (2, 3), (8, 3, 2, 3)
 Role = str
 
@@ -75,7 +77,7 @@ class _Curves:
         }
 
 
-def frame_of(scene: Scene, measured: Measured | None = None) -> CanvasFrame:
+def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_POINTS) -> CanvasFrame:
     """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
 
     A ``measured`` log lies over the curves, and ``meta["measured"]`` says how far apart they are.
@@ -93,20 +95,20 @@ def frame_of(scene: Scene, measured: Measured | None = None) -> CanvasFrame:
     laid = None
     if measured is not None:
         laid, meta["measured"] = beside(measured, scene.drawing.trace)
-    drawn = traces_of(scene.drawing, laid)
+    drawn = traces_of(scene.drawing, laid, points)
     handles = [] if scene.stale else _handles(scene.drawing)
     return CanvasFrame(
         {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
     )
 
 
-def traces_of(drawing: Drawing, laid: Overlay | None = None) -> CanvasFrame:
+def traces_of(drawing: Drawing, laid: Overlay | None = None, points: int = MOST_POINTS) -> CanvasFrame:
     """Return clock, panels and arrays of one drawing, with what was measured beside it."""
     from thermicon.perception.sensation.percept import uniform_clock
 
     trace, percept = drawing.trace, drawing.percept
     dt, rows = uniform_clock(trace.time_s)
-    every = max(1, math.ceil((rows - 1) / MOST_POINTS))
+    every = max(1, math.ceil((rows - 1) / points))
     curves = _Curves(slice(0, rows, every))
     panels = [_temperature(drawing, curves), _heat(drawing, curves)]
     if drawing.trace.has_current:  # a thermode has none
@@ -240,6 +242,7 @@ def _handles(drawing: Drawing) -> list[dict[str, Any]]:
             "moves_level": handle.moves_level,
             "why": handle.why,
             "line": handle.line,
+            "straight": handle.straight,
         }
         for handle in drawing.handles
     ]

@@ -21,6 +21,7 @@ PATTERNS = (
     "count 6, energy <= 50 J",
 )
 """Goals that are offered to begin with, and show what a goal is made of."""
+SAFETY = "safety"
 HELP = (
     "parts joined by commas: correct, detected, bits, d_prime, time, energy, onset or count with a comparison and a "
     "number, such as 'time <= 10 s'; 'safety green'; 'for 95 % of people' after correct, detected or bits"
@@ -94,5 +95,8 @@ def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
     """
     plain = part.to_dict()
     value, gap = goal_value(plain)
-    distance = f"{gap} {'to spare' if part.met else 'over' if '<=' in part.part.text else 'short'}" if gap else ""
+    if part.part.quantity == SAFETY:
+        distance = "in this simulation; export judges worst cases"
+    else:
+        distance = f"{gap} {'to spare' if part.met else 'over' if '<=' in part.part.text else 'short'}" if gap else ""
     return "✓" if part.met else "✗", part.part.text, value, distance, part.binding

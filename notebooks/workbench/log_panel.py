@@ -81,7 +81,7 @@ class LogPanel:
     def _take(self, log: Log | None) -> None:
         self.view.take_log(log)
         self.renew()
-        self._done("" if log is None else " · ".join((f"{log.name} lies over the curves", *log.notes)))
+        self._done("" if log is None else " · ".join(log.notes))
 
     def _shifted(self, shift_s: float) -> None:
         if not self._quiet:

@@ -34,6 +34,7 @@ class Project:
         self._base = design.text if document is None else document.text
         self._autosaves = autosaves
         self._overwrites = False
+        self._seen: tuple[object, bool] | None = None
         self._autosave = self._new_autosave()
         self.offers: list[Unsaved] = []
         self.look_for_unsaved()
@@ -58,7 +59,7 @@ class Project:
 
     def warning(self) -> str:
         """What may cost somebody their text, in one sentence; empty where nothing does."""
-        if self.document is not None and self.document.changed:
+        if self.document is not None and self._changed_on_disk():
             gone = "has changed" if self.document.path.exists() else "was removed"
             return (
                 f"{self.document.path.name} {gone} on disk since it was opened here: open it again to see it, "
@@ -67,6 +68,18 @@ class Project:
         if self.dirty and self._autosave is not None and self._autosave.failed:
             return f"unsaved text is not kept: {self._autosave.failed}"
         return ""
+
+    def _changed_on_disk(self) -> bool:
+        """Whether the file is another now: read again only when its time, size or place differ, as every frame asks."""
+        assert self.document is not None
+        try:
+            status = self.document.path.stat()
+            seen = (self.document, status.st_ino, status.st_size, status.st_mtime_ns)
+        except OSError:
+            return True
+        if self._seen is None or self._seen[0] != seen:
+            self._seen = (seen, self.document.changed)
+        return self._seen[1]
 
     def changed(self) -> None:
         """Keep the text as it is now, and forget what is kept once it is saved."""

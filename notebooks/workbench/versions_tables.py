@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, percent, seconds
 
 from ..pages.blocks import fragment
-from .goal_field import verdict_html
+from .goal_field import SAFETY, goal_row
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
+    from thermicon.perception.ranking.goal_result import GoalResult
 
     from .versions_model import RankedVersions
 
@@ -24,19 +25,30 @@ def results_html(both: RankedVersions) -> str:
     Of proportion correct the difference is person by person, so its interval is narrower than those of the versions.
     """
     reasons = [f"{letter} is not ranked: {why}" for letter, why in zip("AB", both.reasons, strict=True) if why]
-    rows = _score_rows(both)
-    icons = _icon_rows(both.a, both.b) if both.a is not None and both.b is not None else []
-    return fragment("versions", ("predicted", "A", "B", "B − A"), rows, "correct, by icon", icons, reasons)
+    groups = (
+        ("", _score_rows(both)),
+        ("goal", _goal_rows(both)),
+        ("correct, by icon", _icon_rows(both.a, both.b) if both.a is not None and both.b is not None else []),
+    )
+    return fragment("versions", ("predicted", "A", "B", "B − A"), groups, reasons)
 
 
-def goals_html(both: RankedVersions) -> str:
-    """Whether each version meets the goal; empty without one."""
-    parts = [
-        f"{fragment('block', letter, 'th-head')}{verdict_html(ranking.goal)}"
-        for letter, ranking in (("A", both.a), ("B", both.b))
-        if ranking is not None and ranking.goal is not None
-    ]
-    return "".join(parts)
+def _goal_rows(both: RankedVersions) -> list[Row]:
+    """Whether each version meets the goal, then one row per part of it; none without a goal."""
+    judged = [None if ranking is None else ranking.goal for ranking in (both.a, both.b)]
+    known = next((goal for goal in judged if goal is not None), None)
+    if known is None:
+        return []
+
+    def cell(goal: GoalResult | None, place: int) -> str:
+        if goal is None:
+            return "–"
+        mark, _, value, distance, _ = goal_row(goal.parts[place])
+        return f"{mark} {value}" + (f", {distance}" if goal.parts[place].part.quantity != SAFETY else "")
+
+    words = ["–" if goal is None else "met" if goal.met else "not met" for goal in judged]
+    parts = [(part.part.text, cell(judged[0], k), cell(judged[1], k), "") for k, part in enumerate(known.parts)]
+    return [("all of it", words[0], words[1], ""), *parts]
 
 
 def changes_html(rows: list[tuple[str, str]]) -> str:

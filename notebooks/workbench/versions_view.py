@@ -14,7 +14,7 @@ from .design_view import SideCanvas
 from .downloads import link
 from .live_view import LiveView
 from .versions_model import RankedVersions, Version, both_frame, changed_lines, rank_versions
-from .versions_tables import changes_html, goals_html, results_html
+from .versions_tables import changes_html, results_html
 
 if TYPE_CHECKING:
     from thermicon.perception.selection.goal import Goal
@@ -46,7 +46,7 @@ class VersionsView(LiveView[Request]):
         self._build()
 
     def _build(self) -> None:
-        self.said = {name: widgets.HTML() for name in ("status", "about", "results", "goals", "changes", "download")}
+        self.said = {name: widgets.HTML() for name in ("status", "about", "results", "changes", "download")}
         self.keep = self._button("Keep this as A", "what is in the editor becomes version A", self.keep_now)
         self.swap = self._button("Swap A and B", "A goes into the editor, and what is there becomes A", self.swap_both)
         self.discard = self._button("Discard A", "drop version A", self.drop)
@@ -56,9 +56,7 @@ class VersionsView(LiveView[Request]):
         side = {"flex": "3 1 430px", "min_width": "0"}
         drawn = widgets.VBox([self.curves], layout=side)
         changed = widgets.VBox([widgets.HTML(fragment("block", "changed lines", "th-head")), said["changes"]])
-        results = widgets.VBox(
-            [said["results"], said["goals"], changed], layout={"flex": "3 1 430px", "min_width": "0"}
-        )
+        results = widgets.VBox([said["results"], changed], layout={"flex": "3 1 430px", "min_width": "0"})
         self.body = widgets.Box([drawn, results]).add_class("thermicon-row")
         self.box = widgets.VBox([top.add_class("thermicon-row"), said["about"], self.body])
         self.box.add_class("thermicon-versions")
@@ -152,7 +150,6 @@ class VersionsView(LiveView[Request]):
         self._running, self._finished, self._failed_request, self._result = None, request, None, True
         self._mark(False)
         self.said["results"].value = results_html(both)
-        self.said["goals"].value = goals_html(both)
         people = [each.people for each in (both.a, both.b) if each is not None]
         self._say(f"predicted for the same {people[0]} people" if people else "")
 
