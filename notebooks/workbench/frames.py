@@ -15,6 +15,7 @@ import numpy as np
 from thermicon.icons.number_text import signed
 
 from .measured import DOTS, Measured, beside, shown_curves
+from .terms import terms_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -203,7 +204,8 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     ]
     # A label that changed with the icon would have the page build its panels anew.
     label = f"sensation (d′) of the nominal person, {percept.clock} clock"
-    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False)
+    terms = ("d′", "sensation ψ", "onset", "clock", "nominal person")
+    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False, digits=1, terms=terms)
 
 
 def _panel(
@@ -217,6 +219,8 @@ def _panel(
     levels: Sequence[dict[str, Any]] = (),
     marks: Sequence[dict[str, Any]] = (),
     missed: bool = True,
+    digits: int = 2,
+    terms: Sequence[str] = (),
 ) -> dict[str, Any]:
     spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
     return {
@@ -228,6 +232,8 @@ def _panel(
         "levels": list(levels),
         "spans": spans,
         "marks": list(marks),
+        "digits": digits,
+        "terms": terms_of(*terms),
     }
 
 

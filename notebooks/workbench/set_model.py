@@ -14,6 +14,7 @@ from ..figures.map_drawing import distinct
 from ..files.cues import MOST_ICONS
 from .frames import CanvasFrame, traces_of
 from .overlaid import STYLES, series_of, values_on
+from .terms import terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -123,9 +124,9 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
         "labels": distinct(labels),
         "matrices": [
             {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": highest,
-             "text": "0.0"},
+             "text": "0.0", "terms": terms_of("d′")},
             {"key": "confusion", "label": "answered", "buffer": 1, "unit": "", "low": 0,
-             "high": 1, "text": "0%"},
+             "high": 1, "text": "0%", "terms": terms_of("confusion matrix")},
         ],
         "picked": None if picked is None else [labels.index(name) for name in picked],
         "ms": made.ms,
@@ -149,7 +150,9 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
             if values is not None:
                 role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
                 series.append(series_of(f"{key} {name}", name, values, role, style, buffers))
-        panels.append({"key": key, "label": title, "height": height, "series": series})
+        felt = key != "skin"
+        about = {"digits": 1 if felt else 2, "terms": terms_of("d′", "sensation ψ") if felt else []}
+        panels.append({"key": key, "label": title, "height": height, "series": series, **about})
     meta = {
         "type": "frame",
         "view": "traces",

@@ -12,6 +12,7 @@ import numpy as np
 from ..editing.cue_check import read_text
 from .frames import CanvasFrame, traces_of
 from .overlaid import STYLES, series_of, values_on
+from .terms import terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -167,8 +168,9 @@ def _panels(parts: list[tuple[str, CanvasFrame]]) -> tuple[dict[str, Any], list[
             if values is not None
         ]
         if drawn:
-            panels.append({"key": key, "label": title, "height": height, "series": drawn})
+            about = {"digits": 1, "terms": terms_of("d′", "sensation ψ")} if panel == "sensation" else {"digits": 2}
+            panels.append({"key": key, "label": title, "height": height, "series": drawn, **about})
         if key == "skin" and len(drawn) == 2:
             gap = series_of("gap", "B − A", curves["B"] - curves["A"], "focus", ([], 1.75), buffers)
-            panels.append({"key": "gap", "label": "skin, B − A (K)", "height": 0.7, "series": [gap]})
+            panels.append({"key": "gap", "label": "skin, B − A (K)", "height": 0.7, "series": [gap], "digits": 2})
     return {"t0": 0.0, "dt": step, "n": len(clock)}, panels, buffers

@@ -100,9 +100,8 @@ def _limits(ranking: Ranking) -> str:
     amber = [icon.name for icon in ranking.icons if icon.safe and icon.cautions]
     if not wrong and not amber:
         return "kept"
-    return "; ".join(
-        f"{word}: {', '.join(names)}" for word, names in (("not safe", wrong), ("caution", amber)) if names
-    )
+    groups = (("hard limit passed", wrong), ("soft limit passed", amber))
+    return "; ".join(f"{word}: {', '.join(names)}" for word, names in groups if names)
 
 
 def _points(share: float, unit: str = " points") -> str:

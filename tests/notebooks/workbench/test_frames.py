@@ -25,6 +25,9 @@ def rig() -> Rig:
     return Rig.load("thenar")
 
 
+PANEL = {"key", "label", "height", "series", "bands", "levels", "spans", "marks", "digits", "terms"}
+
+
 def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
     """Hold a frame against the contract; its panels by key."""
     meta = json.loads(json.dumps(frame.meta, allow_nan=False))
@@ -37,7 +40,7 @@ def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
         assert buffer.flags.c_contiguous
         assert buffer.shape == (meta["time"]["n"],)
     for panel in panels.values():
-        assert set(panel) == {"key", "label", "height", "series", "bands", "levels", "spans", "marks"}
+        assert set(panel) == PANEL
         for part in (*panel["series"], *panel["bands"], *panel["levels"], *panel["marks"]):
             assert part["role"] in ROLES
     return panels
