@@ -95,8 +95,11 @@ def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
     """
     plain = part.to_dict()
     value, gap = goal_value(plain)
+    words = "to spare" if part.met else "over" if "<=" in part.part.text else "short"
     if part.part.quantity == SAFETY:
         distance = "in this simulation; export judges worst cases"
+    elif part.value == part.part.limit:
+        distance = "exactly"
     else:
-        distance = f"{gap} {'to spare' if part.met else 'over' if '<=' in part.part.text else 'short'}" if gap else ""
+        distance = f"{gap} {words}" if gap else ""
     return "✓" if part.met else "✗", part.part.text, value, distance, part.binding

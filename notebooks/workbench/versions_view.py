@@ -54,9 +54,9 @@ class VersionsView(LiveView[Request]):
         said = self.said
         top = widgets.Box([self.keep, self.swap, self.discard, said["download"], said["status"]])
         side = {"flex": "3 1 430px", "min_width": "0"}
-        drawn = widgets.VBox([self.curves], layout=side)
         changed = widgets.VBox([widgets.HTML(fragment("block", "changed lines", "th-head")), said["changes"]])
-        results = widgets.VBox([said["results"], changed], layout={"flex": "3 1 430px", "min_width": "0"})
+        drawn = widgets.VBox([self.curves, changed], layout=side)
+        results = widgets.VBox([said["results"]], layout=side)
         self.body = widgets.Box([drawn, results]).add_class("thermicon-row")
         self.box = widgets.VBox([top.add_class("thermicon-row"), said["about"], self.body])
         self.box.add_class("thermicon-versions")

@@ -107,7 +107,9 @@ def test_a_goal_a_version_and_a_log_on_the_page(
     open_tab(page, "Design")
     type_text(page, TWO.replace("3.6 °C", "6 °C"))
     page.get_by_role("button", name="Log", exact=True).click()
-    page.locator(".thermicon-panel input[type=file]").set_input_files(log)
+    with page.expect_file_chooser() as chooser:
+        page.locator(".thermicon-panel").get_by_role("button", name="Upload").click()
+    chooser.value.set_files(log)
     expect(page.locator(".tm-measured")).to_contain_text("rig.csv: display rms")
     expect(page.locator('.tm-entry[data-series="measured display_C"]')).to_be_visible()
     page.get_by_role("button", name="Log", exact=True).click()
