@@ -97,26 +97,48 @@ def rank_versions(
 
 
 def both_frame(a: Version, b: Version) -> CanvasFrame:
-    """The icon that is shown in B, in both versions on one clock, and the difference of their skin temperatures.
+    """One icon in both versions on one clock, and the difference of their skin temperatures.
 
-    Where a version does not have it, the frame holds the other alone and says so.
+    It is the one that is shown in B, or else the first that was changed. Where a version does not have it, the frame
+    holds the other alone and says so.
     """
     from thermicon.icons import CueErrors
 
     notes, parts = [], []
+    icon = changed_icon(a, b)
     for letter, each in zip("AB", (a, b), strict=True):
         try:
-            part = _traces(each, b.icon)
+            part = _traces(each, icon)
         except (CueErrors, ValueError, ArithmeticError) as wrong:
             notes.append(f"{letter} is not drawn: {str(wrong).splitlines()[0]}")
         else:
             if part is None:
-                notes.append(f"{letter} has no icon {b.icon}")
+                notes.append(f"{letter} has no icon {icon}")
             else:
                 parts.append((letter, part))
     time, panels, buffers = _panels(parts)
+    if panels:
+        panels[0]["label"] = f"{icon}: {panels[0]['label']}"
     meta = {"type": "frame", "view": "traces", "seq": 0, "time": time, "panels": panels, "notes": notes}
     return CanvasFrame(meta, tuple(buffers))
+
+
+def changed_icon(a: Version, b: Version) -> str | None:
+    """Name of the icon that is shown in B; the first one of B that differs from A where that one does not.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.perception import Observer
+    >>> rig, person = Rig.load("thenar"), Observer.load()
+    >>> texts = [f"cue 1; icon a {{ hold for 1 s }}; icon b {{ hold for {n} s }}" for n in (1, 2)]
+    >>> changed_icon(*(Version(text, "a", rig, rig, person) for text in texts))
+    'b'
+    """
+    sets = [read_text(each.text).icons for each in (a, b)]
+    if sets[0] is None or sets[1] is None or a.rig != b.rig:
+        return b.icon
+    before = {icon.name: icon for icon in sets[0]}
+    changed = [icon.name for icon in sets[1] if before.get(icon.name) != icon]
+    return changed[0] if changed and b.icon not in changed else b.icon
 
 
 def changed_lines(a: Version, b: Version) -> list[tuple[str, str]]:

@@ -63,6 +63,7 @@ def test_a_version_is_kept_and_the_edited_one_is_compared_with_it() -> None:
     assert "B icon nearer { cool by 4" in changes
     assert view.curves._newest is not None
     panels = view.curves._newest[0]["panels"]
+    assert panels[0]["label"] == "nearer: skin (°C)"
     assert [panel["key"] for panel in panels] == ["skin", "gap", "current", "cold", "warm"]
     assert [series["label"] for series in panels[0]["series"]] == ["A", "B"]
 
