@@ -20,7 +20,7 @@ LADDER = {
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
         *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),
     ),
-    "notebooks": ("text", "files", "figures", "pages", "study", "cli", "editing", "workbench"),
+    "notebooks": ("text", "files", "figures", "pages", "study", "cli", "editing", "timeline", "workbench"),
 }
 """Rooms from the bottom up. Modules that stand in no room are below all of them, the front door is above."""
 MOST_MODULES = 25

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
 from ..editing.history import Edited, History
-from .dragging import drag
-from .frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
+from ..timeline.dragging import drag
+from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
+from ..timeline.measured import Measured, aligned
+from ..timeline.scene import Scene, scene, with_notes
 from .knobs import apply, knobs_of
-from .measured import Measured, aligned
-from .scene import Scene, scene, with_notes
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..pages.blocks import fragment
-from .terms import glossary
+from ..timeline.terms import glossary
 
 SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
     (

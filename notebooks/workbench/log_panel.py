@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import ipywidgets as widgets
 
 from ..pages.blocks import fragment
-from .measured import read_measured, read_uploaded
+from ..timeline.measured import read_measured, read_uploaded
 
 if TYPE_CHECKING:
     from thermicon.circuit.fitting.log import Log

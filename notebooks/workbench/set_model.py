@@ -12,9 +12,9 @@ import numpy as np
 from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
 from ..files.cues import MOST_ICONS
-from .frames import CanvasFrame, traces_of
-from .overlaid import STYLES, series_of, values_on
-from .terms import terms_of
+from ..timeline.frames import CanvasFrame, traces_of
+from ..timeline.overlaid import STYLES, series_of, values_on
+from ..timeline.terms import terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -178,7 +178,7 @@ def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
 def _traces(made: RankedSet, name: str) -> CanvasFrame:
     from thermicon.perception import Observer
 
-    from .scene import draw
+    from ..timeline.scene import draw
 
     icon = next(icon for icon in made.icons if icon.name == name)
     return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))

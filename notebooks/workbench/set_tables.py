@@ -10,7 +10,7 @@ from ..pages.blocks import fragment
 from ..text.choices import choice_lines
 from ..text.rank_notes import outside_lines, trouble_lines
 from ..text.rank_text import caveat, rival
-from .terms import SIMULATED, terms_of
+from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:
     from thermicon.perception import Edit, NoEdit, PairScore, Ranking

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..editing.cue_check import read_text
-from .frames import CanvasFrame, traces_of
-from .overlaid import STYLES, series_of, values_on
-from .terms import terms_of
+from ..timeline.frames import CanvasFrame, traces_of
+from ..timeline.overlaid import STYLES, series_of, values_on
+from ..timeline.terms import terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -164,7 +164,7 @@ def changed_lines(a: Version, b: Version) -> list[tuple[str, str]]:
 
 
 def _traces(version: Version, icon: str | None) -> CanvasFrame | None:
-    from .scene import draw
+    from ..timeline.scene import draw
 
     reading = read_text(version.text)
     if reading.icons is None:

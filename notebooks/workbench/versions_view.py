@@ -19,8 +19,8 @@ from .versions_tables import changes_html, results_html
 if TYPE_CHECKING:
     from thermicon.perception.selection.goal import Goal
 
+    from ..timeline.frames import CanvasFrame
     from .design_model import DesignModel
-    from .frames import CanvasFrame
 
 Request = tuple[Version, Version, "Goal | None"]
 NOTHING = (

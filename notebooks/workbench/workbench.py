@@ -10,8 +10,8 @@ from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_librar
 
 from ..files.cue_document import open_document
 from ..files.start_folder import started_rig, started_with
+from ..timeline.measured import read_measured
 from .design_model import DesignModel
-from .measured import read_measured
 from .project import Project
 
 if TYPE_CHECKING:
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from thermicon.perception import Percept, Ranking
     from thermicon.perception.selection.goal import Goal
 
+    from ..timeline.scene import Scene
     from .design_view import DesignView
     from .export_view import ExportView
     from .project_bar import ProjectBar
-    from .scene import Scene
     from .set_view import SetView
     from .versions_model import Version
     from .versions_view import VersionsView

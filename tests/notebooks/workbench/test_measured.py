@@ -14,8 +14,8 @@ from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.start_folder import VARIABLE
+from thermicon.notebooks.timeline.measured import read_uploaded
 from thermicon.notebooks.workbench.log_panel import LogPanel
-from thermicon.notebooks.workbench.measured import read_uploaded
 from thermicon.notebooks.workbench.project_bar import ProjectBar
 
 TEXT = "cue 1\nicon dip { cool by 4 K at 2 K/s; hold for 2 s; return at 2 K/s }\nicon none { hold for 9 s }\n"

@@ -84,7 +84,7 @@ def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_
     A ``measured`` log lies over the curves, and ``meta["measured"]`` says how far apart they are.
 
     >>> from thermicon.circuit import Rig
-    >>> from thermicon.notebooks.workbench.scene import scene
+    >>> from thermicon.notebooks.timeline.scene import scene
     >>> made = frame_of(scene("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar")))
     >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
     (['temperature', 'heat', 'current', 'sensation'], 1401, 11)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.workbench.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
-from thermicon.notebooks.workbench.scene import Scene, scene
+from thermicon.notebooks.timeline.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
+from thermicon.notebooks.timeline.scene import Scene, scene
 
 ROLES = {"ink", "grey", "cool", "warm", "target", "limit"}
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"

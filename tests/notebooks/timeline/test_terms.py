@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.workbench.frames import frame_of
+from thermicon.notebooks.timeline.frames import frame_of
+from thermicon.notebooks.timeline.scene import scene
+from thermicon.notebooks.timeline.terms import LIMITS, TERMS
 from thermicon.notebooks.workbench.help_sheet import help_html
-from thermicon.notebooks.workbench.scene import scene
-from thermicon.notebooks.workbench.terms import LIMITS, TERMS
 
 GLOSSARY = Path(__file__).parents[3] / "docs" / "reference" / "glossary.md"
 
