@@ -13,7 +13,7 @@ function seriesOf(given) {
 }
 
 function panelOf(given) {
-  const panel = { height: 1, bands: [], levels: [], spans: [], marks: [], ...given };
+  const panel = { height: 1, digits: 4, terms: [], bands: [], levels: [], spans: [], marks: [], ...given };
   return { ...panel, series: (given.series ?? []).map(seriesOf), unit: unitOf(given.label ?? "") };
 }
 
@@ -21,7 +21,7 @@ function panelOf(given) {
 function tracesFrame(meta, buffers) {
   const defaults = {
     seq: 0, text: null, icons: [], icon: null, troubles: [], stale: false, can_undo: false, can_redo: false,
-    badge: { colour: "grey", text: "", more: [] }, notes: [], time: { t0: 0, dt: 1, n: 0 }, handles: [], ms: null,
+    badge: { colour: "grey", text: "", more: [] }, notes: [], time: { t0: 0, dt: 1, n: 0 }, handles: [], measured: "", ms: null,
   };
   const frame = { ...defaults, ...meta, arrays: (buffers ?? []).map(floatsOf) };
   frame.panels = (meta.panels ?? []).map(panelOf);

@@ -50,7 +50,7 @@ class HeatView {
     );
     grid.style.setProperty("--tm-count", labels.length);
     grid.style.setProperty("--tm-label", `${clamp(7 * Math.max(...labels.map((name) => name.length)) + 8, 40, 150)}px`);
-    return make("figure", { class: "tm-map", "data-matrix": matrix.key }, make("figcaption", {}, matrix.label), grid, this.scaleOf(matrix));
+    return make("figure", { class: "tm-map", "data-matrix": matrix.key }, make("figcaption", {}, matrix.label, " ", wordsOf(matrix.terms)), grid, this.scaleOf(matrix));
   }
 
   makeCell(k, row, column) {

@@ -219,7 +219,7 @@ function drawLabels(context, panel, lay, space, palette) {
   }
   for (const band of panel.bands) {
     const middle = (lay.y(band.low) + lay.y(band.high)) / 2 - LABEL_ROW / 2;
-    const beside = [1, 2, 3, 4].flatMap((k) => [lay.y(band.low) + (k - 1) * LABEL_ROW, lay.y(band.high) - k * LABEL_ROW]);
+    const beside = [1, 2, 3, 4, 5, 6].flatMap((k) => [lay.y(band.low) + (k - 1) * LABEL_ROW, lay.y(band.high) - k * LABEL_ROW]);
     const downs = [middle, ...beside];
     label(context, band.label, sidePlaces(context, band.label, lay, downs), space, palette[band.role] ?? palette.grey, palette.paper);
   }

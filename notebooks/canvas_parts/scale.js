@@ -20,9 +20,9 @@ function tickDecimals(step) {
   return clamp(-Math.floor(Math.log10(step) + 1e-9), 0, 6);
 }
 
-/** Decimals of a read-out, fixed for a panel so that the numbers do not jump about. */
-function readoutDecimals(low, high) {
-  return clamp(2 - Math.floor(Math.log10(Math.max(high - low, 1e-6)) + 1e-9), 0, 4);
+/** Decimals of a read-out, fixed for a panel so that the numbers do not jump about; at most what is known. */
+function readoutDecimals(low, high, most = 4) {
+  return clamp(2 - Math.floor(Math.log10(Math.max(high - low, 1e-6)) + 1e-9), 0, most);
 }
 
 /** Lowest and highest of everything that a panel shows, with some air; never an empty range. */

@@ -42,6 +42,7 @@ class Timeline {
     this.nothing = make("p", { class: "tm-nothing", hidden: true }, "Nothing to draw yet.");
     this.tip = make("div", { class: "tm-tip", role: "tooltip", hidden: true });
     this.element = make("div", { class: "tm-timeline" }, help, this.stage, this.staleTag, this.nothing, this.tip);
+    this.element.timeline = this; // for tests and measurements
   }
 
   /** Draws a frame at once; call it inside of requestAnimationFrame. */
@@ -80,7 +81,7 @@ class Timeline {
     const base = make("canvas", { class: "tm-base", "aria-hidden": true });
     const over = make("canvas", { class: "tm-over", "aria-hidden": true });
     const plot = make("div", { class: "tm-plot" }, base, over);
-    const legend = make("div", { class: "tm-legend" }, make("span", { class: "tm-panel-title" }, panel.label), ...entries);
+    const legend = make("div", { class: "tm-legend" }, make("span", { class: "tm-panel-title" }, panel.label), wordsOf(panel.terms), ...entries);
     const attributes = { class: "tm-panel", "data-panel": panel.key, role: "group", "aria-label": panel.label };
     const element = make("div", attributes, legend, plot);
     element.style.flexGrow = panel.height;
@@ -142,12 +143,20 @@ class Timeline {
       const surface = parts.lay && fitted(parts.over);
       if (!surface) return;
       this.drawCursor(surface.context, this.frame.panels[k], parts);
+      this.handles.drawGuide(surface.context, parts.key, this.targetStart(this.frame.panels[k]), parts.lay, this.palette);
       this.handles.draw(surface.context, parts.key, parts.lay, this.palette);
     });
     const axis = fitted(this.axis);
     if (axis) drawTimeAxis(axis, this.view, this.cursor, this.palette);
     this.panels.forEach((parts, k) => this.readOut(this.frame.panels[k], parts)); // texts last: they undo the layout
     this.showTip();
+  }
+
+  /** Where the target of a panel begins, or null. */
+  targetStart(panel) {
+    const target = panel.series.find(({ role, key }) => role === "target" || key === "current");
+    const y = target ? this.frame.arrays[target.buffer]?.[0] : NaN;
+    return Number.isFinite(y) ? { t: this.frame.time.t0, y } : null;
   }
 
   drawCursor(context, panel, { lay }) {
@@ -172,7 +181,7 @@ class Timeline {
 
   readOut(panel, { values }) {
     const { low, high } = this.ranges.get(panel.key);
-    const decimals = readoutDecimals(low, high);
+    const decimals = readoutDecimals(low, high, panel.digits);
     panel.series.forEach((series, k) => {
       const value = valueAt(this.frame.arrays[series.buffer], this.frame.time, this.cursor, series.step);
       setText(values[k], numberText(value, decimals));
@@ -277,6 +286,18 @@ class Timeline {
     cancelAnimationFrame(this.whole);
     cancelAnimationFrame(this.part);
   }
+}
+
+/** A "?" whose tooltip says what words mean, and which opens to a list of them; nothing where there are none. */
+function wordsOf(terms) {
+  if (!terms?.length) return "";
+  const lines = terms.flatMap(([word, meaning]) => [make("dt", {}, word), make("dd", {}, meaning)]);
+  const title = terms.map(([word, meaning]) => `${word}: ${meaning}`).join("\n");
+  const name = `what ${terms.map(([word]) => word).join(", ")} mean`;
+  const details = make("details", { class: "tm-words" }, make("summary", { title, "aria-label": name }, "?"), make("dl", {}, ...lines));
+  details.addEventListener("focusout", () => (details.open = false));
+  details.addEventListener("keydown", (event) => event.stopPropagation());
+  return details;
 }
 
 /** Where the cursor is at first: at the first mark, else at a quarter of the time. */

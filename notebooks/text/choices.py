@@ -89,20 +89,30 @@ def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:
 
 def _goal_value(part: dict[str, Any]) -> str:
     """What was predicted of a part, in its unit, and how far that is from what is wanted."""
+    value, gap = goal_value(part)
+    if isinstance(part["value"], str):
+        return f"{value} in this simulation; export judges the worst case"
+    return value if part["met"] or not gap else f"{value}, missed by {gap}"
+
+
+def goal_value(part: dict[str, Any]) -> tuple[str, str]:
+    """What was predicted of a part of a goal and its distance from what is wanted, with units; empty where none.
+
+    >>> goal_value({"text": "time <= 10 s", "met": True, "value": 8.5, "wanted": 10.0})
+    ('8.5 s', '1.5 s')
+    """
     value, wanted = part["value"], part["wanted"]
     if isinstance(value, str):
-        return f"{value} in this simulation; export judges the worst case"
+        return value, ""
     if value is None:
-        return "none"
+        return "none", ""
     unit = part["text"].split(" for ")[0].split()[-1]
     share = unit == "%"
     shown, gap = (100.0 * value, 100.0 * abs(value - wanted)) if share else (value, abs(value - wanted))
     words = "" if unit[0].isdigit() else f" {unit}"
-    text = f"{shown:.1f}{words}" if share else f"{number(shown, 2)}{words}"
-    if part["met"]:
-        return text
-    short = f"{gap:.1f} points" if share else f"{number(gap, 2)}{words}"
-    return f"{text}, missed by {short}"
+    if share:
+        return f"{shown:.1f}{words}", f"{gap:.1f} points"
+    return f"{number(shown, 2)}{words}", f"{number(gap, 2)}{words}"
 
 
 def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:

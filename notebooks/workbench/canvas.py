@@ -49,7 +49,7 @@ def module_text() -> str:
     """Return the ES module: the words of the cue language, then all parts."""
     folder = files("thermicon.notebooks") / "canvas_parts"
     parts = [_shortened((folder / f"{part}.js").read_text(encoding="utf-8")) for part in PARTS]
-    constants = {"CUE_WORDS": _words(), "PACKED_CODEMIRROR": _packed()}
+    constants = {"CUE_WORDS": cue_words(), "PACKED_CODEMIRROR": _packed()}
     first = (f"const {name} = {json.dumps(value, ensure_ascii=False)};" for name, value in constants.items())
     return "\n".join((*first, *parts))
 
@@ -77,7 +77,7 @@ def _shortened(script: str) -> str:
     return "\n".join(line for line in lines if line and not line.startswith(("//", "/** ", "* ", "*/")))
 
 
-def _words() -> dict[str, Any]:
+def cue_words() -> dict[str, Any]:
     """Words to colour, from the lexer, so that the page never knows another language than the parser."""
     from thermicon.icons.language.highlight import KEYWORDS, SPELLINGS
     from thermicon.icons.model.words import CONTROLS, STARTS
@@ -85,7 +85,11 @@ def _words() -> dict[str, Any]:
     from ..editing.completions import completions
 
     keywords = sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"})
-    return {"keywords": keywords, "units": list(SPELLINGS), "next": completions()}
+    return {
+        "keywords": keywords,
+        "units": sorted(SPELLINGS, key=lambda unit: (-len(unit), unit)),
+        "next": completions(),
+    }
 
 
 class Canvas(anywidget.AnyWidget):

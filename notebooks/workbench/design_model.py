@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from collections.abc import Callable, Mapping
@@ -10,13 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
 from ..editing.history import Edited, History
-from .dragging import drag
-from .frames import CanvasFrame, frame_of
+from ..timeline.dragging import drag
+from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
+from ..timeline.measured import Measured, aligned
+from ..timeline.scene import Scene, scene, with_notes
 from .knobs import apply, knobs_of
-from .scene import Scene, scene, with_notes
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit.fitting.log import Log
+    from thermicon.perception import Observer
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
@@ -46,6 +50,7 @@ class DesignModel:
     def __init__(self, text: str, rig: Rig, icon: str | None = None) -> None:
         self.nominal = rig
         self.values: dict[str, float | str] = {}
+        self.measured: Measured | None = None
         self._applied = apply(rig, {})
         self._drag: _Drag | None = None
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
@@ -62,6 +67,11 @@ class DesignModel:
     def rig(self) -> Rig:
         """The rig with the knobs set."""
         return self._applied.rig
+
+    @property
+    def observer(self) -> Observer:
+        """The nominal person, of the age that is set."""
+        return self._applied.observer
 
     def on_change(self, tell: Callable[[], None]) -> None:
         """Call a function after each message that changed text or rig."""
@@ -98,14 +108,36 @@ class DesignModel:
 
         return self._answer(act)
 
-    def take_rig(self, rig: Rig) -> CanvasFrame:
-        """Show the icons on another rig, with its own values."""
+    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> CanvasFrame:
+        """Show the icons on another rig, with its own values or with knobs set."""
 
         def act() -> None:
             self.nominal = rig
-            self._set({})
+            self._set(values or {})
 
         return self._answer(act)
+
+    def take_log(self, log: Log | None) -> CanvasFrame:
+        """Lay a measured log over the curves, aligned with the icon that is shown; None takes it away.
+
+        Raises LogError where it has nothing in common with the icon, and ValueError where nothing is drawn.
+        """
+        self.measured = None if log is None else aligned(log, self._trace())
+        return self.frame()
+
+    def shift_log(self, shift_s: float | None) -> CanvasFrame:
+        """Set what is added to the times of the log, in s; None aligns it anew. Raises as ``take_log``."""
+        if self.measured is None:
+            raise ValueError("there is no log yet: load one first")
+        if shift_s is None:
+            return self.take_log(self.measured.log)
+        self.measured = Measured(self.measured.log, shift_s, by_hand=True)
+        return self.frame()
+
+    def _trace(self) -> Trace:
+        if self.scene.drawing is None:
+            raise ValueError("no icon is drawn that a log could be laid over: mend the text first")
+        return self.scene.drawing.trace
 
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""
@@ -128,7 +160,7 @@ class DesignModel:
             self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
-            made = frame_of(self.scene)
+            made = frame_of(self.scene, self.measured, MOST_POINTS if self._drag is None else DRAGGED_POINTS)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
@@ -218,10 +250,20 @@ class DesignModel:
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
         rig, observer, told = self._applied
+        shown = self.scene.icon
         self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
         if self.scene.icon != self.history.now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
             self.history = replace(self.history, now=replace(self.history.now, icon=self.scene.icon))
+        if shown != self.scene.icon:
+            self._align()
+
+    def _align(self) -> None:
+        """Align the log with another icon; one that does not fit it stays, and the frame says why it is not drawn."""
+        measured, drawing = self.measured, self.scene.drawing
+        if measured is not None and not measured.by_hand and drawing is not None:
+            with contextlib.suppress(ValueError):
+                self.measured = aligned(measured.log, drawing.trace)
 
 
 def _float(value: object) -> float:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from thermicon.circuit import Rig
+    from thermicon.circuit.fitting.log import Log
 
     from .design_model import DesignModel
 
@@ -69,10 +70,18 @@ class DesignView:
         """Undo or redo, from wherever it is asked for."""
         self._send(self.design.receive({"type": kind}))
 
-    def take_rig(self, rig: Rig) -> None:
-        """Show the icons on another rig, with knobs of its own."""
-        self._send(self.design.take_rig(rig))
+    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> None:
+        """Show the icons on another rig, with knobs of its own, at their values or others."""
+        self._send(self.design.take_rig(rig, values))
         self._make_knobs()
+
+    def take_log(self, log: Log | None) -> None:
+        """Lay a measured log over the curves, or take it away; raises LogError and ValueError."""
+        self._send(self.design.take_log(log))
+
+    def shift_log(self, shift_s: float | None) -> None:
+        """Shift the log by so many s; None aligns it anew."""
+        self._send(self.design.shift_log(shift_s))
 
     def _make_knobs(self) -> None:
         self.sliders, self._labels = {}, {}
@@ -91,7 +100,7 @@ class DesignView:
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
         self._labels[knob.key] = label
-        self.sliders[knob.key] = made = _control(knob)
+        self.sliders[knob.key] = made = _control(knob, self.design.values.get(knob.key, knob.value))
         made.tooltip = f"{knob.what} ({knob.source})"
         made.observe(lambda change: self._turned(knob.key, change["new"]), "value")
         self._tell(knob)
@@ -124,14 +133,14 @@ class DesignView:
             self._labels[knob.key].value = text
 
 
-def _control(knob: Knob) -> Any:
+def _control(knob: Knob, value: float | str) -> Any:
     """A slider for a range, a list for a choice."""
     layout = widgets.Layout(width="auto")
     if knob.options:
-        return widgets.Dropdown(options=knob.options, value=knob.value, layout=layout)
+        return widgets.Dropdown(options=knob.options, value=value, layout=layout)
     digits = len(f"{knob.step:g}".partition(".")[2])
     return widgets.FloatSlider(
-        value=float(knob.value),
+        value=float(value),
         min=knob.low,
         max=knob.high,
         step=knob.step,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..pages.blocks import fragment
+from ..timeline.terms import glossary
 
 SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
     (
@@ -29,9 +30,19 @@ SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
         (
             "click a cell, or choose it with arrows and Enter: both icons, why they are confused, the cheapest edit",
             "choose: the best few icons; Keep these takes the others out of the text (Undo brings them back)",
+            "goal: what is wanted of the set, in words; which parts are met, by how much, and what binds",
         ),
     ),
-    ("Safety", ("click the badge: every limit that was judged",)),
+    (
+        "Versions",
+        (
+            "Keep this as A, go on editing: both versions, their curves, results and changed lines",
+            "Swap A and B brings A back into the text; Undo takes it out again",
+        ),
+    ),
+    ("Log", ("lay a measured log over the curves; shift moves it in time, Align finds the shift",)),
+    ("Safety", ("click the badge: every limit that was judged on this run; export judges worst cases",)),
+    ("Words", tuple(glossary())),
 )
 
 

@@ -34,6 +34,7 @@ class Project:
         self._base = design.text if document is None else document.text
         self._autosaves = autosaves
         self._overwrites = False
+        self._seen: tuple[object, bool] | None = None
         self._autosave = self._new_autosave()
         self.offers: list[Unsaved] = []
         self.look_for_unsaved()
@@ -58,7 +59,7 @@ class Project:
 
     def warning(self) -> str:
         """What may cost somebody their text, in one sentence; empty where nothing does."""
-        if self.document is not None and self.document.changed:
+        if self.document is not None and self._changed_on_disk():
             gone = "has changed" if self.document.path.exists() else "was removed"
             return (
                 f"{self.document.path.name} {gone} on disk since it was opened here: open it again to see it, "
@@ -67,6 +68,18 @@ class Project:
         if self.dirty and self._autosave is not None and self._autosave.failed:
             return f"unsaved text is not kept: {self._autosave.failed}"
         return ""
+
+    def _changed_on_disk(self) -> bool:
+        """Whether the file is another now: read again only when its time, size or place differ, as every frame asks."""
+        assert self.document is not None
+        try:
+            status = self.document.path.stat()
+            seen = (self.document, status.st_ino, status.st_size, status.st_mtime_ns)
+        except OSError:
+            return True
+        if self._seen is None or self._seen[0] != seen:
+            self._seen = (seen, self.document.changed)
+        return self._seen[1]
 
     def changed(self) -> None:
         """Keep the text as it is now, and forget what is kept once it is saved."""
@@ -117,7 +130,7 @@ class Project:
             name = source.removeprefix(SHIPPED)
             document, text = None, text_of(name)
         else:
-            name, path = source, self._place(source)
+            name, path = source, self.place(source)
             document = open_document(path)
             text = document.text
         self.document, self.name, self._base = document, name, text
@@ -138,7 +151,7 @@ class Project:
         wanted = name.strip()
         if not wanted:
             raise OutputError("give the name of a file, such as alerts.cue")
-        path = self._place(wanted if Path(wanted).suffix else f"{wanted}.cue")
+        path = self.place(wanted if Path(wanted).suffix else f"{wanted}.cue")
         self._saved(create_document(path, self.design.text, overwrite))
         return self._path
 
@@ -162,6 +175,12 @@ class Project:
         """Remove all icons but these."""
         self.design.show_text(only(self.design.text, icons))
 
+    def place(self, name: str) -> Path:
+        """The path of a name in the folder of the set, or of a path; OutputError outside the folder of a page."""
+        path = Path(name).expanduser()
+        whole = path if path.is_absolute() else self.folder / path
+        return below_start(whole.parent) / whole.name
+
     def _saved(self, document: CueDocument) -> None:
         self.document, self._base, self._overwrites = document, document.text, False
         before, self._autosave = self._autosave, self._new_autosave()
@@ -172,11 +191,6 @@ class Project:
     def _path(self) -> Path:
         assert self.document is not None
         return self.document.path
-
-    def _place(self, name: str) -> Path:
-        path = Path(name).expanduser()
-        whole = path if path.is_absolute() else self.folder / path
-        return below_start(whole.parent) / whole.name
 
     def _new_autosave(self) -> Autosave | None:
         if not self._autosaves:

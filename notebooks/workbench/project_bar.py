@@ -11,6 +11,7 @@ import ipywidgets as widgets
 from ..files.outputs import OutputError
 from ..pages.blocks import fragment
 from .help_sheet import help_html
+from .log_panel import LogPanel
 from .project import SHIPPED, Project
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ class ProjectBar:
 
     def __init__(self, project: Project, view: DesignView) -> None:
         self.project, self.view = project, view
+        self._quiet = False
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
             name: self._button(name, hint, act)
@@ -33,6 +35,7 @@ class ProjectBar:
                 ("Save as", "under another name", lambda: self._toggle("save")),
                 ("Download", "text, rig and pictures", lambda: self._toggle("download")),
                 ("Icon", "new, duplicate, rename, delete", lambda: self._toggle("icon")),
+                ("Log", "a measured log over the curves", lambda: self._toggle("log")),
                 ("Undo", "Ctrl+Z in the text", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in the text", lambda: self._step("redo")),
                 ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
@@ -43,13 +46,15 @@ class ProjectBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel(), "icon": self._icon_panel()}
+        self.log = LogPanel(view, project.place, self._safely, self.say)
+        self._panels["log"] = self.log.box
         self.links = widgets.HTML()
         self._panels["download"] = self.links
         self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon")]
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon", "Log")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
@@ -105,7 +110,17 @@ class ProjectBar:
 
         self.view.take_rig(Rig.load(name))
 
+    def show_rig(self) -> None:
+        """Show which rig is used, after something else than this bar chose it."""
+        self._quiet = True
+        try:
+            self._offer_rigs()
+        finally:
+            self._quiet = False
+
     def _take_rig(self, name: str) -> None:
+        if self._quiet:
+            return
         path = self.project.folder / name
         self.take_rig(str(path) if name.endswith(".toml") else name)
         self.say("")
@@ -240,6 +255,8 @@ class ProjectBar:
             self.name.value = self.project.name if self.project.name.endswith(".cue") else f"{self.project.name}.cue"
         elif name == "icon":
             self._about()
+        elif name == "log":
+            self.log.renew()
         elif name == "download":
             self._offer_downloads()
         self.panel.children = () if name is None else (self._panels[name],)

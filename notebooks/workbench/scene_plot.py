@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from .scene import Drawing, Scene
+    from ..timeline.scene import Drawing, Scene
 
 _COLOURS = {"cold": COOL, "warm": WARM}
 _STYLES = {"onset": ":", "felt peak": "--", "physical peak": "-"}
@@ -25,7 +25,7 @@ def scene_figure(scene: Scene) -> Figure:
     A scene without a drawing gives a figure that says why. Nothing is shown.
 
     >>> from thermicon.circuit import Rig
-    >>> from thermicon.notebooks.workbench.scene import scene
+    >>> from thermicon.notebooks.timeline.scene import scene
     >>> scene_figure(scene("cue 1; icon dip { cool by 6 at 3 °C/s }", Rig.load("thenar"))).get_suptitle().splitlines()
     ['GREY  safety not judged: the text has errors', 'line 1: missing unit: this number has no unit']
     """

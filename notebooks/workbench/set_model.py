@@ -12,12 +12,15 @@ import numpy as np
 from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
 from ..files.cues import MOST_ICONS
-from .frames import CanvasFrame, traces_of
+from ..timeline.frames import CanvasFrame, traces_of
+from ..timeline.overlaid import STYLES, series_of, values_on
+from ..timeline.terms import terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
     from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
+    from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
 QUICK, WELL = (6, 0), (200, 128)
@@ -65,8 +68,11 @@ def rank_set(
     choosing: Selection | None = None,
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
+    goal: Goal | None = None,
 ) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
+
+    A ``goal`` about a share of people is judged with draws of the parameters only.
 
     >>> from thermicon.circuit import Rig
     >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s; return at 2 K/s }; icon glow { pulse warm by 3 K for 2 s }"
@@ -80,7 +86,10 @@ def rank_set(
     reading = read_text(text)
     if (why := why_not(reading)) is not None or reading.icons is None:
         raise ValueError(why)
-    made = rank(reading.icons, rig, people=people, parameters=parameters, choosing=choosing, progress=progress)
+    judged = goal if goal is None or parameters or not goal.single_people else None
+    made = rank(
+        reading.icons, rig, people=people, parameters=parameters, choosing=choosing, goal=judged, progress=progress
+    )
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     return RankedSet(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))
@@ -115,9 +124,9 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
         "labels": distinct(labels),
         "matrices": [
             {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": highest,
-             "text": "0.0"},
+             "text": "0.0", "terms": terms_of("d′")},
             {"key": "confusion", "label": "answered", "buffer": 1, "unit": "", "low": 0,
-             "high": 1, "text": "0%"},
+             "high": 1, "text": "0%", "terms": terms_of("confusion matrix")},
         ],
         "picked": None if picked is None else [labels.index(name) for name in picked],
         "ms": made.ms,
@@ -136,15 +145,14 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     panels = []
     for key, title, height in PANELS:
         series = []
-        for part, name, (dash, width) in zip(parts, names, STYLES, strict=False):
-            values = _values(part, key, clock)
-            if values is None:
-                continue
-            buffers.append(values)
-            role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
-            series.append({"key": f"{key} {name}", "label": name, "buffer": len(buffers) - 1, "role": role,
-                           "dash": dash, "width": width, "step": False})  # fmt: skip
-        panels.append({"key": key, "label": title, "height": height, "series": series})
+        for part, name, style in zip(parts, names, STYLES, strict=False):
+            values = values_on(part, "temperature" if key == "skin" else "sensation", key, clock)
+            if values is not None:
+                role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
+                series.append(series_of(f"{key} {name}", name, values, role, style, buffers))
+        felt = key != "skin"
+        about = {"digits": 1 if felt else 2, "terms": terms_of("d′", "sensation ψ") if felt else []}
+        panels.append({"key": key, "label": title, "height": height, "series": series, **about})
     meta = {
         "type": "frame",
         "view": "traces",
@@ -157,7 +165,6 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
 
 
 PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
-STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
 
 
 def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
@@ -171,18 +178,7 @@ def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
 def _traces(made: RankedSet, name: str) -> CanvasFrame:
     from thermicon.perception import Observer
 
-    from .scene import draw
+    from ..timeline.scene import draw
 
     icon = next(icon for icon in made.icons if icon.name == name)
     return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))
-
-
-def _values(part: CanvasFrame, key: str, clock: Any) -> Any:
-    """The values of a curve on another clock; NaN behind its end."""
-    panel = "temperature" if key == "skin" else "sensation"
-    for each in part.meta["panels"]:
-        for series in each["series"]:
-            if each["key"] == panel and series["key"] == key:
-                own = part.meta["time"]["dt"] * np.arange(part.meta["time"]["n"])
-                return np.interp(clock, own, part.buffers[series["buffer"]], right=np.nan).astype(np.float32)
-    return None

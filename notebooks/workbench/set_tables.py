@@ -10,10 +10,13 @@ from ..pages.blocks import fragment
 from ..text.choices import choice_lines
 from ..text.rank_notes import outside_lines, trouble_lines
 from ..text.rank_text import caveat, rival
+from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:
     from thermicon.perception import Edit, NoEdit, PairScore, Ranking
 
+TITLED = {"detected": "detected", "onset": "onset", "as": "felt", "correct": "proportion correct"}
+"""Columns with a word of the glossary as their tooltip."""
 ALONE = "The set has only one icon, so there are no distances to show."
 
 
@@ -41,9 +44,10 @@ def ranking_table(ranking: Ranking, result: dict[str, Any]) -> str:
 
     playable = [row(icon) for icon in order if icon["safe"] and icon["reachable"]]
     others = [row(icon) for icon in order if not (icon["safe"] and icon["reachable"])]
-    heading = "not safe, or not reached by this rig:" if playable else "none of the icons can be played:"
+    heading = "past a limit of this simulation, or not reached:" if playable else "none of the icons can be played:"
     columns = ("icon", "detected", "onset", "as", "correct", "confused with")
-    return fragment("ranking", columns, (1, 2, 4), playable, others, heading)
+    meanings = {column: meaning for column, (_, meaning) in zip(TITLED, terms_of(*TITLED.values()), strict=True)}
+    return fragment("ranking", columns, (1, 2, 4), playable, others, heading, meanings)
 
 
 def notes_html(result: dict[str, Any]) -> str:
@@ -77,7 +81,11 @@ def scores_html(ranking: Ranking) -> str:
 def caveat_html(result: dict[str, Any]) -> str:
     """What the numbers rest on, and that they are predictions."""
     meaning = "Confusion: share of trials in which the icon of a row is answered with that of a column."
-    return fragment("block", f"{meaning} {caveat(result)}", "th-soft")
+    past = sum(not icon["safe"] for icon in result["icons"])
+    limits = f"{past} past a hard limit" if past else "no icon past a hard limit"
+    simulated = f"Limits of this simulation: {limits}; export judges worst cases."
+    words = fragment("terms", terms_of("d′", "bits", "detected", "felt", "onset", "proportion correct", SIMULATED))
+    return fragment("block", f"{meaning} {caveat(result)} {simulated}", "th-soft") + words
 
 
 def pair_html(pair: PairScore) -> str:

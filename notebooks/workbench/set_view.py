@@ -14,6 +14,7 @@ from ..pages.blocks import fragment
 from ..text.choices import NAMES
 from .background import BackgroundWorker, Job
 from .design_view import SideCanvas
+from .goal_field import GoalField
 from .live_view import LiveView
 from .set_model import (
     QUICK,
@@ -39,13 +40,14 @@ from .set_tables import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Edit, NoEdit, PerceptualMap
+    from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
     from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
-SetRequest = tuple[str, "Rig", "Selection | None"]
-"""Text, rig, and the choice of a few icons, if any."""
+SetRequest = tuple[str, "Rig", "Selection | None", "Goal | None"]
+"""Text, rig, the choice of a few icons, if any, and the goal, if any."""
 SHARES = 10
 SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
 WIDE, BESIDE = "1 1 500px", 6
@@ -88,7 +90,9 @@ class SetView(LiveView[SetRequest]):
         self.take.tooltip = "take the other icons out of the text, as one step that can be undone"
         self.take.on_click(lambda _: self._safely(self.keep_chosen))
         top = _row(said["scores"], said["status"]).add_class("thermicon-top")
-        table = widgets.VBox([said["table"], _row(self.count, self.objective, self.take), said["choice"]])
+        self.goal = GoalField(lambda: self._safely(lambda: self.renew(0.0)))
+        choosing = _row(self.count, self.objective, self.take)
+        table = widgets.VBox([said["table"], choosing, said["choice"], self.goal.box])
         self._table = table.add_class("thermicon-side")
         self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
         overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
@@ -118,7 +122,8 @@ class SetView(LiveView[SetRequest]):
 
     def _job(self, request: SetRequest) -> Callable[[Job], None]:
         quick = self.made is None or request[:2] != self._source()
-        self._say("ranking …" if quick or not request[2] else "choosing …")
+        doing = "choosing" if request[2] else "judging the goal" if request[3] else "ranking"
+        self._say("ranking …" if quick else f"{doing} …")
         return lambda job: self._rank(job, request, quick)
 
     def _show_finished(self) -> None:
@@ -176,10 +181,10 @@ class SetView(LiveView[SetRequest]):
 
     def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
-        text, rig, choosing = request
+        text, rig, choosing, goal = request
         if quick:
             reference = None if self.made is None else self.made.map
-            first = rank_set(text, rig, *QUICK, None, reference, job.go_on)
+            first = rank_set(text, rig, *QUICK, None, reference, job.go_on, goal)
             job.on_page(lambda: self._show(first, request, False))
         reference = None if self.made is None else self.made.map
         reported = [0]
@@ -193,7 +198,7 @@ class SetView(LiveView[SetRequest]):
                 status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
                 job.on_page(lambda: self._say(status))
 
-        well = rank_set(text, rig, *WELL, choosing, reference, progress)
+        well = rank_set(text, rig, *WELL, choosing, reference, progress, goal)
         job.on_page(lambda: self._show(well, request, True))
 
     def _failed(self, message: str) -> None:
@@ -227,6 +232,7 @@ class SetView(LiveView[SetRequest]):
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
+        self.goal.show(ranking.goal)
         self.take.layout.display = "none" if ranking.chosen is None else ""
         people = f"{ranking.people} people"
         self._say(f"{people}" if well else f"preliminary: {people}; refining …")
@@ -270,7 +276,7 @@ class SetView(LiveView[SetRequest]):
         self.pick(*pair)
 
     def _request(self) -> SetRequest:
-        return self.design.text, self.design.rig, self._choosing()
+        return self.design.text, self.design.rig, self._choosing(), self.goal.goal
 
     def _choosing(self) -> Selection | None:
         from thermicon.perception.selection.request import Selection

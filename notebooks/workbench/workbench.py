@@ -10,6 +10,7 @@ from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_librar
 
 from ..files.cue_document import open_document
 from ..files.start_folder import started_rig, started_with
+from ..timeline.measured import read_measured
 from .design_model import DesignModel
 from .project import Project
 
@@ -18,12 +19,15 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig, Trace
     from thermicon.perception import Percept, Ranking
+    from thermicon.perception.selection.goal import Goal
 
+    from ..timeline.scene import Scene
     from .design_view import DesignView
     from .export_view import ExportView
     from .project_bar import ProjectBar
-    from .scene import Scene
     from .set_view import SetView
+    from .versions_model import Version
+    from .versions_view import VersionsView
 
 View = Literal["design", "set", "export"]
 VIEWS: tuple[View, ...] = ("design", "set", "export")
@@ -44,6 +48,10 @@ class Workbench:
         Name of the icon that is shown first; None: the first.
     folder
         Folder into which drives are exported.
+    goal
+        What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
+    measured
+        Path of a measured log that is laid over the curves of the design view, aligned with the icon.
 
     Raises
     ------
@@ -52,7 +60,8 @@ class Workbench:
     RigError
         For a rig that does not exist, or cannot be.
     ValueError
-        For an icon that the set does not have.
+        For an icon that the set does not have, a goal that cannot be read (`GoalError`), and a log that cannot be
+        used (`LogError`).
 
     Examples
     --------
@@ -69,6 +78,8 @@ class Workbench:
         rig: str | Path | Rig | None = None,
         icon: str | None = None,
         folder: str | Path = "drives",
+        goal: Goal | str | None = None,
+        measured: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
 
@@ -77,15 +88,19 @@ class Workbench:
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
         self._design = DesignModel(text_of(source), loaded, icon)
         self._check_icon(icon)
+        if measured is not None:
+            self._design.take_log(read_measured(Path(measured)))
         document = open_document(found) if (found := file_of(source)) is not None else None
         name = document.path.name if document is not None else _name_of(source)
         self.project = Project(self._design, document, name, autosaves=has_kernel())
         self._folder = Path(folder)
+        self._goal = _goal_text(goal)
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
+        self.versions_view: VersionsView | None = None
         self.bar: ProjectBar | None = None
 
     def _check_icon(self, icon: str | None) -> None:
@@ -190,26 +205,31 @@ class Workbench:
         from .export_view import ExportView
         from .project_bar import ProjectBar
         from .set_view import SetView
+        from .versions_view import VersionsView
 
         style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
         self.set_view = ranked = SetView(self._design, design.show_text)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = ProjectBar(self.project, design)
+        self.versions_view = versions = VersionsView(self._design, self._take_version, lambda: ranked.goal.goal)
         ranked.keep = self.project.keep_only
+        ranked.goal.text.value = self._goal
         design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}
-        tabs = widgets.Tab([design.box, ranked.box, export.box], titles=("Design", "Set", "Export"))
+        views = [design.box, ranked.box, export.box, versions.box]
+        tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 
         def shown(change: Any) -> None:
             bar.beside(design=change["new"] == 0)
             ranked.shown = change["new"] == 1
             export.shown = change["new"] == 2
-            for view in (ranked, export):
+            versions.shown = change["new"] == 3
+            for view in (ranked, export, versions):
                 view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
             bar.renew()
-            for view in (ranked, export):
+            for view in (ranked, export, versions):
                 view.renew()
 
         if has_kernel():
@@ -218,6 +238,16 @@ class Workbench:
         self._design.on_change(changed)
         self.tabs = tabs
         return widgets.VBox([style, bar.box, tabs]).add_class("thermicon")
+
+    def _take_version(self, version: Version) -> None:
+        """Put a version into the editor, as a step that can be undone, and show it on its rig."""
+        assert self.design_view is not None
+        assert self.bar is not None
+        if (version.nominal, dict(version.values)) != (self._design.nominal, self._design.values):
+            self.design_view.take_rig(version.nominal, version.values)
+            self.bar.show_rig()
+        self.design_view.show_text(version.text, version.icon)
+        self.bar.renew()
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
@@ -256,6 +286,15 @@ def text_of(source: str | Path | Icon | IconSet | None) -> str:
     if data is None:
         return str(read_cue(source))  # JSON, or the reason why there is no such file
     return data.decode("utf-8-sig", errors="replace")
+
+
+def _goal_text(goal: Goal | str | None) -> str:
+    """A goal in canonical form, or as it was typed if that can be read; raises GoalError otherwise."""
+    from thermicon.perception.selection.goal import Goal
+
+    if goal is None:
+        return ""
+    return Goal.parse(goal).text if isinstance(goal, str) else goal.text
 
 
 def file_of(source: object) -> Path | None:

@@ -212,6 +212,24 @@ def test_a_drag_sends_the_newest_place_and_ends_once(drawn: Bench) -> None:
     assert drags[-1]["t"] == newest["t"]
 
 
+def test_the_target_follows_the_pointer_before_the_kernel_answers(drawn: Bench) -> None:
+    page = drawn.page
+    guide = "() => document.querySelector('.tm-timeline').timeline.handles.guide({ t: 0, y: 32 })"
+    page.mouse.move(*drawn.corner(2.0, 30.0))
+    page.mouse.down()
+    assert page.evaluate(guide) == [[0, 32], [2, 30], [4, 28]]
+    before = page.locator(".tm-over").evaluate(INKED)
+    page.mouse.move(*drawn.corner(3.0, 31.0))
+    start, corner, after = page.evaluate(guide)
+    assert start == [0, 32]
+    assert corner == pytest.approx([3.0, 31.0], abs=0.05)
+    assert after == pytest.approx([5.0, 28.0], abs=0.05), "what comes after moves on by as much"
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert page.locator(".tm-over").evaluate(INKED) > before - 200
+    page.mouse.up()
+    assert page.evaluate(guide) == []
+
+
 def test_axes_stand_still_under_the_pointer(drawn: Bench) -> None:
     page = drawn.page
     before = page.evaluate(NUMBERS)

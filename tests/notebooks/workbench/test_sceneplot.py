@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.workbench.scene import scene
+from thermicon.notebooks.timeline.scene import scene
 from thermicon.notebooks.workbench.scene_plot import MOST_LINES, scene_figure, title_lines
 
 DIP = "cue 1\nicon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }\n"

@@ -146,6 +146,44 @@ def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
     assert not bench.stale
 
 
+def test_a_goal_is_judged_with_what_is_predicted_how_far_that_is_and_what_binds() -> None:
+    bench = Bench(THREE)
+    assert "goal" not in bench.said("status")
+    bench.view.goal.text.value = "correct >= 99.9 % for 95 % of people, time <= 90 s, count 3"
+    assert "judged after refining" in bench.view.goal.verdict.value
+    bench.wait()
+    html = bench.view.goal.verdict.value
+    assert "goal not met" in html
+    assert "points short" in html
+    assert "near and nearer are confused most" in html
+    assert "s to spare" in html
+    bench.view.goal.text.value = "count 3"
+    bench.wait()
+    assert "goal met" in bench.view.goal.verdict.value
+    assert bench.view.worker.busy is False
+
+
+@pytest.mark.parametrize(
+    ("typed", "message"),
+    [
+        ("corect >= 90 %", "there is no quantity"),
+        ("correct >= 90 %, correct >= 80 %", "are about the same: keep one of them"),
+        ("time >= 10 s", "is wanted"),
+        ("correct >= 90 % for", "ends too early"),
+        ("<script>", "cannot be read"),
+    ],
+)
+def test_a_goal_that_cannot_be_read_says_why_and_judges_nothing(ranked: Bench, typed: str, message: str) -> None:
+    ranked.view.goal.text.value = typed
+    assert message in ranked.view.goal.said.value
+    assert "<script>" not in ranked.view.goal.said.value
+    assert ranked.view.goal.text.value == typed
+    assert ranked.view.goal.verdict.value == ""
+    assert "24 people" in ranked.said("status")
+    ranked.view.goal.text.value = ""
+    assert ranked.view.goal.said.value == ""
+
+
 def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
     design = DesignModel(TWO, Rig.load("thenar"))
     view = SetView(design, lambda text: None)
@@ -166,7 +204,7 @@ def test_a_set_of_one_says_that_it_is_never_confused() -> None:
 def test_what_cannot_be_played_stands_apart_with_its_reason() -> None:
     bench = Bench(THREE.replace("cool by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
     table = bench.said("table")
-    assert table.index("not reached by this rig") < table.index("far")
+    assert table.index("past a limit of this simulation, or not reached:") < table.index("far")
     assert "far is not reached" in bench.said("notes")
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ icon glow {
 }
 """
 MOST_MS = 30.0
+"""CPU time of a frame in the kernel, whatever else the machine does."""
 Send = Callable[..., dict[str, Any]]
 
 
@@ -155,8 +157,9 @@ def test_a_mistake_of_the_program_is_a_note_and_the_page_goes_on(send: Send, mon
 def test_a_burst_of_a_slider_answers_each_value_quickly(bench: Workbench) -> None:
     spent = []
     for step in range(40):
-        answer = turned(bench, "contact", 1.0 + 0.05 * step)
-        spent.append(answer["ms"])
+        began = time.process_time()
+        turned(bench, "contact", 1.0 + 0.05 * step)
+        spent.append(1e3 * (time.process_time() - began))
     assert bench.rig.contact.resistance_m2K_per_W == pytest.approx(
         2.95 * Rig.load("thenar").contact.resistance_m2K_per_W
     )
@@ -202,8 +205,9 @@ def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
     spent = []
     for step in range(60):
         text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")
+        began = time.process_time()
         assert design.receive({"type": "text", "seq": step, "text": text}).meta["seq"] == step
-        spent.append(design.last_ms)
+        spent.append(1e3 * (time.process_time() - began))
     assert sorted(spent)[len(spent) // 2] < MOST_MS
 
 

@@ -235,7 +235,7 @@ def _badge(verdict: SafetyVerdict) -> Badge:
     side = "above" if first.upper else "below"
     text = (
         f"{'not safe' if first.severity == 'hard' else 'caution'}: {first.quantity} {number(first.value, 2)}{unit} at "
-        f"{first.time_s:.2f} s, {side} the {first.severity} limit of {number(first.limit, 2)}{unit}"
+        f"{first.time_s:.2f} s, {side} the {first.severity} limit of {number(first.limit, 2)}{unit}, in this simulation"
     )
     colour: Colour = "red" if verdict.colour == "red" else "amber"
     return Badge(colour, text, tuple(map(str, findings)))

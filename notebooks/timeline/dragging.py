@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 ROUNDS = 12
 CLOSE = 1e-9
+NEAR = 1e-6
+"""A corner is where it is dragged to within so many s, °C or A: far below any number that is written."""
 _WORDS = {"cool": "warm", "warm": "cool"}
 
 
@@ -128,7 +130,7 @@ class _Move:
                 to_level - place[0] if grip.level else 0.0,
                 to_time - place[1] if grip.time else 0.0,
             ]
-            if max(map(abs, miss)) < CLOSE:
+            if max(map(abs, miss)) < NEAR:
                 break
             old, before = (size, took), place
             size, took = size + miss[0] / slope[0], took + miss[1] / slope[1]

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import read_text
-from thermicon.notebooks.workbench.dragging import Dragged, drag
-from thermicon.notebooks.workbench.handles import MOST_HANDLES, handles_of
+from thermicon.notebooks.timeline.dragging import Dragged, drag
+from thermicon.notebooks.timeline.handles import MOST_HANDLES, handles_of
 
 HEAD = "cue 1\n"
 

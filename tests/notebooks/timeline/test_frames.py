@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.workbench.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
-from thermicon.notebooks.workbench.scene import Scene, scene
+from thermicon.notebooks.timeline.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
+from thermicon.notebooks.timeline.scene import Scene, scene
 
 ROLES = {"ink", "grey", "cool", "warm", "target", "limit"}
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
@@ -25,6 +25,9 @@ def rig() -> Rig:
     return Rig.load("thenar")
 
 
+PANEL = {"key", "label", "height", "series", "bands", "levels", "spans", "marks", "digits", "terms"}
+
+
 def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
     """Hold a frame against the contract; its panels by key."""
     meta = json.loads(json.dumps(frame.meta, allow_nan=False))
@@ -37,7 +40,7 @@ def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
         assert buffer.flags.c_contiguous
         assert buffer.shape == (meta["time"]["n"],)
     for panel in panels.values():
-        assert set(panel) == {"key", "label", "height", "series", "bands", "levels", "spans", "marks"}
+        assert set(panel) == PANEL
         for part in (*panel["series"], *panel["bands"], *panel["levels"], *panel["marks"]):
             assert part["role"] in ROLES
     return panels
@@ -61,6 +64,7 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     assert [handle["t"] for handle in meta["handles"]] == [2.0, 6.0, 8.0]
     assert meta["handles"][0] == {
         "t": 2.0, "y": 26.0, "panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 3,
+            "straight": True,
     }  # fmt: skip
     assert [band["role"] for band in panels["temperature"]["bands"]] == ["cool", "warm"]
     assert [level["at"] for level in panels["current"]["levels"]] == [1.5, -1.5]

@@ -14,8 +14,13 @@ import numpy as np
 
 from thermicon.icons.number_text import signed
 
+from .measured import DOTS, Measured, beside, shown_curves
+from .terms import terms_of
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from thermicon.circuit.fitting.overlay import Overlay
 
     from ..editing.cue_check import Trouble
     from .scene import Drawing, Scene
@@ -24,6 +29,8 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 3_000
 """Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
+DRAGGED_POINTS = 750
+"""The same while a corner is dragged, which is more than the plot has pixels; the last frame of a drag is whole."""
 DASHED, DASH_DOT = (7, 3), (8, 3, 2, 3)
 Role = str
 
@@ -71,11 +78,13 @@ class _Curves:
         }
 
 
-def frame_of(scene: Scene) -> CanvasFrame:
+def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_POINTS) -> CanvasFrame:
     """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
 
+    A ``measured`` log lies over the curves, and ``meta["measured"]`` says how far apart they are.
+
     >>> from thermicon.circuit import Rig
-    >>> from thermicon.notebooks.workbench.scene import scene
+    >>> from thermicon.notebooks.timeline.scene import scene
     >>> made = frame_of(scene("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar")))
     >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
     (['temperature', 'heat', 'current', 'sensation'], 1401, 11)
@@ -84,26 +93,33 @@ def frame_of(scene: Scene) -> CanvasFrame:
     if scene.drawing is None:
         empty = {"time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": [], "handles": []}
         return CanvasFrame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
-    drawn = traces_of(scene.drawing)
+    laid = None
+    if measured is not None:
+        laid, meta["measured"] = beside(measured, scene.drawing.trace)
+    drawn = traces_of(scene.drawing, laid, points)
     handles = [] if scene.stale else _handles(scene.drawing)
     return CanvasFrame(
         {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
     )
 
 
-def traces_of(drawing: Drawing) -> CanvasFrame:
-    """Return clock, panels and arrays of one drawing: what the design view and an overlay have in common."""
+def traces_of(drawing: Drawing, laid: Overlay | None = None, points: int = MOST_POINTS) -> CanvasFrame:
+    """Return clock, panels and arrays of one drawing, with what was measured beside it."""
     from thermicon.perception.sensation.percept import uniform_clock
 
     trace, percept = drawing.trace, drawing.percept
     dt, rows = uniform_clock(trace.time_s)
-    every = max(1, math.ceil((rows - 1) / MOST_POINTS))
+    every = max(1, math.ceil((rows - 1) / points))
     curves = _Curves(slice(0, rows, every))
     panels = [_temperature(drawing, curves), _heat(drawing, curves)]
     if drawing.trace.has_current:  # a thermode has none
         panels.append(_current(drawing, curves))
     if len(percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
+    for panel, key, label, role, values in () if laid is None else shown_curves(laid, trace.time_s):
+        for each in panels:
+            if each["key"] == panel:
+                each["series"].append(curves.take(key, label, values, role, *DOTS))
     time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
     return CanvasFrame({"time": time, "panels": panels}, tuple(curves.buffers))
 
@@ -188,7 +204,8 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     ]
     # A label that changed with the icon would have the page build its panels anew.
     label = f"sensation (d′) of the nominal person, {percept.clock} clock"
-    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False)
+    terms = ("d′", "sensation ψ", "onset", "clock", "nominal person")
+    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False, digits=1, terms=terms)
 
 
 def _panel(
@@ -202,6 +219,8 @@ def _panel(
     levels: Sequence[dict[str, Any]] = (),
     marks: Sequence[dict[str, Any]] = (),
     missed: bool = True,
+    digits: int = 2,
+    terms: Sequence[str] = (),
 ) -> dict[str, Any]:
     spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
     return {
@@ -213,6 +232,8 @@ def _panel(
         "levels": list(levels),
         "spans": spans,
         "marks": list(marks),
+        "digits": digits,
+        "terms": terms_of(*terms),
     }
 
 
@@ -227,6 +248,7 @@ def _handles(drawing: Drawing) -> list[dict[str, Any]]:
             "moves_level": handle.moves_level,
             "why": handle.why,
             "line": handle.line,
+            "straight": handle.straight,
         }
         for handle in drawing.handles
     ]

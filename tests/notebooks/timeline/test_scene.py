@@ -10,10 +10,10 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended, read_text
-from thermicon.notebooks.workbench.event_times import missed_spans
+from thermicon.notebooks.timeline.event_times import missed_spans
+from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
+from thermicon.notebooks.timeline.threshold_band import threshold_change_K
 from thermicon.notebooks.workbench.knobs import aged
-from thermicon.notebooks.workbench.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.notebooks.workbench.threshold_band import threshold_change_K
 from thermicon.perception import Observer, perceive
 from thermicon.perception.sensation.features import passing_s
 from thermicon.perception.sensation.receptors import receptor_drive

@@ -1,0 +1,85 @@
+(() => {
+const CUE_WORDS = {"keywords": ["at", "baseline", "by", "change", "control", "cool", "cue", "current", "cut", "display", "doi", "down", "every", "for", "hold", "icon", "in", "least", "licence", "means", "most", "over", "play", "pulse", "repeat", "rest", "return", "sawtooth", "set", "sine", "site", "skin", "square", "starting", "step", "tags", "to", "total", "triangle", "up", "warm"], "units": ["degC/min", "degC/s", "°C/min", "K/min", "degC", "mA/s", "°C/s", "A/s", "K/s", "min", "mA", "ms", "°C", "A", "K", "s"]};
+const NUMBER_PATTERN = "[+\\-\\u2212]?(?:[0-9]+(?:\\.(?!\\.)[0-9]*)?|\\.[0-9]+)(?:[eE][+\\-\\u2212]?[0-9]+)?";
+const UNIT_PATTERN = CUE_WORDS.units.map((unit) => unit.replace(/[/.*+?^$|()[\]{}]/g, "\\$&")).join("|");
+const CUE_TOKEN = new RegExp(
+  `(?<comment>#.*)|(?<string>"(?:[^"\\\\]|\\\\.)*"?)|(?<number>${NUMBER_PATTERN})|(?<unit>(?:${UNIT_PATTERN})(?![\\p{L}\\p{N}/-]))` +
+    `|(?<word>\\p{L}[\\p{L}\\p{N}-]*(?:_\\p{L}[\\p{L}\\p{N}-]*=-?[0-9.]+)*)|(?<mark>\\.\\.|[{}();,\\[\\]])`,
+  "gu",
+);
+const CUE_KEYWORDS = new Set(CUE_WORDS.keywords);
+const NAME_AFTER = new Set(["icon", "play", "set", "site", "control"]);
+
+/** Pieces of a line in order, {text, kind, from}; what no piece covers is blank or unknown. */
+function cueTokens(line) {
+  const pieces = [];
+  let before = "";
+  for (const match of line.matchAll(CUE_TOKEN)) {
+    const [kind, text] = Object.entries(match.groups).find(([, part]) => part !== undefined);
+    pieces.push({ text, kind: kindOf(kind, text, before), from: match.index });
+    before = kind === "number" ? "number" : text;
+  }
+  return pieces;
+}
+
+function kindOf(kind, text, before) {
+  if (kind === "unit") return before === "number" || before === "]" ? "unit" : CUE_KEYWORDS.has(text) ? "keyword" : "plain";
+  if (kind !== "word") return kind;
+  if (NAME_AFTER.has(before)) return "name";
+  return CUE_KEYWORDS.has(text) ? "keyword" : "plain";
+}
+// What JupyterLab loads to colour `.cue` files: a container as its loader expects one, so that no build step is needed.
+// CodeMirror and the registries are JupyterLab's own, from the modules that it shares.
+
+const MIME = "text/x-thermicon-cue";
+const TAGS = { comment: "comment", string: "string", number: "number", unit: "unit", keyword: "keyword", name: "def" };
+let shared = {};
+
+/** The newest of the versions that JupyterLab shares of a package, or null. */
+async function packageOf(name) {
+  const versions = Object.entries(shared[name] ?? {});
+  const newest = versions.sort(([a], [b]) => a.localeCompare(b, undefined, { numeric: true })).at(-1);
+  return newest ? (await newest[1].get())() : null;
+}
+
+/** One line at a time, by the tokens of the workbench. */
+const PARSER = {
+  name: "thermicon-cue",
+  token(stream) {
+    const piece = cueTokens(stream.string).find(({ from, text }) => from + text.length > stream.pos);
+    if (!piece || piece.from > stream.pos) {
+      stream.pos = piece ? piece.from : stream.string.length;
+      return null;
+    }
+    stream.pos = piece.from + piece.text.length;
+    return TAGS[piece.kind] ?? null;
+  },
+  languageData: { commentTokens: { line: "#" }, closeBrackets: { brackets: ["{", "[", '"'] } },
+};
+
+async function plugin() {
+  const [codemirror, language] = [await packageOf("@jupyterlab/codemirror"), await packageOf("@codemirror/language")];
+  return {
+    id: "thermicon-cue:plugin",
+    autoStart: true,
+    optional: codemirror ? [codemirror.IEditorLanguageRegistry] : [],
+    activate: (app, languages) => {
+      if (!languages || !language) return; // a page without an editor
+      app.docRegistry?.addFileType({
+        name: "thermicon-cue", displayName: "Cue File", extensions: [".cue"], mimeTypes: [MIME], fileFormat: "text", contentType: "file",
+      });
+      const load = async () => new language.LanguageSupport(language.StreamLanguage.define(PARSER));
+      languages.addLanguage({ name: "thermicon-cue", displayName: "Cue", mime: MIME, extensions: ["cue"], load });
+    },
+  };
+}
+
+const ENTRY = {
+  init: (scope) => void (shared = scope),
+  get: async () => {
+    const made = { __esModule: true, default: await plugin() };
+    return () => made;
+  },
+};
+(globalThis._JUPYTERLAB ??= {})["thermicon-cue"] = ENTRY;
+})();

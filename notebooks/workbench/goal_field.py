@@ -1,0 +1,105 @@
+"""The goal of a set, as a line to type into: read by the grammar of ``--goal``, judged with each ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import ipywidgets as widgets
+
+from ..pages.blocks import fragment
+from ..text.choices import goal_value
+
+if TYPE_CHECKING:
+    from thermicon.perception.ranking.goal_result import GoalPartResult, GoalResult
+    from thermicon.perception.selection.goal import Goal
+
+PATTERNS = (
+    "correct >= 90 % for 95 % of people, safety green",
+    "correct >= 85 %, detected >= 95 %, time <= 60 s",
+    "bits >= 2, onset <= 1.5 s",
+    "count 6, energy <= 50 J",
+)
+"""Goals that are offered to begin with, and show what a goal is made of."""
+SAFETY = "safety"
+HELP = (
+    "parts joined by commas: correct, detected, bits, d_prime, time, energy, onset or count with a comparison and a "
+    "number, such as 'time <= 10 s'; 'safety green'; 'for 95 % of people' after correct, detected or bits"
+)
+
+
+class GoalField:
+    """A goal as it is typed: ``goal`` is the one that was read last, None for none; ``box`` holds its widgets.
+
+    ``changed`` is called after each new goal. A text that cannot be read is kept, with what is wrong with it below,
+    and nothing is judged by it.
+
+    >>> field = GoalField(lambda: None)
+    >>> field.text.value = "corect >= 90 %"
+    >>> field.goal is None, "there is no quantity" in field.said.value
+    (True, True)
+    """
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
+        self.goal: Goal | None = None
+        self.text = widgets.Combobox(
+            placeholder=PATTERNS[0],
+            options=PATTERNS,
+            description="goal",
+            continuous_update=False,
+            layout={"width": "100%", "max_width": "466px"},
+        )
+        self.text.style.description_width = "auto"
+        self.text.tooltip = HELP
+        self.said, self.verdict = widgets.HTML(), widgets.HTML()
+        self.text.observe(lambda change: self._read(change["new"]), "value")
+        self.box = widgets.VBox([self.text, self.said, self.verdict]).add_class("thermicon-goal")
+
+    def show(self, reached: GoalResult | None) -> None:
+        """Show how far the goal is reached by the ranking on the page; None: nothing was judged yet."""
+        if reached is not None and reached.goal == self.goal:
+            self.verdict.value = verdict_html(reached)
+        elif self.goal is None:
+            self.verdict.value = ""
+        else:
+            waits = "judged after refining: a share of people takes draws of the model too"
+            self.verdict.value = fragment("block", f"{self.goal.text}: {waits}", "th-soft")
+
+    def _read(self, typed: str) -> None:
+        from thermicon.perception.selection.goal import Goal, GoalError
+
+        try:
+            self.goal = Goal.parse(typed) if typed.strip() else None
+            self.said.value = ""
+        except GoalError as wrong:
+            self.goal = None
+            self.said.value = fragment("block", str(wrong), "th-note th-bad")
+        self.show(None)
+        self._changed()
+
+
+def verdict_html(reached: GoalResult) -> str:
+    """Return whether a goal is met, and of every part the prediction, how far it is from the limit, and what binds."""
+    word, kind = ("goal met", "th-good") if reached.met else ("goal not met", "th-bad")
+    return fragment("goal", word, kind, [goal_row(part) for part in reached.parts])
+
+
+def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
+    """Mark, text, prediction, distance and obstacle of one part of a goal.
+
+    >>> from thermicon.perception.ranking.goal_result import GoalPartResult
+    >>> from thermicon.perception.selection.goal import Goal
+    >>> goal_row(GoalPartResult(Goal.parse("time <= 10 s").parts[0], 12.5, False, "dip takes most"))
+    ('✗', 'time <= 10 s', '12.5 s', '2.5 s over', 'dip takes most')
+    """
+    plain = part.to_dict()
+    value, gap = goal_value(plain)
+    words = "to spare" if part.met else "over" if "<=" in part.part.text else "short"
+    if part.part.quantity == SAFETY:
+        distance = "in this simulation; export judges worst cases"
+    elif part.value == part.part.limit:
+        distance = "exactly"
+    else:
+        distance = f"{gap} {words}" if gap else ""
+    return "✓" if part.met else "✗", part.part.text, value, distance, part.binding
