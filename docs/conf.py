@@ -6,10 +6,10 @@ from importlib.metadata import distribution
 from importlib.metadata import version as version_of
 from typing import Any
 
-from cell_lexer import CellLexer
+from sphinx.errors import ConfigError
 
 if not tags.has("staged"):  # type: ignore[name-defined]  # noqa: F821  # a name that Sphinx gives to this file
-    raise SystemExit("The site is built from README, docs/ and notebooks/ together; run: python docs/builder")
+    raise ConfigError("The site is built from README, docs/ and notebooks/ together; run: python docs/builder")
 
 project, author, copyright = "thermicon", "The thermicon authors", "The thermicon authors"
 release = version_of("thermicon")
@@ -84,4 +84,6 @@ html_sidebars = {"index": [], "gallery": []}
 
 def setup(app: Any) -> None:
     """Give Sphinx the colours of notebook cells."""
+    from cell_lexer import CellLexer
+
     app.add_lexer("notebook-cell", CellLexer)

@@ -118,3 +118,14 @@ def test_every_parameter_of_a_layer_is_used_and_only_ascii_is_written() -> None:
 def test_a_thermode_has_no_circuit() -> None:
     with pytest.raises(RigError, match="thermode"):
         subcircuits(Rig.load("tcs2"))
+
+
+def test_the_schematic_of_the_page_runs(tool: Tool, tmp_path: Path) -> None:
+    """What docs/how-to/netlist.md shows: a light touch leaves the skin warmer than a firm one."""
+    page = Path(__file__).resolve().parents[3] / "docs" / "how-to" / "netlist.md"
+    shown = re.search(r"```\n(\* The display under.*?\n\.end\n)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    assert shown is not None
+    (tmp_path / "thenar.lib").write_text(subcircuits(Rig.load("thenar")), encoding="ascii")
+    control = ".control\nset wr_singlescale\nrun\nwrdata out.txt v(skin_light) v(skin_firm)\nquit 0\n.endc\n.end\n"
+    table = run(shown[1].replace(".end\n", control), tool("ngspice"), tmp_path)
+    assert table[-1, 1] > table[-1, 2] + 0.5
