@@ -24,6 +24,7 @@ extensions = [
 ]
 root_doc = "index"
 language = "en"
+smartquotes = False  # two hyphens are an option, not a dash
 
 # Pages link to each other by file and heading, as a code host does.
 myst_enable_extensions = ["colon_fence"]
@@ -43,6 +44,7 @@ autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 maximum_signature_line_length = 90
+toc_object_entries = False  # each name has a heading already
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
 default_role = "literal"  # numpydoc puts names of parameters between single backticks
@@ -79,11 +81,12 @@ html_theme_options = {
     "pygments_light_style": "a11y-high-contrast-light",
     "pygments_dark_style": "a11y-high-contrast-dark",
 }
+html_context = {"default_mode": "auto"}
 html_sidebars = {"index": [], "gallery": []}
 
 
 def setup(app: Any) -> None:
-    """Give Sphinx the colours of notebook cells."""
+    """Give Sphinx the colours of notebook cells, under the name that a kernel gives their language."""
     from cell_lexer import CellLexer
 
-    app.add_lexer("notebook-cell", CellLexer)
+    app.add_lexer("ipython3", CellLexer)

@@ -18,7 +18,7 @@ MAGIC = re.compile(r"%%?\w+[^\n]*\n?")
 class CellLexer(Lexer):
     """Lexer of a cell that may begin with a magic line."""
 
-    name, aliases = "Notebook cell", ("notebook-cell",)
+    name, aliases = "Notebook cell", ("ipython3",)
 
     def get_tokens_unprocessed(self, text: str) -> Iterator[tuple[int, _TokenType, str]]:
         """Yield place, kind and text of each token."""

@@ -34,7 +34,8 @@ def _command(command: Any, name: str, above: Any) -> Iterator[str]:
         record = parameter.get_help_record(context)
         if record is not None and parameter.name != "help":
             names, meaning = record
-            yield f"| `{names.strip()}` | {plain(meaning)} |"
+            names = parameter.metavar if parameter.param_type_name == "argument" else names.strip()
+            yield f"| `{names}` | {plain(meaning)} |"
     yield ""
 
 

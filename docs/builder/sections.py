@@ -80,7 +80,9 @@ def front_page(sections: list[Section]) -> str:
         f":link: {section.index.removesuffix('.md')}\n:link-type: doc\n\n{section.about}\n:::\n"
         for section in sections
     )
-    return WELCOME.replace("CARDS", cards) + _toctree([section.index.removesuffix(".md") for section in sections])
+    return WELCOME.replace("CARDS", cards) + _toctree(
+        [f"{section.title} <{section.index.removesuffix('.md')}>" for section in sections]
+    )
 
 
 def with_toctree(text: str, index: str, sections: list[Section]) -> str:

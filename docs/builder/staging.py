@@ -109,10 +109,12 @@ class Staging:
 
 
 def _notebook(path: Path) -> str:
-    """A tutorial in its own colours; links to notebooks that are not on the site are plain words."""
+    """A tutorial whose links to notebooks that are not on the site are plain words."""
     shown = "|".join(other.name for other in notebooks())
-    text = re.sub(rf"\[([^]\[]+)\]\((?!{shown})[\w]+\.ipynb\)", r"\1", path.read_text(encoding="utf-8"))
-    return text.replace('"language_info": {', '"language_info": {"pygments_lexer": "notebook-cell",', 1)
+    text = path.read_text(encoding="utf-8").replace(
+        '"language_info": {', '"language_info": {"pygments_lexer": "ipython3",', 1
+    )
+    return re.sub(rf"\[([^]\[]+)\]\((?!{shown})[\w]+\.ipynb\)", r"\1", text)
 
 
 def _coloured(fence: str) -> str:
