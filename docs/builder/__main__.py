@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -25,16 +26,18 @@ def build(folder: Path, *, execute: bool) -> int:
     sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
     from sphinx.cmd.build import build_main
 
-    digest = code_digest()[:16]
+    drawn_by = Path(__file__).with_name("gallery.py").read_bytes()
+    code = code_digest()
+    gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
     site = Staging(folder / "source", {})
-    gallery = Gallery(folder / "predicted" / digest if execute else None, site.write)
+    gallery = Gallery(folder / "predicted" / gallery_digest[:16] if execute else None, site.write)
     site.slots.update(
         {"options of commands": command_options, "python names": python_index, "gallery": gallery.markdown}
     )
     site.stage(dict(python_pages()))
     settings = {
         "nb_execution_mode": "cache" if execute else "off",
-        "nb_execution_cache_path": str(folder / "executed" / digest),
+        "nb_execution_cache_path": str(folder / "executed" / code[:16]),
     }
     overrides = [word for key, value in settings.items() for word in ("-D", f"{key}={value}")]
     words = ["-b", "html", "-q", "-W", "--keep-going", "-t", "staged", "-c", str(ROOT / "docs"), *overrides]

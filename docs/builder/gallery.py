@@ -48,7 +48,7 @@ class Gallery:
             _predict(icons, kept)
         said = json.loads((kept / "said.json").read_text(encoding="utf-8"))
         self.write(f"gallery/{name}-confusions.png", (kept / "confusions.png").read_bytes())
-        yield f"{said['which']}: {said['correct']:.0%} correct, {said['bits']:.2f} bits, predicted for {PEOPLE}"
+        yield f"{said['which']}: {said['correct'] * 100:.0f} % correct, {said['bits']:.2f} bits, predicted for {PEOPLE}"
         yield f"virtual people on the rig `{RIG}`.\n"
         yield f"![Predicted confusions of {name}](gallery/{name}-confusions.png)\n"
         yield "| icon | means | correct | most confused with |\n|---|---|---|---|"
@@ -66,8 +66,8 @@ def _predict(icons: IconSet, kept: Path) -> None:
 
     rig, which, members = Rig.load(RIG), "All icons", list(icons)
     if len(members) > MOST_ICONS:
-        step = len(members) // SAMPLED
-        icons = replace(icons, entries=tuple(members[step // 2 :: step][:SAMPLED]))
+        step = len(members) // SAMPLED  # and one more, so that every parameter varies
+        icons = replace(icons, entries=tuple(members[step // 2 :: step + 1][:SAMPLED]))
         which = f"{SAMPLED} of its {len(members)} icons, evenly spaced over the families"
     ranking = rank(icons, rig, people=PEOPLE, parameters=0)
     result = ranking.to_dict()["set"]
@@ -84,7 +84,7 @@ def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
     for name, row in zip(labels, confusion["probability"], strict=True):
         share, other = max((share, label) for label, share in zip(labels, row, strict=True) if label != name)
         meaning = icons[name].metadata.means or ""
-        yield f"| `{name}` | {meaning} | {row[labels.index(name)]:.0%} | `{other}` {share:.0%} |"
+        yield f"| `{name}` | {meaning} | {row[labels.index(name)] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
 
 
 def _text_of(name: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-MORE = {"start/index": ("five-minutes", "[0-9]*"), "contribute/index": ("contributing", "changelog")}
+MORE = {"start/index": ("Five minutes <five-minutes>", "[0-9]*"), "contribute/index": ("contributing", "changelog")}
 """Pages of a section that docs/README.md does not list: they stand elsewhere in the repository."""
 
 ICONS = {

@@ -100,7 +100,7 @@ class Staging:
             if not (ROOT / target).is_file():
                 raise StagingError(f"{where}: the link to {link['target']} leads to no file")
             there = staged(target)
-            if target.suffix != ".md":
+            if target.suffix not in {".md", ".ipynb"}:
                 self.write(str(there), (ROOT / target).read_bytes())
             nearer = os.path.relpath(there, here.parent).replace(os.sep, "/")
             return f"{link['before']}{nearer}{link['anchor'] or ''}"
