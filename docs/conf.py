@@ -27,7 +27,7 @@ language = "en"
 smartquotes = False  # two hyphens are an option, not a dash
 
 # Pages link to each other by file and heading, as a code host does.
-myst_enable_extensions = ["colon_fence"]
+myst_enable_extensions = ["colon_fence", "tasklist"]
 myst_heading_anchors = 4
 myst_fence_as_directive = {"math"}
 myst_links_external_new_tab = True
