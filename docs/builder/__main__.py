@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import shutil
 import sys
 from pathlib import Path
 from types import ModuleType
@@ -41,8 +42,16 @@ def build(folder: Path, *, execute: bool) -> int:
     }
     overrides = [word for key, value in settings.items() for word in ("-D", f"{key}={value}")]
     words = ["-b", "html", "-q", "-W", "--keep-going", "-t", "staged", "-c", str(ROOT / "docs"), *overrides]
-    words += ["-d", str(folder / "doctrees"), str(folder / "source"), str(folder / "html")]
+    doctrees = html_folder(folder, execute=execute).with_name("doctrees") / code[:16]
+    for stale in set(doctrees.parent.glob("*")) - {doctrees}:  # what Sphinx has read shows another state of the program
+        shutil.rmtree(stale)
+    words += ["-d", str(doctrees), str(folder / "source"), str(html_folder(folder, execute=execute))]
     return build_main(words)
+
+
+def html_folder(folder: Path, *, execute: bool) -> Path:
+    """Return where the pages are written: those without outputs are kept away from the others."""
+    return folder / "html" if execute else folder / "plain" / "html"
 
 
 def main() -> int:
@@ -53,7 +62,7 @@ def main() -> int:
     chosen = parser.parse_args()
     code = build(chosen.output.resolve(), execute=not chosen.no_execute)
     if code == 0:
-        sys.stderr.write(f"wrote {chosen.output / 'html' / 'index.html'}\n")
+        sys.stderr.write(f"wrote {html_folder(chosen.output, execute=not chosen.no_execute) / 'index.html'}\n")
     return code
 
 
