@@ -13,7 +13,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 BOUND = re.compile(r"(?P<name>[\w.-]+)(?:\[[\w,.-]+\])?>=(?P<version>\d[\w.]*)(?:,<[\d.]+)?$")
-ONLY_FOR_TESTS = {"test"}
+ONLY_FOR_TESTS = {"test", "docs"}
 
 
 def pins(pyproject: str) -> Iterator[str]:

@@ -28,6 +28,8 @@ def folders_of(changed: str) -> Iterator[str]:
     parts = path.parts[1:] if path.parts[0] == "tests" else path.parts
     if changed.startswith(SHOWN_IN_A_BROWSER):
         yield "tests/browser"
+    if changed.startswith("docs/"):
+        yield "tests/docs"
     if changed.startswith(SHOWN_IN_PAGES):
         yield "tests/test_readme.py"
     if parts[0] in PACKAGES and len(parts) > 1:

@@ -21,6 +21,7 @@ from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
 from thermicon.notebooks.study.keys_table import keys_table
+from thermicon.notebooks.text.schema_table import device_keys_table, device_quantities_table, rig_keys_table
 from thermicon.perception.posterior import posterior_tables as tables
 from thermicon.perception.validation.memory_forms import forms_table
 
@@ -33,7 +34,14 @@ NAMES = [page.relative_to(ROOT).as_posix() for page in PAGES]
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
-TABLES = {**tables.TABLES, "forms of memory": forms_table, "study keys": keys_table}
+TABLES = {
+    **tables.TABLES,
+    "forms of memory": forms_table,
+    "study keys": keys_table,
+    "rig keys": rig_keys_table,
+    "device keys": device_keys_table,
+    "device quantities": device_quantities_table,
+}
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""
 

@@ -1,14 +1,20 @@
-"""The pages of docs/reference/ list every rig key, command and column of a trace."""
+"""The pages of docs/reference/ list every rig key, command, column of a trace, key of a ranking and of a sidecar."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
 from typer.main import get_command
 
+from tests.circuit.verdicts import GreenVerdict
+from thermicon.circuit import Device, Rig, pack, prepare
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.rig.rigfile import rig_keys
 from thermicon.circuit.solver.trace import COLUMNS
+from thermicon.icons import load_library
 from thermicon.notebooks.cli.main import app
+from thermicon.perception import rank
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs" / "reference"
 
@@ -31,3 +37,26 @@ def code_words(page: str) -> set[str]:
 def test_a_page_lists_every_name(page: str, names: set[str]) -> None:
     assert names
     assert names - code_words(page) == set()
+
+
+def keys_of(document: object, names: tuple[str, ...]) -> set[str]:
+    """Keys of a JSON document, of some of its objects, and of the first entry of some of its lists."""
+    assert isinstance(document, dict)
+    inner = [document[name][0] if isinstance(document[name], list) else document[name] for name in names]
+    return set(document).union(*inner)
+
+
+def test_the_page_lists_every_key_of_a_ranking() -> None:
+    icons, rig = load_library("wave-shapes"), Rig.load("thenar")
+    ranking = rank(icons, rig, people=3, parameters=0, workers=1).to_dict()
+    listed = code_words("files.md")
+    assert keys_of(ranking, ("icons", "pairs", "set", "task", "confusion")) - listed == set()
+    assert "proportion_correct" in listed
+
+
+def test_the_page_lists_every_key_of_a_sidecar() -> None:
+    form = load_format("csv")
+    icon = load_library("six-icons")["double-dip"]
+    ready = prepare(icon, Rig.load("thenar"), Device.load("dac-16"), form, gate=GreenVerdict)
+    sidecar = json.loads(pack([ready], form)["double-dip.json"])
+    assert keys_of(sidecar, ("columns", "events", "safety", "hardware_must_prevent")) - code_words("files.md") == set()

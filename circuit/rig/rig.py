@@ -222,7 +222,7 @@ class Rig:
 
     @property
     def blood_C(self) -> float:
-        """Temperature of deep tissue and blood in °C, from the heat balanceing skin unless the rig fixes it."""
+        """Temperature of deep tissue and blood in °C, from the heat balance of resting skin unless the rig fixes it."""
         return self.deep_C
 
     @property

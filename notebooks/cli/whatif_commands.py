@@ -12,7 +12,15 @@ import typer
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.cues import only, read_set, warn_of_site
-from ..files.outputs import NETLIST_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
+from ..files.outputs import (
+    NETLIST_SUFFIXES,
+    STDOUT,
+    SUBCIRCUIT_SUFFIXES,
+    check_folder,
+    check_output,
+    check_separate,
+    complete_or_absent,
+)
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
 from ..text.options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
 from ..text.varied import AGE
@@ -25,7 +33,6 @@ MOST_STEPS = 100_000
 
 
 def netlist_command(
-    file: OneFile,
     output: Annotated[
         Path,
         typer.Option(
@@ -36,6 +43,10 @@ def netlist_command(
             help="Write the netlist to a .cir, .net or .sp file, or - for stdout.",
         ),
     ],
+    file: Annotated[
+        str | None,
+        typer.Argument(metavar="FILE", help="A cue file, or the name of a shipped set; none with --subckt."),
+    ] = None,
     icon: IconName = None,
     tail: Tail = 0.0,
     record: Annotated[
@@ -44,13 +55,37 @@ def netlist_command(
             "--ngspice", metavar="OUT.txt", help="Make ngspice -b write all probes to this file; not for LTspice."
         ),
     ] = None,
+    subckt: Annotated[
+        bool, typer.Option("--subckt", help="Write module and skin of the rig as .subckt with parameters, no drive.")
+    ] = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
     """Write driver, module and skin as a SPICE netlist for LTspice and ngspice, driven by the current of an icon."""
     check_changes(changes or [])
     check_tail(tail)
-    netlist_file(file, icon, load_rig(rig, changes or []), tail, output, record)
+    if subckt:
+        if file is not None or icon is not None or record is not None or tail:
+            raise usage("writes the rig alone: leave out FILE, --icon, --tail and --ngspice", "--subckt")
+        subcircuit_file(load_rig(rig, changes or []), output)
+    elif file is None:
+        raise usage("is missing: name a cue file or a shipped set, or add --subckt for the rig alone", "FILE")
+    else:
+        netlist_file(file, icon, load_rig(rig, changes or []), tail, output, record)
+
+
+def subcircuit_file(rig: Rig, output: Path) -> None:
+    """Write module and skin of a rig as a library of subcircuits."""
+    from thermicon.circuit.delivery.subcircuit import subcircuits
+
+    check_output(output, SUBCIRCUIT_SUFFIXES, "a library of subcircuits")
+    text = subcircuits(rig)
+    if output == STDOUT:
+        typer.echo(text, nl=False)
+        return
+    with complete_or_absent(output) as draft:
+        draft.write_text(text, encoding="ascii", newline="\n")
+    note(f"wrote {output}: thermicon_module and thermicon_skin; in a schematic, .include {output.name}")
 
 
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path, record: str | None) -> None:

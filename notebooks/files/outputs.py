@@ -16,6 +16,7 @@ from .drafts import draft_of
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
 NETLIST_SUFFIXES = (".cir", ".net", ".sp")
+SUBCIRCUIT_SUFFIXES = (".lib", ".sub", *NETLIST_SUFFIXES)
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
 
 

@@ -18,8 +18,8 @@ class Edit:
     icon, old, new
         Name of the icon, and the line before and after.
     cost, added_s, d_prime
-        |log| of the ratio of the new number to the old, plus a tenth for every second that it adds; how much longer the
-        icon becomes, s; median d′ of the pair after the edit.
+        `|log|` of the ratio of the new number to the old, plus a tenth for every second that it adds; how much longer
+        the icon becomes, s; median d′ of the pair after the edit.
     edited
         The icon after it.
     recounted

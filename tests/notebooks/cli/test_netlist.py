@@ -81,3 +81,31 @@ def test_ngspice_plays_what_simulate_writes(
         assert np.abs(played - ours[column]).max() < 2e-3, column
     behind = np.interp(ours["time_s"][:-1] + 1.01e-6, theirs["/time"], theirs["/v(plus)"])
     assert np.abs(behind - ours["voltage_V"][:-1]).max() < 1e-3
+
+
+def test_a_library_of_subcircuits_holds_the_rig_alone(cli: Cli, tmp_path: Path) -> None:
+    out = tmp_path / "thenar.lib"
+    said = cli("netlist", "--subckt", "--set", "contact.area_cm2=4", "-o", out)
+    assert (said.exit_code, said.stdout) == (0, "")
+    assert said.stderr == f"wrote {out}: thermicon_module and thermicon_skin; in a schematic, .include thenar.lib\n"
+    text = out.read_text(encoding="ascii")
+    assert "+ area_cm2=4.0\n" in text
+    assert ".tran" not in text
+    assert cli("netlist", "--subckt", "--set", "contact.area_cm2=4", "-o", "-").stdout == text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--subckt", "six-icons", "-o", "a.lib"), "'--subckt': writes the rig alone: leave out FILE, --icon, --tail"),
+        (("-o", "a.cir"), "'FILE': is missing: name a cue file or a shipped set, or add --subckt"),
+    ],
+)
+def test_a_file_is_played_and_subcircuits_play_nothing(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    said = cli("netlist", *arguments)
+    assert said.exit_code == 2
+    assert words in " ".join(said.stderr.split())
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,70 @@
+"""Build the docs site: ``python docs/builder`` writes it to build/site/html; no warning is allowed.
+
+``--no-execute`` leaves out what computes for minutes: outputs of the tutorials and predictions in the gallery.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import shutil
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import cast
+
+from command_options import command_options
+from gallery import Gallery
+from python_names import python_index, python_pages
+from staging import ROOT, Staging
+
+from thermicon.perception.ranking.batches import code_digest
+
+
+def build(folder: Path, *, execute: bool) -> int:
+    """Stage the sources below a folder, build the site there, and return Sphinx's exit code."""
+    # The check of IRIs in jsonschema, which no page needs, builds 38 grammars on import: seconds of every build.
+    sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
+    from sphinx.cmd.build import build_main
+
+    drawn_by = Path(__file__).with_name("gallery.py").read_bytes()
+    code = code_digest()
+    gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
+    site = Staging(folder / "source", {})
+    gallery = Gallery(folder / "predicted" / gallery_digest[:16] if execute else None, site.write)
+    site.slots.update(
+        {"options of commands": command_options, "python names": python_index, "gallery": gallery.markdown}
+    )
+    site.stage(dict(python_pages()))
+    settings = {
+        "nb_execution_mode": "cache" if execute else "off",
+        "nb_execution_cache_path": str(folder / "executed" / code[:16]),
+    }
+    overrides = [word for key, value in settings.items() for word in ("-D", f"{key}={value}")]
+    words = ["-b", "html", "-q", "-W", "--keep-going", "-t", "staged", "-c", str(ROOT / "docs"), *overrides]
+    doctrees = html_folder(folder, execute=execute).with_name("doctrees") / code[:16]
+    for stale in set(doctrees.parent.glob("*")) - {doctrees}:  # what Sphinx has read shows another state of the program
+        shutil.rmtree(stale)
+    words += ["-d", str(doctrees), str(folder / "source"), str(html_folder(folder, execute=execute))]
+    return build_main(words)
+
+
+def html_folder(folder: Path, *, execute: bool) -> Path:
+    """Return where the pages are written: those without outputs are kept away from the others."""
+    return folder / "html" if execute else folder / "plain" / "html"
+
+
+def main() -> int:
+    """Read the command line and build."""
+    parser = argparse.ArgumentParser(prog="python docs/builder", description="Build the docs site.")
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "build" / "site", help="folder for the site")
+    parser.add_argument("--no-execute", action="store_true", help="leave out tutorials' outputs and predictions")
+    chosen = parser.parse_args()
+    code = build(chosen.output.resolve(), execute=not chosen.no_execute)
+    if code == 0:
+        sys.stderr.write(f"wrote {html_folder(chosen.output, execute=not chosen.no_execute) / 'index.html'}\n")
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,99 @@
+"""The gallery: every shipped set with its picture, its predicted confusions and its cue text."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from thermicon.icons import IconSet
+    from thermicon.perception import Ranking
+
+RIG = "thenar"
+PEOPLE = 50
+MOST_ICONS, SAMPLED = 12, 6
+"""Of more icons than the first number no picture shows the confusions: so many of them stand for all."""
+DPI = 110
+
+
+class Gallery:
+    """Markdown and pictures of the shipped sets; predictions are kept in a folder, or left out where there is none."""
+
+    def __init__(self, kept: Path | None, write: Callable[[str, bytes], None]) -> None:
+        self.kept, self.write = kept, write
+
+    def markdown(self) -> str:
+        """Return the sets one after the other, and write their pictures."""
+        from thermicon.icons import library
+
+        shipped = library()
+        return "\n".join("\n".join(self._set(entry, shipped[entry.name])) for entry in shipped.entries)
+
+    def _set(self, entry: Any, icons: IconSet) -> Iterator[str]:
+        yield f"## {entry.name}\n\n{icons.title}. {entry.count} icon{'s' * (entry.count != 1)}; {entry.source}.\n"
+        self.write(f"gallery/{entry.name}.png", _png(icons.plot().figure))
+        yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
+        if self.kept is not None and entry.count > 1:
+            yield from self._predicted(entry.name, icons, self.kept / entry.name)
+        yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
+        yield f"```cue\n{_text_of(entry.name)}```\n:::\n"
+
+    def _predicted(self, name: str, icons: IconSet, kept: Path) -> Iterator[str]:
+        if not (kept / "confusions.png").is_file():
+            _predict(icons, kept)
+        said = json.loads((kept / "said.json").read_text(encoding="utf-8"))
+        self.write(f"gallery/{name}-confusions.png", (kept / "confusions.png").read_bytes())
+        yield f"{said['which']}: {said['correct'] * 100:.0f} % correct, {said['bits']:.2f} bits, predicted for {PEOPLE}"
+        yield f"virtual people on the rig `{RIG}`.\n"
+        yield f"![Predicted confusions of {name}](gallery/{name}-confusions.png)\n"
+        yield "| icon | means | correct | most confused with |\n|---|---|---|---|"
+        yield from said["rows"]
+        yield ""
+
+
+def _predict(icons: IconSet, kept: Path) -> None:
+    """Rank a set, or some icons of a large one, and keep what the page shows of it."""
+    from dataclasses import replace
+
+    from thermicon.circuit import Rig
+    from thermicon.notebooks import set_figure
+    from thermicon.perception import rank
+
+    rig, which, members = Rig.load(RIG), "All icons", list(icons)
+    if len(members) > MOST_ICONS:
+        step = len(members) // SAMPLED  # and one more, so that every parameter varies
+        icons = replace(icons, entries=tuple(members[step // 2 :: step + 1][:SAMPLED]))
+        which = f"{SAMPLED} of its {len(members)} icons, evenly spaced over the families"
+    ranking = rank(icons, rig, people=PEOPLE, parameters=0)
+    result = ranking.to_dict()["set"]
+    kept.mkdir(parents=True, exist_ok=True)
+    said = {"which": which, "correct": result["proportion_correct"], "bits": result["information_bits"]}
+    said["rows"] = list(_rows(ranking, icons))
+    (kept / "said.json").write_text(json.dumps(said), encoding="utf-8")
+    (kept / "confusions.png").write_bytes(_png(set_figure(ranking)))
+
+
+def _rows(ranking: Ranking, icons: IconSet) -> Iterator[str]:
+    confusion = ranking.to_dict()["confusion"]
+    labels = confusion["labels"]
+    for name, row in zip(labels, confusion["probability"], strict=True):
+        share, other = max((share, label) for label, share in zip(labels, row, strict=True) if label != name)
+        meaning = icons[name].metadata.means or ""
+        yield f"| `{name}` | {meaning} | {row[labels.index(name)] * 100:.0f} % | `{other}` {share * 100:.0f} % |"
+
+
+def _text_of(name: str) -> str:
+    from importlib.resources import files
+
+    return (files("thermicon.icons") / "library" / f"{name}.cue").read_text(encoding="utf-8")
+
+
+def _png(figure: Figure | Any) -> bytes:
+    file = io.BytesIO()
+    figure.savefig(file, dpi=DPI, metadata={"Software": None})
+    return file.getvalue()

@@ -1,0 +1,53 @@
+"""Pages of the Python API: the public names of the four packages, from their docstrings."""
+
+from __future__ import annotations
+
+import inspect
+from collections import Counter
+from collections.abc import Iterator
+from importlib import import_module
+
+from command_options import plain
+
+PACKAGES = {
+    "icons": "cue text and builders to icons",
+    "circuit": "icons to drive current, temperatures and files for hardware",
+    "perception": "temperatures to sensations, confusions and rankings",
+    "notebooks": "figures and the workbench",
+}
+
+
+def python_pages() -> Iterator[tuple[str, str]]:
+    """Yield the page of each package, as name and Markdown."""
+    for package in PACKAGES:
+        yield f"reference/python-{package}.md", "\n".join(_page(package))
+
+
+def python_index() -> str:
+    """Return links to the pages of the four packages, and the toctree that holds them."""
+    lines = [f"- [`thermicon.{package}`](python-{package}.md): {what}" for package, what in PACKAGES.items()]
+    tree = ["```{toctree}", ":hidden:", "", *(f"python-{package}" for package in PACKAGES), "```"]
+    return "\n".join([*lines, "", *tree, ""])
+
+
+def _page(package: str) -> Iterator[str]:
+    module = import_module(f"thermicon.{package}")
+    yield f"# `thermicon.{package}`\n"
+    yield f"{(module.__doc__ or '').strip()}\n"
+    yield "| name | what it is |\n|---|---|"
+    seen: Counter[str] = Counter()
+    for name in module.__all__:
+        slug = name.lower() + (f"-{seen[name.lower()]}" if seen[name.lower()] else "")
+        seen[name.lower()] += 1
+        yield f"| [`{name}`](#{slug}) | {plain(_summary(getattr(module, name)))} |"
+    yield ""
+    for name in module.__all__:
+        value = getattr(module, name)
+        kind = "class" if isinstance(value, type) else "function" if callable(value) else "data"
+        kind = "exception" if isinstance(value, type) and issubclass(value, BaseException) else kind
+        members = "\n   :members:" if kind == "class" else ""
+        yield f"## `{name}`\n\n```{{eval-rst}}\n.. auto{kind}:: thermicon.{package}.{name}{members}\n```\n"
+
+
+def _summary(value: object) -> str:
+    return (inspect.getdoc(value) or "").partition("\n")[0] if callable(value) else ""

@@ -1,0 +1,164 @@
+"""The docs site: what it is built from, what the program adds, and that it builds without a warning."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path, PurePosixPath
+from types import ModuleType
+
+import pytest
+from typer.main import get_command
+
+from thermicon.notebooks.cli.main import app
+
+ROOT = Path(__file__).resolve().parents[2]
+BUILDER = ROOT / "docs" / "builder"
+SLOTS = ("options of commands", "python names", "gallery")
+FROM_ELSEWHERE = re.compile(r"""(?:<script[^>]+src|<link[^>]+href|<img[^>]+src)="(?:https?:)?//[^"]*""")
+"""A script, a style or a picture that a page would fetch from another host."""
+
+
+@pytest.fixture
+def builder(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
+    """The modules of docs/builder, which is a program and not a package."""
+    monkeypatch.syspath_prepend(str(BUILDER))
+    names = ("staging", "sections", "command_options", "python_names", "gallery")
+    return {name: __import__(name) for name in names}
+
+
+def staged(builder: dict[str, ModuleType], folder: Path) -> Path:
+    site = builder["staging"].Staging(folder, dict.fromkeys(SLOTS, lambda: "MADE"))
+    site.stage({})
+    return folder
+
+
+def test_every_page_and_tutorial_stands_on_the_site(builder: dict[str, ModuleType], tmp_path: Path) -> None:
+    folder, staging = staged(builder, tmp_path), builder["staging"]
+    for path in staging.pages():
+        assert (folder / staging.staged(PurePosixPath(path.relative_to(ROOT).as_posix()))).is_file(), path
+    assert [path.stem[:2] for path in sorted(folder.glob("start/*.ipynb"))] == list(staging.TUTORIALS)
+    assert len(staging.pages()) > 40
+    assert (folder / "images" / "workbench.png").is_file()
+    front = (folder / "index.md").read_text(encoding="utf-8")
+    assert front.count("{grid-item-card}") == 6
+    assert (folder / "how-to" / "index.md").read_text(encoding="utf-8").count("\nsimulate\n") == 1
+
+
+def test_links_lead_inside_the_site_and_cue_text_has_its_colours(
+    builder: dict[str, ModuleType], tmp_path: Path
+) -> None:
+    folder = staged(builder, tmp_path)
+    simulate = (folder / "how-to" / "simulate.md").read_text(encoding="utf-8")
+    assert "(../start/five-minutes.md#five-minutes-from-cue-to-drive)" in simulate
+    assert "```cue\ncue 1\n" in simulate
+    assert "(../images/cooling-step.png)" in simulate
+    for path in folder.rglob("*.md"):
+        prose = re.sub(r"^ *```.*?^ *```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+        for link in re.findall(r"\]\((?!\w+:)([^)\s#]+)", prose):
+            assert (path.parent / link).exists(), f"{path.name}: {link}"
+
+
+def test_a_slot_is_filled_and_its_stand_in_gone(builder: dict[str, ModuleType], tmp_path: Path) -> None:
+    page = (staged(builder, tmp_path) / "reference" / "options.md").read_text(encoding="utf-8")
+    assert "MADE" in page
+    assert "site is built" not in page
+
+
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ("[a](nowhere.md)", r"docs/x\.md: the link to nowhere\.md leads to no file"),
+        ("<!-- site: galery -->\n<!-- end of site -->\n", r"docs/x\.md: there is no slot 'galery', only gallery"),
+    ],
+)
+def test_a_page_that_cannot_be_staged_is_named(
+    builder: dict[str, ModuleType], tmp_path: Path, text: str, fault: str
+) -> None:
+    staging = builder["staging"]
+    site = staging.Staging(tmp_path, {"gallery": str})
+    with pytest.raises(staging.StagingError, match=fault):
+        site.filled(site.linked(text, PurePosixPath("docs/x.md"), PurePosixPath("x.md")), PurePosixPath("docs/x.md"))
+
+
+def test_a_page_that_did_not_change_keeps_its_time(builder: dict[str, ModuleType], tmp_path: Path) -> None:
+    page = staged(builder, tmp_path) / "how-to" / "simulate.md"
+    os.utime(page, (1, 1))
+    (tmp_path / "left-over.md").write_text("x", encoding="utf-8")
+    staged(builder, tmp_path)
+    assert page.stat().st_mtime == 1
+    assert not (tmp_path / "left-over.md").exists()
+
+
+def test_every_option_of_every_command_is_listed(builder: dict[str, ModuleType]) -> None:
+    page = builder["command_options"].command_options()
+    for name, command in getattr(get_command(app), "commands", {}).items():
+        assert f"### `{name}`\n" in page
+        for parameter in command.params:
+            if parameter.name != "help":
+                assert (parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.metavar) in page
+    assert "[default: 200]" in page.replace("\\", "")
+
+
+def test_every_public_name_has_its_entry(builder: dict[str, ModuleType]) -> None:
+    from thermicon import circuit, icons, notebooks, perception
+
+    pages = dict(builder["python_names"].python_pages())
+    for package in (icons, circuit, perception, notebooks):
+        page = pages[f"reference/python-{package.__name__.rpartition('.')[2]}.md"]
+        for name in package.__all__:
+            assert f":: {package.__name__}.{name}\n" in page, name
+
+
+def test_a_gallery_without_predictions_shows_every_set(builder: dict[str, ModuleType]) -> None:
+    from thermicon.icons import library_names
+
+    written: dict[str, bytes] = {}
+    page = builder["gallery"].Gallery(None, written.__setitem__).markdown()
+    for name in library_names():
+        assert f"## {name}\n" in page
+        assert written[f"gallery/{name}.png"].startswith(b"\x89PNG")
+    assert page.count("```cue\ncue 1\n") == len(list(library_names()))
+
+
+def test_sphinx_alone_names_the_command(tmp_path: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "docs", str(tmp_path)], cwd=ROOT, capture_output=True, text=True
+    )
+    assert run.returncode != 0
+    assert "python docs/builder" in run.stderr
+
+
+def build(folder: Path, *options: str) -> str:
+    """Build the site, and return what was reported."""
+    run = subprocess.run(
+        [sys.executable, "docs/builder", "-o", str(folder), *options], cwd=ROOT, capture_output=True, text=True
+    )
+    assert run.returncode == 0, run.stderr
+    assert "WARNING: " not in run.stderr.replace("[IPKernelApp] WARNING | ", ""), run.stderr
+    return run.stderr
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_warning_and_fetches_nothing(tmp_path: Path) -> None:
+    build(tmp_path, "--no-execute")
+    html = tmp_path / "plain" / "html"
+    for page in ("index", "search", "gallery", "how-to/netlist", "reference/python-circuit", "contribute/device"):
+        assert (html / f"{page}.html").is_file()
+    for path in html.rglob("*.html"):
+        assert FROM_ELSEWHERE.findall(path.read_text(encoding="utf-8")) == [], path
+
+
+@pytest.mark.slow
+def test_tutorials_and_predictions_are_made_once(tmp_path: Path) -> None:
+    build(tmp_path)
+    first = {path: path.stat().st_mtime_ns for path in (tmp_path / "predicted").rglob("*.png")}
+    page = (tmp_path / "html" / "start" / "03_six_icons_ranked.html").read_text(encoding="utf-8")
+    assert page.count("<img") > 3
+    assert "d′" in page
+    gallery = (tmp_path / "html" / "gallery.html").read_text(encoding="utf-8")
+    assert gallery.count("-confusions.png") >= 6
+    assert "Executing notebook" not in build(tmp_path)
+    assert {path: path.stat().st_mtime_ns for path in (tmp_path / "predicted").rglob("*.png")} == first
