@@ -20,7 +20,10 @@ LADDER = {
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
         *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),
     ),
-    "notebooks": ("doctor", "text", "files", "figures", "pages", "study", "bench", "cli", "editing", "timeline", "workbench"),
+    "notebooks": (
+        *("doctor", "text", "files", "figures", "pages", "study", "bench", "cli"),
+        *("editing", "timeline", "workbench"),
+    ),
 }
 """Rooms from the bottom up. Modules that stand in no room are below all of them, the front door is above."""
 MOST_MODULES = 25

@@ -60,7 +60,9 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
                 f"warning: the overview of {icon.name} is overview-{stem}.{kind}, since some disks take {icon.name} "
                 f"and {names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
             )
-        draw_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.{kind}", rig.changes, look)
+        draw_overview(
+            simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.{kind}", rig.changes, look=look
+        )
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
     note(f"wrote {', '.join(f'{name}.{kind}' for name in drawn)} and {count} into {folder}")
 
