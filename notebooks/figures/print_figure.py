@@ -69,7 +69,7 @@ def restyle(figure: Figure, look: Look) -> None:
     >>> figure = Figure(figsize=(8, 6))
     >>> _ = figure.subplots(2, 1)
     >>> restyle(figure, Look("paper", 85.0))
-    >>> [round(inches * 25.4, 1) for inches in figure.get_size_inches()][0], figure.axes[1].get_title(loc="left")
+    >>> round(float(figure.get_figwidth()) * 25.4, 1), figure.axes[1].get_title(loc="left")
     (85.0, 'b')
     """
     if not look.title:

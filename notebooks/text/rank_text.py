@@ -26,7 +26,7 @@ DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
     "channel what most of them go by, from 50 % on."
 )
-NO_INTERVAL = "     no interval for a new laboratory: that takes --parameters 2 or more and an observer with draws"
+NO_INTERVAL = "     no interval for a new laboratory: --parameters 2 or more and an observer with draws give one"
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
@@ -117,9 +117,7 @@ def number_lines(result: dict[str, Any]) -> list[str]:
         people = whole["new_laboratory_people"]
         lines.append(f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}")
     elif not result["chosen"]:
-        lines.append(
-            "     no interval for a new laboratory: it takes --parameters 2 or more and an observer with draws"
-        )
+        lines.append(NO_INTERVAL)
     if bits is not None:
         least, most = whole["information_bits_interval"]
         plugin = whole["information_bits_plugin"]

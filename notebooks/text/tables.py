@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 
 
 WIDEST = 1000
+VALUE = re.compile(r"(?<=\d) (?=(?:%|°C|°C/s|K|K/s|m?s|mm|cm²|A|J|bits|bits/s)(?![\w/]))")
+"""The space between a number and its unit."""
+KEPT = "\u00a0"
 
 
 def show(*parts: Table | str) -> None:
@@ -49,15 +53,18 @@ def rendered(part: Table | str, width: int, is_terminal: bool = True) -> list[st
 
 
 def hanging(text: str, width: int) -> str:
-    """Wrap a line so that what follows stands under its text, behind its indent and bullet.
+    """Wrap a line so that what follows stands under its text, behind its indent and bullet; units stay with numbers.
 
-    >>> print(hanging("  - one two three four", 14))
-      - one two
-        three four
+    >>> print(hanging("  - one two three 4 K", 19))
+      - one two three
+        4 K
     """
     bare = text.lstrip()
     indent = " " * (len(text) - len(bare) + (2 if bare.startswith("- ") else 0))
-    return textwrap.fill(text, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
+    filled = textwrap.fill(
+        VALUE.sub(KEPT, text), width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
+    return filled.replace(KEPT, " ")
 
 
 def table(*columns: str, numbers: Sequence[str] = (), names: Sequence[str] = ()) -> Table:

@@ -102,6 +102,8 @@ class Ranking:
         Whether the set, or what was chosen of it, meets the goal; None: no goal.
     warnings
         What was said of files and rig before.
+    assumptions
+        What the result depends on most, where people and draws show it.
 
     Raises
     ------

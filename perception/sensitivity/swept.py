@@ -64,8 +64,8 @@ def rig_under(rig: Rig, changes: Mapping[str, float | str]) -> Rig:
     """The rig under changed conditions: keys of its file, and the site, whose skin, contact and blood it takes.
 
     >>> from thermicon.circuit import Rig
-    >>> rig_under(Rig.load("thenar"), {"site": "fingertip"}).contact.area_m2
-    0.00015
+    >>> round(rig_under(Rig.load("thenar"), {"site": "fingertip"}).contact.area_m2 * 1e4, 6)
+    1.5
     """
     from thermicon.circuit import Rig
 

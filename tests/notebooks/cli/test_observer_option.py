@@ -37,7 +37,8 @@ def test_records_have_no_interval_and_say_so(cli: Cli, two: Path, records: Path)
     said = cli("rank", two, "--people", 4, "--observer", records)
     assert said.exit_code == 0, said.stderr
     assert "lab.toml has no posterior draws" in said.stderr
-    assert "new laboratory" not in said.stdout
+    assert "no interval for a new laboratory" in " ".join(said.stdout.split())
+    assert "in a new laboratory" not in said.stdout
     said = cli("sensitivity", two, "--observer", records)
     assert (said.exit_code, said.stdout) == (1, "")
     assert "lab.toml: a sensitivity is read from draws of a posterior" in " ".join(said.stderr.split())

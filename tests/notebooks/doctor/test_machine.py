@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from importlib.metadata import Distribution
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -102,7 +103,7 @@ def test_a_shipped_file_that_is_missing_is_a_fault(tmp_path: Path, monkeypatch: 
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: thermicon\nVersion: 9\n", encoding="utf-8")
     names = ("thermicon/icons/data/a.toml", "thermicon/icons/b.cue")
     (info / "RECORD").write_text("".join(f"{name},,\n" for name in names), encoding="utf-8")
-    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr("importlib.metadata.distribution", lambda _: Distribution.at(info))
     (tmp_path / "thermicon/icons").mkdir(parents=True)
     (tmp_path / names[1]).touch()
     (finding,) = machine.check_data()
