@@ -211,6 +211,7 @@ def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
             private_folder(open_ / "mine")
 
 
+@pytest.mark.slow
 def test_a_private_file_is_whole_or_absent(tmp_path: Path) -> None:
     write_private(tmp_path / "a", b"x")
     assert read_private(tmp_path / "a") == b"x"

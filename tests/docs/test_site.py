@@ -112,6 +112,7 @@ def test_every_public_name_has_its_entry(builder: dict[str, ModuleType]) -> None
             assert f":: {package.__name__}.{name}\n" in page, name
 
 
+@pytest.mark.slow
 def test_a_gallery_without_predictions_shows_every_set(builder: dict[str, ModuleType]) -> None:
     from thermicon.icons import library_names
 

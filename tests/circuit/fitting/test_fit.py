@@ -65,6 +65,7 @@ def test_ambient_and_rest_cannot_be_separated_and_both_are_named(log: Log, thena
     holds(found, {KEYS[0]: TRUTH[KEYS[0]]})
 
 
+@pytest.mark.slow
 def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -> None:
     log = synthetic_log(true_rig, seed=5, rate_Hz=20.0, columns=["display_C"])
     hot = "module.hot_plate_J_per_K"
@@ -85,6 +86,7 @@ def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -
     holds(better, {hot: 2.6})
 
 
+@pytest.mark.slow
 def test_two_clocks_one_shifted_and_one_that_drifts(true_rig: Rig, thenar: Rig, log: Log) -> None:
     columns = dict(log.columns)
     drive = Log.of(
@@ -130,6 +132,7 @@ def test_a_sensor_that_is_off_is_fitted_and_named(log: Log, thenar: Rig) -> None
     assert found.notes[0].endswith("sensors are assumed to be; calibrate it")
 
 
+@pytest.mark.slow
 def test_voltage_or_command_can_drive_in_place_of_the_current(true_rig: Rig, thenar: Rig, log: Log) -> None:
     columns = {"time_s": log.time_s, **dict(log.columns)}
     clean = synthetic_log(true_rig, seed=3, rate_Hz=20.0, noise_V=0.0)
@@ -149,6 +152,7 @@ def test_voltage_or_command_can_drive_in_place_of_the_current(true_rig: Rig, the
     assert gained.rig.uncertainty.gain_relative == 0.05
 
 
+@pytest.mark.slow
 def test_a_start_that_is_not_steady(true_rig: Rig, thenar: Rig) -> None:
     log = synthetic_log(true_rig, seed=6, rate_Hz=20.0)
     late = log.time_s >= 6.0
@@ -159,6 +163,7 @@ def test_a_start_that_is_not_steady(true_rig: Rig, thenar: Rig) -> None:
     assert free.channels[0].rms < 0.1 * steady.channels[0].rms
 
 
+@pytest.mark.slow
 def test_a_trace_begins_with_the_drive_that_follows(thenar: Rig, tmp_path: Path) -> None:
     rig = thenar.with_(**TRUTH)
     trace = simulate(load_library("six-icons")["cooling-step"], rig, rate_Hz=20.0, tail_s=10.0)

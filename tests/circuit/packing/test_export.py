@@ -309,6 +309,7 @@ class TestSidecar:
         assert told["limits"]["loosened"] == ["skin_highest_C 42.5 °C instead of 42 °C"]
         assert "not a medical or ethical clearance" in told["what_it_is_not"]
 
+    @pytest.mark.slow
     def test_a_smaller_uncertainty_is_in_it_with_its_reason(self) -> None:
         why = "gain measured against a shunt, 2026-05-12"
         rig = RIG.with_(**{"uncertainty.gain_relative": 0.02, "uncertainty.reason": why})
@@ -322,6 +323,7 @@ class TestSidecar:
         assert thermode["safety"]["uncertainty"]["smaller_than_shipped"] == ["gain ±2 % instead of ±10 %"]
         assert thermode["safety"]["uncertainty"]["reason"] == why
 
+    @pytest.mark.slow
     def test_soft_limits_are_in_it_word_for_word(self) -> None:
         icon = parse(
             "cue 1\nset s { control display\n baseline 32 °C }\n"

@@ -85,6 +85,7 @@ def test_pulses_between_slow_updates_are_missed_and_said_to_be(kind: str) -> Non
     assert "its step at 0.25 s does not arrive in time" in str(one.refusals[0])
 
 
+@pytest.mark.slow
 def test_what_is_unsafe_on_a_weak_driver_is_not_forced() -> None:
     one = ready("icon x { cool to 8 °C at 2 °C/s; hold for 60 s; return at 2 °C/s }", FEWER)
     unsafe = [refusal for refusal in one.refusals if not refusal.forcible]

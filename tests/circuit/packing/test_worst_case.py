@@ -33,6 +33,7 @@ def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv",
 class TestWorstCase:
     """What every kind of device meets."""
 
+    @pytest.mark.slow
     def test_it_is_the_default_and_in_it_more_is_red_than_on_the_rig_as_given(self) -> None:
         icon = parse(
             "cue 1\nset s { control skin\n baseline 32 °C }\n"
@@ -51,6 +52,7 @@ class TestWorstCase:
         found = ready().delivery
         assert worst_case(found) == gate(found.delivered, RIG)
 
+    @pytest.mark.slow
     def test_a_bridge_rests_and_ends_with_means(self) -> None:
         found = ready(device="pwm-h-bridge-10").delivery
         (rest, *_) = found.played.command  # type: ignore[union-attr]
@@ -96,6 +98,7 @@ class TestWorstCase:
         assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
 
+    @pytest.mark.slow
     def test_the_rigs_driver_does_not_hold_a_thermode_back(self) -> None:
         weak = RIG.with_(**{"driver.current_limit_A": 0.4})
         (refusal,) = ready(rig=weak).refusals

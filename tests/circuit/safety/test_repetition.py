@@ -163,6 +163,7 @@ def test_a_pause_that_cannot_be_is_told() -> None:
             gate(COOL, THENAR, pause_s=pause)
 
 
+@pytest.mark.slow
 def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_is_not() -> None:
     fewer = {f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates")}
     rig = THENAR.with_(**fewer, **{"uncertainty.reason": "a test in fewer corners"})

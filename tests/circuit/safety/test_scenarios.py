@@ -149,6 +149,7 @@ def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:
     return watch(CUE, rig, (starts, weights))[1][:, -1]
 
 
+@pytest.mark.slow
 def test_a_bridge_goes_on_switching_where_its_last_value_is_held() -> None:
     peak, duty, rate = 1.5, 0.3, 100.0
     short, long_ = (switched(np.full(round(s * rate) + 1, duty), rate, 500.0, peak) for s in (1, 61))

@@ -53,6 +53,7 @@ def test_nodes_bring_the_display_to_the_field_of_the_legs(
     assert least_K < miss < most_K
 
 
+@pytest.mark.slow
 def test_the_field_is_fine_enough(field: np.ndarray) -> None:
     coarser = Dense.of(THENAR, FINE // 2, LEG_J_PER_K)
     assert np.abs(coarser.run(FAST, 40.0, 0.1)[:, coarser.cold] - field).max() < 2e-4

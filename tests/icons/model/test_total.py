@@ -83,6 +83,7 @@ def test_any_words(words: list[str], between: str, inside: bool) -> None:
     parsed(f"cue 1\nicon x {{ {text} }}" if inside else text)
 
 
+@pytest.mark.slow
 @for_any(st.sampled_from(SOUND), st.data(), examples=250)
 def test_any_damage_to_a_sound_file(text: str, data: st.DataObject) -> None:
     for _ in range(data.draw(st.integers(1, 4))):

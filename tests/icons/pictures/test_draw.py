@@ -52,6 +52,7 @@ def test_a_picture_of_an_icon_is_small_and_sound(icon: Icon) -> None:
     assert svg == picture(icon)
 
 
+@pytest.mark.slow
 def test_a_picture_of_a_set_is_small() -> None:
     assert len(SIX._repr_html_().encode()) < 10_000
     waves = "\n".join(f"icon w{n} {{ sine by {n + 1} °C every 4 s for 40 s }}" for n in range(12))
@@ -61,6 +62,7 @@ def test_a_picture_of_a_set_is_small() -> None:
     assert len(HUGE._repr_html_().encode()) < 10_000
 
 
+@pytest.mark.slow
 def test_pictures_need_no_ids_no_date_and_no_matplotlib() -> None:
     svg = SHAPES._repr_html_()
     assert not re.search(r"\bid=|url\(|href|<style|<defs|\d{4}-\d\d-\d\d|<script", svg)

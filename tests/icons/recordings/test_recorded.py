@@ -106,6 +106,7 @@ def test_baseline_can_be_prescribed(tmp_path: Path) -> None:
     assert isinstance(icon.statements[0], Rest) and isinstance(icon.statements[-1], Return)
 
 
+@pytest.mark.slow
 def test_a_minute_at_a_kilohertz(tmp_path: Path) -> None:
     time = np.arange(60_001) / 1000
     value = 32 - 3 * np.interp(time % 6, [0, 1, 2, 3, 6], [0, 1, 1, 0, 0])

@@ -65,6 +65,7 @@ def test_without_the_question_nothing_is_chosen(ranked: Callable[..., dict[str, 
     assert "Best" not in found["stdout"]
 
 
+@pytest.mark.slow
 def test_the_worst_pair_has_an_edit_and_others_on_request(ranked: Callable[..., dict[str, Any]]) -> None:
     found = ranked()
     edits = {(p["a"], p["b"]): p["edit"] for p in found["pairs"] if p["edit"] or p["no_edit"]}
@@ -136,6 +137,7 @@ def test_bad_searches(cli: Cli, options: tuple[object, ...], code: int, told: st
     assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
+@pytest.mark.slow
 def test_search_says_what_a_goal_lacks_and_what_would_help(
     cli: Cli, families: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

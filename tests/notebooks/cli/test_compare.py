@@ -103,6 +103,7 @@ def test_two_sets_without_a_common_name_are_scored(cli: Cli, two: Path, tmp_path
     assert rows[0][2:6] == rows[1][2:6]
 
 
+@pytest.mark.slow
 def test_sets_on_several_rigs_are_a_table(cli: Cli, two: Path) -> None:
     said = cli("compare", two, "six-icons", "--rigs", "thenar, fingertip")
     assert said.exit_code == 0, said.stderr

@@ -124,6 +124,7 @@ class TestRefused:
         assert "gain +10 %" in said.stderr
         assert not (tmp_path / "out").exists()
 
+    @pytest.mark.slow
     def test_amber_is_written_with_its_worst_case_as_a_warning(self, cli: Cli, tmp_path: Path) -> None:
         path = tmp_path / "warm.cue"
         path.write_text(
@@ -170,6 +171,7 @@ class TestRefused:
 class TestFiles:
     """Where files go."""
 
+    @pytest.mark.slow
     def test_files_that_are_there_are_kept_unless_forced(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "out"
         assert cli("export", two, "--to", "csv", "-o", out, *SURE).exit_code == 0
@@ -364,6 +366,7 @@ def test_names_that_differ_in_capitals_are_told_before_any_work(cli: Cli, tmp_pa
     assert cli("export", path, "--icon", "A-B", "--to", "csv", "-o", tmp_path / "out", *SURE).exit_code == 0
 
 
+@pytest.mark.slow
 def test_a_rest_outside_its_own_limit_is_told_at_once(cli: Cli, two: Path, tmp_path: Path) -> None:
     said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--set", "safety.skin_lowest_C=35", *SURE)
     assert said.exit_code == 3

@@ -62,6 +62,7 @@ def test_what_cannot_be(
     assert not Path("a.cir").exists()
 
 
+@pytest.mark.slow
 def test_ngspice_plays_what_simulate_writes(
     cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]
 ) -> None:

@@ -41,6 +41,7 @@ def verdict(ready: PreparedExport, place: int = 0) -> Gate:
 class TestCommand:
     """The words and exit codes."""
 
+    @pytest.mark.slow
     def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(self, cli: Cli, tmp_path: Path) -> None:
         (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
         arguments = (

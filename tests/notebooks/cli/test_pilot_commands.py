@@ -27,6 +27,7 @@ def answers(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_observed_prints_writes_and_keeps(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
     out, lab, picture = tmp_path / "out.json", tmp_path / "lab.toml", tmp_path / "out.png"
     said = cli(
@@ -153,6 +154,7 @@ bob,reaction_time,,warm,6,1.7,s,,12
 """
 
 
+@pytest.mark.slow
 def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, lab, picture, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.png", "v.json"))
     path.write_text(VALUES, encoding="utf-8")

@@ -105,6 +105,7 @@ def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tup
         assert (two.parent / name).stat().st_size > 0, name
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")
 def test_a_reader_that_goes_away_is_no_error() -> None:
     command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "simulate", "six-icons", "-o", "-"]

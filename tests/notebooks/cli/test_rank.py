@@ -65,6 +65,7 @@ def test_rows_of_the_confusions_sum_to_one(ranked: dict[str, Any]) -> None:
         assert all(0 <= share <= 1 for share in row)
 
 
+@pytest.mark.slow
 def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, tmp_path: Path) -> None:
     texts = []
     for name in ("a.json", "b.json"):
@@ -170,6 +171,7 @@ def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Pat
     assert "jolt is not reached: the drive needs 1.6 A" in words
 
 
+@pytest.mark.slow
 def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "cold.cue"
     cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
@@ -180,6 +182,7 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     assert "NOT SAFE" not in words
 
 
+@pytest.mark.slow
 def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "near.cue"
     cues = [
@@ -207,6 +210,7 @@ def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
     ]
 
 
+@pytest.mark.slow
 def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "one.cue"
     path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
@@ -219,6 +223,7 @@ def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> N
     assert said.stderr == f"wrote ranking.png, distance.png, confusion.png and 1 overview into {folder}\n"
 
 
+@pytest.mark.slow
 def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Path) -> None:
     folder = tmp_path / "figures"
     said = cli("rank", two, "--people", 5, "--parameters", 0, "--figure", folder)
@@ -295,6 +300,7 @@ def test_by_rules_one_icon_and_what_fails(cli: Cli, tmp_path: Path) -> None:
     assert "(1 virtual person, seed 0)" in words
 
 
+@pytest.mark.slow
 def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "far.cue"
     cues = "".join(f"icon {n} {{ cool by {k} °C at 6 °C/s; return at 6 °C/s }}\n" for n, k in (("a", 4), ("b", 2)))

@@ -179,6 +179,7 @@ def test_a_million_plays_are_refused_before_any_work(cli: Cli, two: Path, monkey
     assert "500,000 repeats of 2 icons: 1,000,000 plays are too many; a session has at most 5,000" in said.stderr
 
 
+@pytest.mark.slow
 def test_a_figure_is_complete_or_absent(
     cli: Cli, two: Path, order: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

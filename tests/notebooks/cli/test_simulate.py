@@ -161,6 +161,7 @@ def test_too_strong_a_drive_only_warns(cli: Cli, tmp_path: Path) -> None:
     assert (tmp_path / "drive.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_a_figure_an_icon(cli: Cli, two: Path, tmp_path: Path) -> None:
     assert cli("simulate", two, "--figure", tmp_path / "over.png").exit_code == 0
     assert sorted(path.name for path in tmp_path.glob("*.png")) == ["over-cool-step.png", "over-warm-step.png"]

@@ -24,6 +24,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make(tmp_path_factory.mktemp("study"), QUICK)
 
 
+@pytest.mark.slow
 def test_the_folder_has_everything(out: Path) -> None:
     names = {path.name for path in out.iterdir()}
     assert names >= {
@@ -107,6 +108,7 @@ def refused(cli: Cli, folder: Path, text: str) -> str:
     return str(said.stderr)
 
 
+@pytest.mark.slow
 def test_a_gap_that_is_not_safe_refuses_the_study_and_names_the_shortest(tmp_path: Path, cli: Cli) -> None:
     text = refused(cli, tmp_path, HOT.replace("gap_s = 10", "gap_s = 0"))
     assert "refused: burn: NOT SAFE: " in text
@@ -114,6 +116,7 @@ def test_a_gap_that_is_not_safe_refuses_the_study_and_names_the_shortest(tmp_pat
     assert "--pause" not in text
 
 
+@pytest.mark.slow
 def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
     """The same icons with nothing given: the gate asks for more than carry-over of d′ 5 does."""
     text = HOT.replace("gap_s = 10\n", "carry_over_d_prime = 5\n").replace("hold for 20 s", "hold for 1 s")
@@ -186,6 +189,7 @@ def test_bad_input_exits_with_1_and_no_traceback(changes: tuple[str, str], tmp_p
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path, cli: Cli) -> None:
     text = QUICK.replace("rig_changes", 'rig = "tcs2"\ndevice = "qst-tcs2"\nrig_changes', 1)
     lines = [line for line in text.splitlines() if not line.startswith("rig_changes")]
@@ -198,6 +202,7 @@ def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path,
     assert json.loads((tmp_path / "out" / "study.json").read_text(encoding="utf-8"))["plays"] == "tcs2"
 
 
+@pytest.mark.slow
 def test_of_many_participants_the_extreme_sessions_are_judged(tmp_path: Path, cli: Cli) -> None:
     text = QUICK.replace('labels = ["A", "B"]', "count = 9").replace("repetitions = 2", "repetitions = 1")
     said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")

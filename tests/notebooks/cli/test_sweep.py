@@ -95,6 +95,7 @@ def test_a_layer_of_the_skin_can_be_swept(two: Path) -> None:
     assert len(peaks.unique()) == 2
 
 
+@pytest.mark.slow
 def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "sweep.csv"
     said = cli("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")
@@ -196,6 +197,7 @@ def test_figure_colours_tell_cooling_from_warming(two: Path) -> None:
     assert figure.axes[0].get_xscale() == "log"
 
 
+@pytest.mark.slow
 def test_figure_marks_what_was_missed_and_what_was_impossible(two: Path, tmp_path: Path) -> None:
     key = "driver.current_limit_A"
     frame = sweep(read_cue(two), Rig.load("thenar"), key, [0.0, 0.5, 1.0, 1.5])

@@ -105,6 +105,7 @@ def test_a_folder_that_takes_no_files_is_one_clear_error(process: Callable[..., 
     assert "Traceback" not in said.stderr
 
 
+@pytest.mark.slow
 @posix
 def test_a_full_disk_is_one_clear_error_and_leaves_nothing(tmp_path: Path) -> None:
     resource = pytest.importorskip("resource")
@@ -192,6 +193,7 @@ def test_exports_killed_while_writing_leave_no_partial_file(server: subprocess.P
     assert len(kill_many(server, tmp_path, KILLS, signal.SIGKILL, seed=1)) == KILLS
 
 
+@pytest.mark.slow
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_exports_that_are_asked_to_end_leave_no_draft(

@@ -135,6 +135,7 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
         assert f"<h2>{heading}</h2>" in made
 
 
+@pytest.mark.slow
 def test_it_is_the_same_every_time_and_dated_only_on_demand(
     made: str, ranking: Ranking, icons: IconSet, rig: Rig
 ) -> None:
@@ -146,6 +147,7 @@ def test_it_is_the_same_every_time_and_dated_only_on_demand(
     assert len(made) < 1_500_000
 
 
+@pytest.mark.slow
 def test_by_rules_it_has_no_number_of_the_model(rig: Rig, three: IconSet) -> None:
     words = read(report(rank(three, rig, people=2, by="rules"), three, rig)).text
     for word in ("bits", "detected", "d′ ", "perceptual", "named correctly"):
@@ -165,6 +167,7 @@ def test_one_icon_has_no_pairs(rig: Rig) -> None:
     assert "95 % of people" not in words
 
 
+@pytest.mark.slow
 def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
     icons = parse(
         "cue 1\nset s { control current }\n"
@@ -178,11 +181,13 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
     assert "<td>not safe, not reached</td>" in made
 
 
+@pytest.mark.slow
 def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
     ranking = rank(three, rig, people=4, parameters=0, choosing=Selection(2))
     assert "<h3>Best 2 of 3, by the worst pair: " in report(ranking, three, rig)
 
 
+@pytest.mark.slow
 def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "report.html"
     options = ("--people", 3, "--parameters", 0, "--set", "contact.area_cm2=4")
@@ -239,6 +244,7 @@ def test_the_command_names_files_as_they_are_given() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_page_holds_goal_warnings_and_the_whole_rig() -> None:
     from thermicon.icons import load_library
     from thermicon.perception import rank

@@ -32,6 +32,7 @@ def events(folder: Path, who: str = "A", run: int = 1) -> list[dict[str, str]]:
     return rows_of(folder / f"sub-{who}" / "beh" / f"sub-{who}_task-quick_run-{run}_events.tsv", "\t")
 
 
+@pytest.mark.slow
 def test_a_simulated_run_writes_answers_and_events(quick: Path, script: Runner, tmp_path: Path) -> None:
     done = script("--participant", "A", "--simulate")
     assert (done.returncode, done.stderr) == (0, "")

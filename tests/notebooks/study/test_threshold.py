@@ -50,6 +50,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_every_level_is_a_judged_drive(out: Path) -> None:
     levels = rows_of(out / "levels.csv")
     changes = [float(row["change_K"]) for row in levels]

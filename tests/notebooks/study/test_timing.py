@@ -23,6 +23,7 @@ ICONS = [load_library("six-icons")[name] for name in ("cooling-step", "linear-wa
 THENAR = Rig.load("thenar")
 
 
+@pytest.mark.slow
 def test_a_derived_gap_is_the_shortest_in_whole_seconds() -> None:
     gap = find_gap(ICONS, THENAR, Timing(carry_over_d_prime=1.0), held=True)
     assert gap.reason == "carry-over falls below d′ = 1"

@@ -52,6 +52,7 @@ def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "drives" / "dip.json").read_text(encoding="utf-8"))["safety"]["colour"] == "green"
 
 
+@pytest.mark.slow
 def test_detection_is_that_of_the_ranking_and_says_whose_it_is(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.which.value = "all"
@@ -66,6 +67,7 @@ def test_detection_is_that_of_the_ranking_and_says_whose_it_is(tmp_path: Path) -
         assert designed == pytest.approx(score.detected_probability, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.which.value = "all"
@@ -80,6 +82,7 @@ def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
     assert "wrote 2 drives" in bench.said("written")
 
 
+@pytest.mark.slow
 def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
     bench = Bench(tmp_path, "cue 1; icon hot { warm by 14 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }")
     assert bench.view.button.disabled
@@ -132,6 +135,7 @@ def test_a_folder_that_cannot_be_is_said(tmp_path: Path) -> None:
     assert "it is a file" in bench.said("written")
 
 
+@pytest.mark.slow
 def test_a_device_that_cannot_play_it_is_said(tmp_path: Path) -> None:
     bench = Bench(tmp_path, "cue 1; icon cold { cool by 31 °C at 1 °C/s; return at 1 °C/s }")
     bench.view.device.value = "qst-tcs2"

@@ -196,6 +196,7 @@ def test_a_page_opens_and_saves_only_below_its_folder(path: Path, monkeypatch: p
     assert "is outside the folder of this page" in said(bar)
 
 
+@pytest.mark.slow
 def test_what_is_downloaded_is_the_text_the_rig_and_pictures(path: Path) -> None:
     _, bar = opened(path)
     bar.buttons["Download"].click()

@@ -135,6 +135,7 @@ def test_an_edit_is_applied_to_the_text_and_can_be_undone() -> None:
     assert bench.design.text == TWO
 
 
+@pytest.mark.slow
 def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
     bench = Bench(TWO)
     bench.type(TWO.replace("by 4 °C", "by 4"))
@@ -146,6 +147,7 @@ def test_errors_keep_the_last_good_set_as_stale_until_they_are_gone() -> None:
     assert not bench.stale
 
 
+@pytest.mark.slow
 def test_a_goal_is_judged_with_what_is_predicted_how_far_that_is_and_what_binds() -> None:
     bench = Bench(THREE)
     assert "goal" not in bench.said("status")
@@ -201,6 +203,7 @@ def test_a_set_of_one_says_that_it_is_never_confused() -> None:
     assert bench.view._maps.layout.display == "none"
 
 
+@pytest.mark.slow
 def test_what_cannot_be_played_stands_apart_with_its_reason() -> None:
     bench = Bench(THREE.replace("cool by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
     table = bench.said("table")

@@ -75,6 +75,7 @@ def test_a_narrower_set_is_remembered_better_in_context() -> None:
     assert pair(narrow, task) > 1.3 * pair(wide, task)
 
 
+@pytest.mark.slow
 def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOver) -> None:
     near, far = ranked(task=Task(gap_s=2.0)), ranked(task=Task(gap_s=600.0))
     assert near.proportion_correct < usual.proportion_correct - 0.05
@@ -136,6 +137,7 @@ def test_the_same_whoever_works_on_it() -> None:
     assert one.to_json() == two.to_json()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=10.0), 2.0)], ids=["context", "gap"]
 )
@@ -152,6 +154,7 @@ def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -
             assert other.d_prime > min(before[other.a, other.b] - 0.101, 2 * wanted)
 
 
+@pytest.mark.slow
 def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
     """Neither what the icons left out would leave behind, nor the range that they would make, counts any more."""
     hot = "icon hot { warm by 17 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }\n"

@@ -88,6 +88,7 @@ def bench(laboratories: int, truths: int, other: str) -> Bench:
     )
 
 
+@pytest.mark.slow
 def test_a_pilot_of_a_few_people_narrows_and_still_covers() -> None:
     pilot = bench(150, 50, "six-icons").judged(3, 20, 3)
     assert pilot["narrower"] > 1.05

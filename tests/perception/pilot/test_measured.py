@@ -77,6 +77,7 @@ def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior
     assert 0.5 < middle[1] < 1.2  # E1, five strips
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("factor", "sign"), [(2.5, 1.0), (0.4, -1.0)])
 def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
     prior: LaboratoryPrior, factor: float, sign: float
@@ -109,6 +110,7 @@ def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measuremen
     return some, reweight(some, prior.first(draws, 2), simulate, seed=0, kept=kept)
 
 
+@pytest.mark.slow
 def test_too_few_draws_are_refreshed(prior: LaboratoryPrior) -> None:
     _, found = refreshed(prior, 80, 40)
     assert found.effective < 20.0
@@ -146,6 +148,7 @@ def test_ratings_count_by_their_ratios_alone(prior: LaboratoryPrior) -> None:
     assert float(np.abs(first - third).sum()) > 0.35
 
 
+@pytest.mark.slow
 def test_what_was_measured_is_kept_as_an_observer(tmp_path: Path) -> None:
     some = synthetic_measurements(RIG, participants=4, seed=2)
     calls: list[tuple[int, int]] = []

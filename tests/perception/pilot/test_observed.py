@@ -67,6 +67,7 @@ def test_made_up_answers_are_read_back_and_depend_on_the_seed(
     assert (other.counts != answers.counts).any()
 
 
+@pytest.mark.slow
 def test_the_result_holds_what_was_asked(found: Observed, answers: Trials) -> None:
     own = found.to_dict()
     assert json.loads(found.to_json()) == own

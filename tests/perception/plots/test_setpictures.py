@@ -87,6 +87,7 @@ def test_very_long_names_lose_their_middle() -> None:
     assert label.get_text() == "a" * 22 + "…" + "b" * 21
 
 
+@pytest.mark.slow
 def test_the_map_shows_every_icon_and_its_stress(ranking: Ranking) -> None:
     found = map_of(ranking)
     axes = plot_map(found)

@@ -19,6 +19,7 @@ def draws_of(values: np.ndarray, correct: np.ndarray, *names: str) -> Laboratory
     return LaboratoryDraws(names, values, correct, *[np.zeros((len(correct), 1))] * 7)
 
 
+@pytest.mark.slow
 def test_nothing_is_named_where_nothing_moves() -> None:
     """Noise of people and of 50 constants: over 60 rankings, at most one is misled."""
     observer, misled = Observer.load(), 0

@@ -195,6 +195,7 @@ def test_what_does_not_exist_is_null(rig: Rig) -> None:
     assert whole["rules_disagree"] == []
 
 
+@pytest.mark.slow
 def test_changes_of_order_under_another_norm_are_told(rig: Rig) -> None:
     icons = load_library("wave-confusions")
     by = {norm: rank(icons, rig, people=10, parameters=0, norm=norm) for norm in ("max", "rms")}

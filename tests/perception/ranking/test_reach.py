@@ -12,6 +12,7 @@ TEXT = (
 )
 
 
+@pytest.mark.slow
 def test_changes_are_tried_and_the_most_helpful_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reach, "EVALUATIONS", 10)
     monkeypatch.setattr(reach, "PEOPLE", 4)

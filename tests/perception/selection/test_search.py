@@ -111,6 +111,7 @@ def test_what_cannot_be_searched(small: IconSet, rig: Rig) -> None:
         search(parse(hot), rig, count=2)
 
 
+@pytest.mark.slow
 def test_totals_and_a_goal_are_kept(small: IconSet, rig: Rig) -> None:
     from thermicon.circuit import duration_s
 

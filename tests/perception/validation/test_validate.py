@@ -129,6 +129,7 @@ def test_every_figure_is_drawn(report: ValidationReport) -> None:
     assert _codes(["1 a", "2 b"]) == ["1a", "2a"]
 
 
+@pytest.mark.slow
 def test_figures_without_draws() -> None:
     bare = validate(people=2, draws=0)
     assert bare.trade_offs == ((), (), ())

@@ -203,6 +203,7 @@ def _slow(low_Hz: float, high_Hz: float) -> Device:
 class TestWav:
     """Sound files."""
 
+    @pytest.mark.slow
     def test_the_wave_module_reads_the_samples(self) -> None:
         found, samples = played("wav")
         with wave.open(io.BytesIO(load_format("wav").write(found))) as sound:
