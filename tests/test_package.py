@@ -42,7 +42,7 @@ def shipped(folder: Path) -> set[str]:
         path.relative_to(folder).as_posix()
         for package in PACKAGES
         for path in (folder / package).rglob("*")
-        if path.is_file() and path.suffix != ".pyc"
+        if path.is_file() and "__pycache__" not in path.parts
     }
 
 
@@ -83,7 +83,10 @@ def test_the_wheel_holds_the_packages_and_nothing_else(archives: Archives) -> No
     held = {name.removeprefix("thermicon/") for name in names if name.startswith("thermicon/")}
     assert held == shipped(ROOT)
     others = {name.partition("/")[0] for name in names} - {"thermicon"}
-    assert [name.endswith(".dist-info") for name in others] == [True]
+    assert {name.rpartition(".")[2] for name in others} == {"dist-info", "data"}
+    data = [name for name in names if ".data/" in name]
+    assert data
+    assert all("/data/share/jupyter/labextensions/" in name for name in data)
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in names)
 
 
