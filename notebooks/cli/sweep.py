@@ -18,6 +18,8 @@ from ..figures.print_figure import write_figure
 from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import Progress, fail, note, progress_bar
+from ..text.sweep_text import swept_table
+from ..text.tables import show
 from ..text.varied import SITE, Vary
 
 if TYPE_CHECKING:
@@ -197,13 +199,14 @@ def sweep_file(
     icon: str | None,
     rig: Rig,
     tail_s: float,
-    output: Path,
+    output: Path | None,
     figure: Path | None,
     look: Look = SCREEN,
     measure: Measure | None = None,
 ) -> None:
     """Sweep the icons of a file (or the one named); write the table, draw the figure, report each icon's outcome."""
-    check_output(output, TRACE_SUFFIXES, "a sweep")
+    if output is not None:
+        check_output(output, TRACE_SUFFIXES, "a sweep")
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     check_separate([file], [output, figure])
@@ -227,7 +230,7 @@ def sweep_file(
         count = math.prod(len(vary.values) for vary in varied)
         reason = frame["reason"].iloc[0]
         fail(f"--vary {' and '.join(keys)}: none of the {count} {points} can be played; the first: {reason}")
-    if output != STDOUT:
+    if output not in (None, STDOUT):
         with complete_or_absent(output) as draft:
             write_frame(frame, draft)
     if figure is not None:
@@ -240,6 +243,8 @@ def sweep_file(
             note(f"wrote {written}")
     if output == STDOUT:
         typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
+    elif output is None and measure is not None:
+        show(swept_table(frame, keys, measure[0]))
 
 
 def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:

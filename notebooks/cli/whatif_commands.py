@@ -132,15 +132,15 @@ def sweep_command(
         ),
     ],
     output: Annotated[
-        Path,
+        Path | None,
         typer.Option(
             "-o",
             "--output",
             metavar="OUT",
             readable=False,
-            help="Write the table to a .csv or .parquet file, or - for stdout.",
+            help="Write the table to a .csv or .parquet file, or - for stdout; needed without --measure and --figure.",
         ),
-    ],
+    ] = None,
     icon: IconName = None,
     measure: Annotated[
         str | None,
@@ -185,6 +185,8 @@ def sweep_command(
     measures = None if measure is None else read_measures(measure, people, parameters, seed)
     if measures is None and any(vary.key == AGE for vary in varied):
         raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
+    if output is None and figure is None and measures is None:
+        raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
     sweep_file(file, varied, icon, load_rig(rig, changes or []), tail, output, figure, look, measures)
 
 

@@ -286,3 +286,18 @@ def test_two_keys_with_a_site_make_maps(cli: Cli, two: Path, tmp_path: Path) -> 
 def test_measures_and_values_that_cannot_be(cli: Cli, two: Path, options: Any, code: int, words: str) -> None:
     said = cli("sweep", two, *options, "-o", "-")
     assert said.exit_code == code and words in " ".join(said.stderr.replace("│", " ").split()), said
+
+
+def test_without_an_output_what_people_perceive_is_printed(cli: Cli, two: Path) -> None:
+    said = cli("sweep", two, "--vary", f"{AREA}=1,9", "--measure", "correct,onset", *QUICK)
+    assert said.exit_code == 0, said.stderr
+    rows = [line.split() for line in said.stdout.splitlines()[2:]]
+    assert [row[:2] for row in rows][:2] == [["cool-step", "1"], ["cool-step", "9"]]
+    assert rows[-1][:4] == ["all", "icons", "9", rows[-1][3]]
+    assert int(rows[-1][3]) > int(rows[-2][3])
+
+
+def test_a_sweep_without_any_output_is_a_usage_error(cli: Cli, two: Path) -> None:
+    said = cli("sweep", two, "--vary", f"{AREA}=1,9")
+    assert (said.exit_code, said.stdout) == (2, "")
+    assert "give -o OUT for the table" in " ".join(said.stderr.split())
