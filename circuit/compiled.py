@@ -83,7 +83,7 @@ class _KernelCache(FunctionCache):
 
 @cache
 def _ready(target_context: Any) -> None:
-    """Load what numba needs to run anything, once a process: numba repeats it for every function."""
+    """Load numba's own tables once per process; numba loads them again for every function."""
     _no_search_for_blas()
     target_context.refresh()
 

@@ -78,7 +78,7 @@ def print_anywhere() -> None:
 
 
 def cannot_import(error: BaseException) -> str | None:
-    """Return a message when a library cannot be imported, None for every other error.
+    """Return a message if the error is a failed import of a library, otherwise None.
 
     >>> cannot_import(ImportError("No module named 'lark'", name="lark"))
     "thermicon cannot start: No module named 'lark'; thermicon doctor says what is missing and how to install it"

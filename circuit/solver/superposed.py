@@ -24,7 +24,7 @@ PROBES = ("cold_receptor_C", "warm_receptor_C")
 """What is superposed: readings below the surface, which do not see how the current ripples within a period."""
 
 MOST_CORNERS = 40
-"""Beyond this many changes of slope the full solution takes no longer; a sine has one for every period."""
+"""With more changes of slope than this, superposition is no faster than the full solution."""
 
 SAME_K = 1e-9
 """Changes of slope in K per period that are rounding errors."""

@@ -12,7 +12,7 @@ from thermicon.notebooks.cli.main import app
 
 
 def command_options() -> str:
-    """Return a heading and a table of Markdown for every command, in the order of ``thermicon --help``."""
+    """Return Markdown: for each command a heading and a table of its options, in the order of ``thermicon --help``."""
     group: Any = get_command(app)
     context = group.context_class(group, info_name="thermicon")
     jobs: dict[str, list[str]] = {}

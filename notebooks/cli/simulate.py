@@ -168,7 +168,7 @@ def _report(
 
 
 def unsafe(trace: Trace) -> list[str]:
-    """Return a sentence for every safety limit that the run exceeds, or one on why it cannot be judged."""
+    """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
     from thermicon.circuit import judge_safety
     from thermicon.circuit.rig.load import LOAD_SITES, without_skin
 

@@ -20,7 +20,7 @@ from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_outpu
 from ..text.messages import Progress, fail, note, progress_bar
 from ..text.sweep_text import swept_table
 from ..text.tables import show
-from ..text.varied import SITE, Vary
+from ..text.varied import Vary
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -115,7 +115,7 @@ def sweep(
     import pandas as pd
 
     from thermicon.circuit.safety.summary import Summary
-    from thermicon.perception.sensitivity.swept import AGE, ALL, MEASURES, check_conditions
+    from thermicon.perception.sensitivity.swept import AGE, ALL, MEASURES, SITE, check_conditions
 
     varied = [(key, values), *([second] if second is not None else [])]
     for name, numbers in varied:

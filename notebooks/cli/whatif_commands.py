@@ -23,7 +23,6 @@ from ..files.outputs import (
 )
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
 from ..text.options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
-from ..text.varied import AGE
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -177,6 +176,8 @@ def sweep_command(
     """
     check_changes(changes or [])
     check_tail(tail)
+    from thermicon.perception.sensitivity.swept import AGE
+
     from ..text.varied import read_measures, read_varied
     from .sweep import sweep_file
 

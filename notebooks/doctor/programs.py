@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from .finding import Finding
@@ -74,20 +74,28 @@ def check_programs() -> Iterator[Finding]:
             yield Finding(program.name, "ok", f"{path}{version_of(path)}, for {program.purpose}")
 
 
+def run_program(
+    command: Sequence[str], longest_s: float, environment: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a program without input and return what it says; one that takes longer raises `subprocess.TimeoutExpired`."""
+    return subprocess.run(
+        command,
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        stdin=subprocess.DEVNULL,
+        timeout=longest_s,
+        check=False,
+        env=environment,
+    )
+
+
 def version_of(path: str) -> str:
     """Return what a program says of its own version, in brackets; nothing where it says nothing that helps."""
     if sys.platform == "win32":  # where a browser that is asked for its version opens a window
         return ""
     try:
-        run = subprocess.run(
-            [path, "--version"],
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            stdin=subprocess.DEVNULL,
-            timeout=ANSWERS_S,
-            check=False,
-        )
+        run = run_program([path, "--version"], ANSWERS_S)
     except (OSError, subprocess.SubprocessError):
         return ""
     lines = [line.strip(" *\t") for line in run.stdout.splitlines() if any(letter.isdigit() for letter in line)]

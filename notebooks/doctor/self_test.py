@@ -17,6 +17,7 @@ from importlib import resources
 from time import perf_counter
 
 from .finding import Finding
+from .programs import run_program
 
 STORED = "self-test.toml"
 WAITS_S = 600.0
@@ -89,16 +90,7 @@ def check_self_test(command: Sequence[str] = ()) -> Iterator[Finding]:
     begun = perf_counter()
     program = [*(command or (sys.executable, "-P", "-m", __name__))]
     try:
-        run = subprocess.run(
-            program,
-            capture_output=True,
-            encoding="utf-8",
-            errors="replace",
-            stdin=subprocess.DEVNULL,
-            timeout=WAITS_S,
-            check=False,
-            env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-        )
+        run = run_program(program, WAITS_S, {**os.environ, "PYTHONIOENCODING": "utf-8"})
     except subprocess.TimeoutExpired:
         yield Finding("self-test", "fault", f"not ended after {WAITS_S:g} s", "end other programs and run it again")
         return

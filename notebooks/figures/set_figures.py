@@ -34,7 +34,7 @@ def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
 
 
 def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look: Look = SCREEN) -> None:
-    """Write the pictures of the set and an overview for every icon into a folder, or one of the set into a file.
+    """Write all figures of the set and an overview of each icon into a folder, or one figure of the set into a file.
 
     A folder is made if it is missing. The set has ranking, distance, confusion, map and places; the last two need two
     icons, places two people.

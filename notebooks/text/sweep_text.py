@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from thermicon.perception.sensitivity.swept import MEASURES
+
 from .tables import table
 
 if TYPE_CHECKING:
@@ -39,8 +41,6 @@ def swept_table(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[s
 
 
 def _cell(row: Mapping[Any, Any], quantity: str) -> str:
-    from thermicon.perception.sensitivity.swept import MEASURES
-
     factor, digits, unit = PRINTED[quantity]
     value, *interval = (float(row.get(name, math.nan)) * factor for name in MEASURES[quantity])
     if math.isnan(value):

@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from thermicon.perception.sensitivity.swept import MEASURES, SITE
+
 from .messages import usage
 
 MOST_VALUES = 10_000
@@ -13,12 +15,6 @@ FORM = (
     "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, LOW:HIGH:Nlog for equal ratios, or values such as "
     "site=thenar,fingertip"
 )
-SITE = "site"
-"""Skin, contact and blood of a shipped rig; the only key whose values are names."""
-
-AGE = "people.age_years"
-MEASURES = ("correct", "detected", "onset", "d_prime", "bits")
-"""As in `thermicon.perception.sensitivity.swept`, repeated here to avoid its imports."""
 
 
 def read_measures(text: str, people: int, parameters: int, seed: int) -> tuple[tuple[str, ...], int, int, int]:

@@ -46,6 +46,14 @@ def laboratory_draws(
     return PosteriorDraws(replace(header, sampler=sampler, ess=min(header.ess, effective)), names, own[order])
 
 
+def laboratory_texts(
+    prior: LaboratoryPrior, some: Laboratories, draws: PosteriorDraws, version: str, provenance: Sequence[str]
+) -> tuple[str, str]:
+    """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory."""
+    head = (f"Observer of one laboratory, written by thermicon observed ({version}).", *provenance)
+    return observer_text(prior, some, draws, head), draws_text(draws, provenance)
+
+
 def draws_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
     """The table of draws with further lines of provenance in its header."""
     first, rest = to_text(draws.header, draws.names, draws.draws).split("\n", 1)

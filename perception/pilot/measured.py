@@ -16,13 +16,13 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from .changes import ChangedConstant, changed
-from .laboratory_file import draws_text, laboratory_draws, observer_text
+from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurement_conditioning import Reweighted, reweight
 from .measurement_fit import ConditionFit, MeasurementFit, compare_measurements
 from .measurements import Measurements
 from .observed import DRAWS, LEAST_DRAWS, Progress, counted
 from .playing import Confusions, laboratories_for, stage
-from .prediction import ChangedPrediction, SetPrediction
+from .prediction import ChangedPrediction
 from .simulated_measurements import Setting, predicted
 from .states import Laboratories, LaboratoryPrior
 
@@ -92,12 +92,7 @@ class MeasuredPilot:
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
-        draws = self.draws()
-        head = (f"Observer of one laboratory, written by thermicon observed ({self.version}).", *self.provenance)
-        return (
-            observer_text(self.prior, self.conditioned.after, draws, head),
-            draws_text(draws, self.provenance),
-        )
+        return laboratory_texts(self.prior, self.conditioned.after, self.draws(), self.version, self.provenance)
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
@@ -199,7 +194,7 @@ def condition_on_measurements(
         played = stage(each, rig, prior, seed=seed, tracking=tracking)
         pair = played.confusions(before, step), played.confusions(found.after, step)
         after = pair[1] if after is None else after
-        predictions.append(ChangedPrediction(*(SetPrediction.of(each.title, one) for one in pair)))
+        predictions.append(ChangedPrediction.of(each.title, *pair))
     assert after is not None
     return MeasuredPilot(
         measurements=measurements,

@@ -19,10 +19,10 @@ from .answers import AnswerScore, score_person, score_pooled
 from .changes import ChangedConstant, changed
 from .conditioning import Conditioned, condition
 from .fit import Fit, compare
-from .laboratory_file import draws_text, laboratory_draws, observer_text
+from .laboratory_file import laboratory_draws, laboratory_texts
 from .likelihood import person_log_likelihoods
 from .playing import laboratories_for, stage
-from .prediction import ChangedPrediction, SetPrediction, Three, three
+from .prediction import ChangedPrediction, Three, three
 from .states import LaboratoryPrior
 from .trials import Trials
 
@@ -96,12 +96,7 @@ class Observed:
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
-        draws = self.draws()
-        head = (f"Observer of one laboratory, written by thermicon observed ({self.version}).", *self.provenance)
-        return (
-            observer_text(self.prior, self.conditioned.after, draws, head),
-            draws_text(draws, self.provenance),
-        )
+        return laboratory_texts(self.prior, self.conditioned.after, self.draws(), self.version, self.provenance)
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
@@ -212,11 +207,11 @@ def observed(
     step = counted(progress, number + kept + len(others) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=tracking)
     found = condition(main, trials.counts, before, seed=seed, sample=kept, step=step)
-    predictions = [_changed(icons.title, found.confusions_before, found.confusions_after)]
+    predictions = [ChangedPrediction.of(icons.title, found.confusions_before, found.confusions_after)]
     for other in others:
         also = stage(other, rig, prior, seed=seed, tracking=tracking)
         pair = also.confusions(before, step), also.confusions(found.after, step)
-        predictions.append(_changed(other.title, *pair))
+        predictions.append(ChangedPrediction.of(other.title, *pair))
     effective = found.effective if not found.rounds else float(kept)
     return Observed(
         trials=trials,
@@ -235,10 +230,6 @@ def observed(
         seed=seed,
         version=own_version(),
     )
-
-
-def _changed(title: str, before: Any, after: Any) -> ChangedPrediction:
-    return ChangedPrediction(SetPrediction.of(title, before), SetPrediction.of(title, after))
 
 
 def _intervals(prediction: ChangedPrediction) -> tuple[Three, Three]:

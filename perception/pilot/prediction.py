@@ -68,6 +68,11 @@ class ChangedPrediction:
     before: SetPrediction
     after: SetPrediction
 
+    @classmethod
+    def of(cls, title: str, before: Confusions, after: Confusions) -> ChangedPrediction:
+        """Summarise the laboratories of the samples before and after."""
+        return cls(SetPrediction.of(title, before), SetPrediction.of(title, after))
+
     @property
     def narrower(self) -> float:
         """By which factor the interval of the proportion correct got narrower (below 1: wider)."""

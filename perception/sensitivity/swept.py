@@ -6,16 +6,15 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..observer.observer_model import ObserverModel
-from ..ranking.rank import rank
-
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
 
+    from ..observer.observer_model import ObserverModel
     from ..ranking.ranking import Ranking
 
 SITE, AGE = "site", "people.age_years"
+"""A site is skin, contact and blood of a shipped rig: the only key whose values are names."""
 OF_SITE = ("skin", "contact", "blood")
 """Tables of the rig file that come with a site; module, driver, heat sink and room stay."""
 ALL = "all icons"
@@ -52,6 +51,8 @@ def check_conditions(changes: Mapping[str, float | str], rig: Rig) -> None:
             if value not in sites():
                 raise InputError(f"site={value}: there is no such site; there are {', '.join(sites())}")
         elif key == AGE:
+            from ..observer.observer_model import ObserverModel
+
             try:
                 ObserverModel.load().aged(float(value))
             except ValueError as problem:
@@ -111,6 +112,9 @@ def measured_rows(
         Columns of `MEASURES` by row. Proportion correct and bits of the set have intervals; d′ is that of the nearest
         other icon, of the set that of the nearest pair.
     """
+    from ..observer.observer_model import ObserverModel
+    from ..ranking.rank import rank
+
     model = ObserverModel.of(observer)
     if AGE in changes:
         model = model.aged(float(changes[AGE]))
