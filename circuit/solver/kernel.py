@@ -251,7 +251,8 @@ def forward(
         if math.isnan(sinks[lane, TEMPERATURE]):
             settle(state[lane, 0], p, sink)
         else:
-            sink[:] = sinks[lane]
+            for j in range(SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
+                sink[j] = sinks[lane, j]
         factored, since, before, first = -1.0, 0.0, start_A[0, c], 0.0
         for k in range(edges.size):
             row = row_of[k]
@@ -285,7 +286,8 @@ def forward(
                 done += step
                 since += step
             before = last
-        sinks[lane] = sink
+        for j in range(SINK_NUMBERS):
+            sinks[lane, j] = sink[j]
         store_legs(cells, lane, p, leg)
         for k in range(n + 3):
             final[lane, k] = x[place_of(k, n)] + p[DEEP_C]

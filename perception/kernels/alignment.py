@@ -42,6 +42,12 @@ def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float
     return total
 
 
+def _put(place: Any, values: Any) -> None:
+    """Copy one element after another: numba compiles a slice as target for a second, for the text of its errors."""
+    for k in range(values.size):
+        place[k] = values[k]
+
+
 def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: float, shares: Any) -> float:
     """d′² between two sequences at the least cost, in order; `shares` (SHARES,) gets its parts."""
     cost = np.zeros((ones + 1, twos + 1))
@@ -55,21 +61,23 @@ def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: f
             if i > 0:
                 lone = unmatched(one[i - 1], intensity)
                 best = cost[i - 1, j] + lone
-                parts[i, j] = parts[i - 1, j]
+                put(parts[i, j], parts[i - 1, j])
                 parts[i, j, MISSING] += lone
             if j > 0:
                 lone = unmatched(two[j - 1], intensity)
                 if cost[i, j - 1] + lone < best:
                     best = cost[i, j - 1] + lone
-                    parts[i, j] = parts[i, j - 1]
+                    put(parts[i, j], parts[i, j - 1])
                     parts[i, j, MISSING] += lone
             if i > 0 and j > 0 and one[i - 1][QUALITY] == two[j - 1][QUALITY]:
                 pair = matched(one[i - 1], two[j - 1], intensity, timing, own)
                 if cost[i - 1, j - 1] + pair < best:
                     best = cost[i - 1, j - 1] + pair
-                    parts[i, j] = parts[i - 1, j - 1] + own
+                    put(parts[i, j], parts[i - 1, j - 1])
+                    for k in range(SHARES):
+                        parts[i, j, k] += own[k]
             cost[i, j] = best
-    shares[:] = parts[ones, twos]
+    put(shares, parts[ones, twos])
     return float(cost[ones, twos])
 
 
@@ -127,7 +135,7 @@ def _name(
                 x, z = felt[i, k], noise[i, s, k]
                 sd = intensity[int(x[QUALITY])]
                 total = math.sqrt(sd * sd + x[NOISE] * x[NOISE]) * louder[i]
-                now[k] = x
+                put(now[k], x)
                 now[k, INTENSITY] = x[INTENSITY] + total * z[0]
                 now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
                 now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
@@ -144,6 +152,7 @@ def _name(
 _compile: Any = kernel(nogil=True)
 unmatched: Any = _compile(_unmatched)
 matched: Any = _compile(_matched)
+put: Any = _compile(_put)
 aligned: Any = _compile(_aligned)
 distances: Any = _compile(_distances)
 cost_of_name: Any = _compile(_cost_of_name)

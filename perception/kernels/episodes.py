@@ -112,7 +112,13 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
             if (last[k] - first[k]) * dt >= SHORTEST_S and peak >= c_on[quality] and total < most:
                 starts[total], ends[total], kinds[total] = first[k], last[k], quality
                 total += 1
-    order = np.argsort(starts[:total])
+    order = np.arange(total)
+    for k in range(1, total):  # numba takes two seconds to compile its argsort
+        e, m = order[k], k
+        while m > 0 and starts[order[m - 1]] > starts[e]:
+            order[m] = order[m - 1]
+            m -= 1
+        order[m] = e
     before = 0.0
     kept = min(total, MOST)
     for k in range(kept):
