@@ -263,6 +263,8 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     shortest = (
         shortest_pause_s(repeating) if singles[0].safe else None
     )  # no pause makes a play safe that is red by itself
+    if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
+        shortest = pause
     repeats = []
     for single, own_tallies, cycle in zip(singles, tallies, cycles, strict=True):
         checks, plays = worst_of(tally.checks() for tally in own_tallies), plays_in(cycle, limits.session_s)

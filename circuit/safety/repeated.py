@@ -17,6 +17,7 @@ from ..solver.batch_inputs import State
 from .checks import Check, as_dict, colour_of, findings_of, hard_reason
 from .endings import ENDINGS, follow_endings
 from .ensemble import Ensemble
+from .following import following_tallies
 from .repetition import Cycle, bound, steady_cycle
 from .tally import WATCHED, Tally
 
@@ -120,7 +121,7 @@ class Repeating:
     _known: dict[tuple[float, bool], list[list[Tally]]] = field(default_factory=dict)
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
-        """The tallies of each drive with a pause between plays: its own steady cycle, and between the bounds of all."""
+        """Tallies of each drive with a pause between plays: steady, after another one, between the bounds of all."""
         if (pause_s, endings) not in self._known:
             self._known[pause_s, endings] = self._tallies(pause_s, endings)
         return self._known[pause_s, endings]
@@ -131,11 +132,10 @@ class Repeating:
         warm = bound(cycles, self.starts, steady, warm=True)
         cold = bound(cycles, self.starts, steady, warm=False)
         tallies = []
-        for cycle, start, state in zip(cycles, self.starts, steady, strict=True):
+        for number, (cycle, start, state) in enumerate(zip(cycles, self.starts, steady, strict=True)):
             begun = skin_C(self.ensemble, start)
-            drive_tallies = (
-                [self._tally(cycle, state, begun, "", True)[0]] if endings else []
-            )  # rates hardly follow the pause
+            drive_tallies = [self._tally(cycle, state, begun, "", True)[0]]
+            drive_tallies += following_tallies(cycles, self.starts, steady, begun, self.limits, number)
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
                 drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
