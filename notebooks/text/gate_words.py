@@ -37,7 +37,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     >>> from thermicon.notebooks.files.exporting import prepare_icon
     >>> ready = prepare_icon(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
     >>> [about for about, _ in gate_words(ready.prepared)]
-    ['repeated plays', 'the hardware must provide']
+    ['a driver stuck at its limit', 'repeated plays', 'the hardware must provide']
     """
     from thermicon.circuit.safety.gate import Gate
 
@@ -47,7 +47,9 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     if not gates:
         return []
     again = "repeated plays" + (", in any order" if len(gates) > 1 else "")
-    return [(again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
+    stuck = stuck_text(gates)
+    first = [] if stuck is None else [("a driver stuck at its limit", stuck)]
+    return [*first, (again, repeated_text(gates)), ("the hardware must provide", demands_text(gates))]
 
 
 def repeated_text(gates: Sequence[Named]) -> str:
@@ -73,6 +75,17 @@ def repeated_text(gates: Sequence[Named]) -> str:
     )
 
 
+def stuck_text(gates: Sequence[Named]) -> str | None:
+    """What a stuck driver does where no cut-off is quick enough, and what helps; None where a cut-off is."""
+    slow = [(name, gate.demands) for name, gate in gates if gate.demands.cut_off_display_C.react_within_s < QUICKEST_S]
+    if not slow:
+        return None
+    harm = dict.fromkeys(demands.faults[-1].text for _, demands in slow)
+    cures = dict.fromkeys(_cure_of_stuck(demands) for _, demands in slow)
+    whose = _of(_names([name for name, _ in slow]), len(slow) < len(gates))
+    return f"{next(iter(harm))}, and no cut-off is quick enough{whose}; use {'; or '.join(cures)}"
+
+
 def _cure_of_stuck(demands: Demands) -> str:
     """What prevents harm where no cut-off is quick enough: the part of the sentence before the reason."""
     return demands.faults[-1].prevented_by.partition("; no cut-off")[0].partition(": no cut-off")[0]
@@ -90,11 +103,7 @@ def demands_text(gates: Sequence[Named]) -> str:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
     cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display"
-    slow = [name for name, demands in every if demands.cut_off_display_C.react_within_s < QUICKEST_S]
-    parts.append(cut_off if slow else f"{cut_off} within {within:g} s")
-    if slow:
-        cures = dict.fromkeys(_cure_of_stuck(demands) for name, demands in every if name in slow)
-        parts.append(f"no cut-off is quick enough{_of(_names(slow), len(slow) < len(every))}: {'; '.join(cures)}")
+    parts.append(cut_off if within < QUICKEST_S else f"{cut_off} within {within:g} s")
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]
