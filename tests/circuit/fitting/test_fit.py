@@ -107,6 +107,7 @@ def test_two_clocks_one_shifted_and_one_that_drifts(true_rig: Rig, thenar: Rig, 
         fit([drive, foreign], thenar, free=KEYS)
 
 
+@pytest.mark.slow
 def test_several_runs_share_the_rig(true_rig: Rig, thenar: Rig, log: Log) -> None:
     again = synthetic_log(true_rig, seed=4, rate_Hz=20.0, name="second.csv")
     both = fit([log, again], thenar, free=KEYS)

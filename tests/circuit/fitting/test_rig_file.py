@@ -24,6 +24,7 @@ def fitted(log: Log, thenar: Rig, tmp_path_factory: pytest.TempPathFactory) -> R
     return fit(str(path), thenar, free=[*TRUTH, "ambient.temperature_C", "skin.rest_C"])
 
 
+@pytest.mark.slow
 def test_the_file_reads_back_with_values_uncertainty_and_provenance(fitted: RigFit, tmp_path: Path) -> None:
     fitted.save(tmp_path / "mine.toml")
     back = Rig.load(tmp_path / "mine.toml")

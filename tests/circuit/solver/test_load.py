@@ -90,6 +90,7 @@ def test_nothing_is_judged_for_people_on_a_load(load: dict[str, float]) -> None:
         deliver(icon, rig, Device.load("dac-16"))
 
 
+@pytest.mark.slow
 def test_a_log_of_a_block_is_fitted_and_says_nothing_of_contact_with_skin() -> None:
     truth = THENAR.with_(load=BLOCK, **{"contact.resistance_m2K_per_W": 2e-4})
     log = synthetic_log(truth, seed=3)

@@ -115,6 +115,7 @@ def test_an_endless_line_is_shown_in_part() -> None:
     assert "…" in error.render()
 
 
+@pytest.mark.slow
 def test_of_many_errors_a_hundred_are_shown() -> None:
     with pytest.raises(CueErrors, match="and 50 more errors") as caught:
         parse("cue 1\nicon x {\n" + "hodl for 1 s\n" * 150 + "}")

@@ -110,6 +110,7 @@ def test_a_set_counts_and_slices_members() -> None:
         SET["ramp"]
 
 
+@pytest.mark.slow
 def test_a_family_ends_at_a_hundred_thousand_members() -> None:
     text = "cue 1; icon x(a in 0.01..10 step 0.01 K, b in 0.1..LAST step 0.1 s) { pulse by a for b }"
     many = parse(text.replace("LAST", "1"))

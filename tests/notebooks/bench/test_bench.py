@@ -42,6 +42,7 @@ def test_a_function_is_warm_before_it_is_timed_and_not_run_beyond_its_budget() -
     assert len(timed(lambda: sum(range(200_000)), most=100, budget_s=1e-9).seconds) == 1
 
 
+@pytest.mark.slow
 def test_processor_time_includes_that_of_a_command() -> None:
     took = command_timed(["--version"], 1)
     assert took.processor_s > 0.01

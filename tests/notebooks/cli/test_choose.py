@@ -59,6 +59,7 @@ def test_the_json_says_what_was_chosen(ranked: Callable[..., dict[str, Any]], ob
     assert "as a set of their own: " in found["stdout"]
 
 
+@pytest.mark.slow
 def test_without_the_question_nothing_is_chosen(ranked: Callable[..., dict[str, Any]]) -> None:
     found = ranked()
     assert found["chosen"] is None

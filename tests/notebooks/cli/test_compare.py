@@ -64,6 +64,7 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
     assert target.split()[1:5] == ["10", "K", "2.00", "s"]
 
 
+@pytest.mark.slow
 def test_two_sets_are_paired_by_name(cli: Cli, two: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.cue"
     text = two.read_text(encoding="utf-8").replace("cool by 6", "cool by 5").replace("icon warm-step", "icon hot-step")
@@ -78,6 +79,7 @@ def test_two_sets_are_paired_by_name(cli: Cli, two: Path, tmp_path: Path) -> Non
     assert cli("compare", two, other, "--icon", "warm-step").exit_code == 1
 
 
+@pytest.mark.slow
 def test_the_better_of_two_sets_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
     worse = tmp_path / "worse.cue"
     body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"

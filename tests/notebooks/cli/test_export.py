@@ -37,6 +37,7 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
 
 
+@pytest.mark.slow
 def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     weak = ("--set", "driver.transconductance_A_per_V=0.1")
@@ -344,6 +345,7 @@ def test_a_slow_device_gets_a_sound_file_that_plays(cli: Cli, two: Path, tmp_pat
     assert "use dc-coupled-audio, or another format" in said.stderr
 
 
+@pytest.mark.slow
 def test_the_duties_of_a_bridge_are_not_replayed_and_the_message_says_why(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert cli("export", two, "--to", "csv", "--device", "pwm-h-bridge-10", "-o", out, "--force", *SURE).exit_code == 0

@@ -129,6 +129,7 @@ def test_misspelt_columns_and_text_cells_are_named(cli: Cli, log: Path, tmp_path
     assert "display_C is 'n/a' in 10 of" in said.stderr
 
 
+@pytest.mark.slow
 def test_a_log_is_laid_beside_a_trace(cli: Cli, log: Path, tmp_path: Path) -> None:
     figure = tmp_path / "beside.png"
     said = cli("simulate", "calibration-drive", "--measured", log, "--figure", figure, "--set", f"{CONTACT}=7e-4")

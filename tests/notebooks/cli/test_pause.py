@@ -84,6 +84,7 @@ class TestCommand:
 class TestFiles:
     """What the gate says stands beside the drive and in what plays it."""
 
+    @pytest.mark.slow
     def test_the_sidecar_has_repetition_and_the_demands(self, glow: PreparedExport) -> None:
         gate = verdict(glow)
         about = json.loads(pack(glow.prepared, glow.form)["glow.json"])

@@ -51,6 +51,7 @@ def test_observed_prints_writes_and_keeps(cli: Cli, two: Path, answers: Path, tm
     assert not list(tmp_path.glob(".*"))
 
 
+@pytest.mark.slow
 def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, answers: Path) -> None:
     said = [cli("observed", answers, two, *QUICK, "--seed", 4, "--json", "-").stdout for _ in range(2)]
     assert said[0] == said[1]

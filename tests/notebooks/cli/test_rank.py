@@ -58,6 +58,7 @@ def test_the_json_has_the_promised_keys(ranked: dict[str, Any]) -> None:
     assert set(ranked["set"]) >= SET
 
 
+@pytest.mark.slow
 def test_rows_of_the_confusions_sum_to_one(ranked: dict[str, Any]) -> None:
     assert ranked["confusion"]["labels"] == ["cool-step", "warm-step"]
     for row in ranked["confusion"]["probability"]:
@@ -133,6 +134,7 @@ def test_a_sweep_warns_of_another_site(cli: Cli, two: Path) -> None:
     assert "is for the site forearm" in said.stderr
 
 
+@pytest.mark.slow
 def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
     options = ("--people", 2, "--norm", "rms", "--set", "driver.current_limit_A=0.3", "--json", out)
@@ -149,6 +151,7 @@ def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path
     assert "on the thenar rig (seed 0, display tracking)." in plain
 
 
+@pytest.mark.slow
 def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
     said = cli("rank", two, "--people", 1, "--trials", 1)
     assert "95 % of people" not in said.stdout

@@ -120,6 +120,7 @@ def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path) -> None:
     assert said.stdout.endswith(f"\n  nearest   {near.sentence}\n")
 
 
+@pytest.mark.slow
 def test_a_miss_beside_a_file_says_how_to_mend_it(cli: Cli, two: Path, tmp_path: Path) -> None:
     out, picture = tmp_path / "a.csv", tmp_path / "a.png"
     options = ("--icon", "cool-step", "--set", "driver.current_limit_A=0.8", "-o", out, "--figure", picture)

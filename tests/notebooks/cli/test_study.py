@@ -61,6 +61,7 @@ def test_conditions_name_files_that_are_there(out: Path) -> None:
         assert all((out / row["drive_file"]).is_file() and (out / row["sidecar_file"]).is_file() for row in rows)
 
 
+@pytest.mark.slow
 def test_the_same_study_gives_the_same_bytes(out: Path, tmp_path: Path) -> None:
     again = make(tmp_path, QUICK)
     assert {path.name: path.read_bytes() for path in again.iterdir()} == {
@@ -84,6 +85,7 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
     assert "run_study.py: is missing; study.json names it" in said.stderr
 
 
+@pytest.mark.slow
 def test_the_report(tmp_path: Path, cli: Cli) -> None:
     said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "made")
     assert said.exit_code == 0
@@ -129,6 +131,7 @@ def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
     assert "the shortest pause that is safe" in said.stdout
 
 
+@pytest.mark.slow
 def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
     """In the short session of this rig no drive is too much by itself; in the whole order of play they are."""
     rules = (
@@ -152,6 +155,7 @@ def test_a_session_that_is_too_long_is_said(tmp_path: Path, cli: Cli) -> None:
     )
 
 
+@pytest.mark.slow
 def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
     out = tmp_path / "out"
     out.mkdir()

@@ -61,6 +61,7 @@ def test_equal_ratios(cli: Cli, two: Path) -> None:
     assert frame["cold_receptor_peak_change_K"].is_monotonic_increasing
 
 
+@pytest.mark.slow
 def test_two_keys_make_a_grid(cli: Cli, two: Path, tmp_path: Path) -> None:
     limit, out, figure = "driver.current_limit_A", tmp_path / "grid.csv", tmp_path / "grid.png"
     options = ("--vary", f"{AREA}=4:16:2", "--vary", f"{limit}=0.7:1.5:3", "--figure", figure)

@@ -80,6 +80,7 @@ def test_the_threshold_is_recovered(threshold_K: float, seed: int, out: Path, tm
     assert 2 <= found["catch_trials"] <= 16
 
 
+@pytest.mark.slow
 def test_a_stopped_run_goes_on_with_what_it_knows(out: Path, tmp_path: Path) -> None:
     run(out, tmp_path, "--press", "200:q")
     before = rows_of(tmp_path / "sub-A_task-cold_answers.csv")

@@ -107,6 +107,7 @@ def test_what_is_not_reached_is_written_only_on_request(tmp_path: Path) -> None:
     assert (tmp_path / "cold.csv").exists()
 
 
+@pytest.mark.slow
 def test_a_device_offers_the_formats_that_it_takes(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.device.value = "qst-tcs2"

@@ -155,6 +155,7 @@ def notebook(*cells: str) -> nbformat.NotebookNode:
     return nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_pictures_and_stops_at_mistakes() -> None:
     made = notebook(
         "%load_ext thermicon.notebooks",

@@ -119,6 +119,7 @@ def test_both_icons_lie_over_each_other_on_one_clock(ranked: Bench) -> None:
     assert {len(buffer) for buffer in frame.buffers} == {frame.meta["time"]["n"]}
 
 
+@pytest.mark.slow
 def test_an_edit_is_applied_to_the_text_and_can_be_undone() -> None:
     bench = Bench(TWO)
     assert not bench.view.apply.disabled, bench.said("edit_text")

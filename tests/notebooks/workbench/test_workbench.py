@@ -77,6 +77,7 @@ def test_an_icon_that_is_not_there_is_an_error() -> None:
     assert Workbench("six-icons", icon="double-dip").icon.name == "double-dip"  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_too_many_icons_are_not_ranked() -> None:
     text = "cue 1; icon ramp(a in 1..6 step 0.01 °C, b in 1..3 step 0.2 °C/s) { cool by a at b; return at b }"
     with pytest.raises(ValueError, match=r"icons are more than the 2,000 that are compared at once: narrow the family"):
@@ -211,6 +212,7 @@ def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
     assert sorted(spent)[len(spent) // 2] < MOST_MS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("view", ["design", "set", "export"])
 def test_every_view_is_a_figure(bench: Workbench, view: Any) -> None:
     figure = bench.figure(view)
@@ -244,6 +246,7 @@ def test_what_a_workbench_can_be_made_of(tmp_path: Path) -> None:
         Workbench(rig="thenr")
 
 
+@pytest.mark.slow
 def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
     shown = bench._repr_mimebundle_()
     assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"

@@ -131,6 +131,7 @@ def test_a_favoured_name_is_given_more_often() -> None:
     assert (favoured[:, 0] > plain[:, 0] + 0.02).all()
 
 
+@pytest.mark.slow
 def test_the_same_whoever_works_on_it() -> None:
     task = Task(context=0.5, gap_s=5.0, bias=0.5)
     one, two = (rank(SIX, RIG, people=150, parameters=0, task=task, workers=n) for n in (1, 2))

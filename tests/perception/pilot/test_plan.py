@@ -53,6 +53,7 @@ def test_long_lists_are_built_of_several_at_a_time() -> None:
         best_list(played, played.correct, 0)
 
 
+@pytest.mark.slow
 def test_a_plan_of_one_and_of_two_sets() -> None:
     icons, rig = read_cue("six-icons"), Rig.load("thenar")
     steps: list[tuple[int, int]] = []

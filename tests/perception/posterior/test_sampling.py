@@ -53,6 +53,7 @@ def test_a_surrogate_of_quadratics_is_exact_and_its_gradient_is_one() -> None:
         assert gradient[place] == pytest.approx(slope, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_chains_have_the_moments_of_the_posterior() -> None:
     surrogate, reference = surrogate_and_reference()
     chains = [extend(begin(SIZE, 0, k), Bent(), reference, surrogate, 1500) for k in range(4)]

@@ -51,6 +51,7 @@ def test_batchs_cover_everyone_once_and_do_not_depend_on_how_many_there_are() ->
         assert asked.at_once == work().at_once
 
 
+@pytest.mark.slow
 def test_the_same_bytes_whatever_the_number_of_workers(few: None, tmp_path: Path) -> None:
     def ranked(workers: int | None, keep: Path | None = None) -> str:
         return rank(ICONS, RIG, people=10, parameters=2, workers=workers, keep=keep).to_json()

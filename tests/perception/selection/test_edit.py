@@ -138,6 +138,7 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
     assert again == pytest.approx(found.d_prime, rel=1e-6) and again >= 2.56
 
 
+@pytest.mark.slow
 def test_what_is_promised_is_what_a_ranking_finds_by_any_norm(six: list[Icon], rig: Rig) -> None:
     whole = load_library("six-icons")
     found = cheapest_edit(six, rig, "warming-step", "linear-warming", people=12, norm="integral", wanted=3.5)

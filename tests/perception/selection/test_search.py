@@ -30,6 +30,7 @@ def found(small: IconSet, rig: Rig) -> SearchResult:
     return search(small, rig, count=4, evaluations=150, people=12, seed=3)
 
 
+@pytest.mark.slow
 def test_the_set_is_plain_icons_that_say_where_they_come_from(found: SearchResult, small: IconSet) -> None:
     assert parse(str(found.found)) == found.found
     assert not found.found.families
@@ -55,6 +56,7 @@ def test_before_and_after_are_recomputed(found: SearchResult, rig: Rig) -> None:
     assert found.after.d_prime >= found.before.d_prime
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_set(found: SearchResult, small: IconSet, rig: Rig) -> None:
     again = search(small, rig, count=4, evaluations=150, people=12, seed=3)
     assert str(again.found) == str(found.found)

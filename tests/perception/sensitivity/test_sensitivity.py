@@ -87,6 +87,7 @@ def test_the_same_arguments_give_the_same_numbers(found: Sensitivity, rig: Rig) 
     assert steps == [(k, 96) for k in range(1, 97)]
 
 
+@pytest.mark.slow
 def test_a_rig_whose_contact_is_known_leaves_less_doubt_about_it(rig: Rig, found: Sensitivity) -> None:
     known = rig.with_(**{"uncertainty.contact_resistance_relative": 0.31})
     wide = rig.with_(**{"uncertainty.contact_resistance_relative": 0.9})
