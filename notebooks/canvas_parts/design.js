@@ -11,7 +11,7 @@ class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
     Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {}, onForget: () => {} });
-    this.kept = new Kept(id, (text) => this.takeBack(text), () => this.forget(), say, (type) => flow.tell({ type }));
+    this.unsaved = new UnsavedText(id, (text) => this.takeBack(text), () => this.forget(), say, (type) => flow.tell({ type }));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
       onUndo: () => flow.post({ type: "undo" }),
@@ -38,12 +38,12 @@ class DesignView {
     const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
     this.measured = make("p", { class: "tm-measured", hidden: true });
     const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, this.kept.element, this.measured, split, this.noteList);
+    return make("div", { class: "tm-design" }, bar, this.unsaved.element, this.measured, split, this.noteList);
   }
 
   edited(text) {
     this.editSeq = this.flow.post({ type: "text", text });
-    this.kept.note(text);
+    this.unsaved.note(text);
     this.onLocalText(text);
   }
 
@@ -56,7 +56,7 @@ class DesignView {
   }
 
   forget() {
-    this.kept.forget();
+    this.unsaved.forget();
     this.onForget();
     this.editor.focus();
     this.say("The earlier text was discarded.");
@@ -70,7 +70,7 @@ class DesignView {
   takeText(text) {
     if (text === null || this.textPending) return;
     this.editor.replace(text);
-    this.kept.note(text);
+    this.unsaved.note(text);
   }
 
   show(frame) {

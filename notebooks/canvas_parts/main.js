@@ -32,8 +32,8 @@ class Workbench {
   }
 
   showLate(late) {
-    const { kept } = this.view ?? {};
-    const text = kept?.place ? (kept.works ? "; your text is saved in this page" : "; copy your text first") : "";
+    const { unsaved } = this.view ?? {};
+    const text = unsaved?.place ? (unsaved.works ? "; your text is saved in this page" : "; copy your text first") : "";
     this.banner.hidden = !late;
     this.copy.hidden = !text;
     setText(this.copy, "Copy text");
@@ -79,7 +79,7 @@ class Workbench {
     this.root.dataset.view = kind;
     this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
     this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
-    this.view.onForget = () => this.tellSiblings((view) => view.kept?.close());
+    this.view.onForget = () => this.tellSiblings((view) => view.unsaved?.close());
   }
 
   /** Views of one model show one text: what is typed in one stands in the others at once. */

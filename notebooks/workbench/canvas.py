@@ -37,7 +37,7 @@ PARTS = (
     "complete",
     "troubles",
     "editor",
-    "kept",
+    "unsaved",
     "design",
     "heat",
     "main",

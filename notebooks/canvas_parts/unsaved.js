@@ -30,13 +30,13 @@ function markOf(text) {
   return `${text.length} ${mark >>> 0}`;
 }
 
-class Kept {
+class UnsavedText {
   /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say, `tell` the kernel. */
   constructor(id, onTake, onForget, say, tell) {
     Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say, tell });
     const button = (name, act) => make("button", { type: "button", class: "tm-button", onclick: act }, name);
     this.element = make(
-      "div", { class: "tm-kept", role: "group", "aria-label": "Earlier text", hidden: true },
+      "div", { class: "tm-unsaved", role: "group", "aria-label": "Earlier text", hidden: true },
       make("span", {}, "An earlier text was saved:"),
       button("Restore it", () => onTake(this.offered)), button("Discard", onForget),
     );

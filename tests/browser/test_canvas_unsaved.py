@@ -30,7 +30,7 @@ def append(bench: Bench, text: str) -> None:
 
 
 def offered(bench: Bench) -> bool:
-    return bool(bench.page.locator(".tm-kept").is_visible())
+    return bool(bench.page.locator(".tm-unsaved").is_visible())
 
 
 def text_of(bench: Bench) -> str:
@@ -41,7 +41,7 @@ def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
     assert not offered(edited)
     edited.again("two")
     assert offered(edited)
-    assert edited.page.locator(".tm-kept span").inner_text() == "An earlier text was saved:"
+    assert edited.page.locator(".tm-unsaved span").inner_text() == "An earlier text was saved:"
     edited.said(OFFER)
     assert text_of(edited) == TEXT
     assert edited.sent("text") == []
@@ -103,7 +103,7 @@ def test_two_views_of_one_model_decide_once(edited: Bench) -> None:
     edited.again("two")
     edited.show(key="two")
     edited.frame(design())
-    bars = edited.page.locator(".tm-kept:visible")
+    bars = edited.page.locator(".tm-unsaved:visible")
     assert bars.count() == 2
     bars.nth(1).get_by_role("button", name="Discard").click()
     assert bars.count() == 0
