@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -78,3 +81,25 @@ def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
     text = TABLES[name]()
     assert len({line.count(" | ") for line in text.splitlines()}) == 1
     assert not re.search(r"\d[eE][+-]?\d", text)
+
+
+def parted(text: str) -> tuple[list[str], list[str]]:
+    """Lines of the header, less the digest of the file itself, and rows of numbers."""
+    lines = text.splitlines()
+    header = [line for line in lines if line.startswith("#") and "sha256" not in line]
+    return header, [line for line in lines if not line.startswith("#")]
+
+
+@pytest.mark.slow
+def test_calibrate_makes_the_shipped_draws_from_their_seed(tmp_path: Path) -> None:
+    """Six minutes of processor time. The order of the shipped rows is older: a row that once was first is second."""
+    made = tmp_path / "draws.csv"
+    command = [sys.executable, "-m", "thermicon.notebooks", "calibrate", "--seed", "0", "-o", made]
+    subprocess.run(command, check=True, capture_output=True)
+    (header, rows), (own_header, own_rows) = (
+        parted(path.read_text("utf-8")) for path in (DATA / "posterior.csv", made)
+    )
+    assert own_header == header
+    assert len(own_rows) == 1001
+    assert own_rows[:2] == rows[:2], "names, and the nominal observer"
+    assert sorted(own_rows) == sorted(rows)
