@@ -227,9 +227,7 @@ def _too_narrow(fitted: Rig, start: Rig) -> tuple[str, ...]:
     ]
     if not most:
         return ()
-    return (
-        f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",
-    )
+    return (f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",)
 
 
 def _kept_sentences(unknown: Sequence[Parameter]) -> tuple[str, ...]:
