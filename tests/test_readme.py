@@ -21,7 +21,12 @@ from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
 from thermicon.notebooks.study.keys_table import keys_table
-from thermicon.notebooks.text.schema_table import device_keys_table, device_quantities_table, rig_keys_table
+from thermicon.notebooks.text.schema_table import (
+    device_keys_table,
+    device_quantities_table,
+    modules_table,
+    rig_keys_table,
+)
 from thermicon.perception.posterior import posterior_tables as tables
 from thermicon.perception.validation.memory_forms import forms_table
 
@@ -39,6 +44,7 @@ TABLES = {
     "forms of memory": forms_table,
     "study keys": keys_table,
     "rig keys": rig_keys_table,
+    "modules": modules_table,
     "device keys": device_keys_table,
     "device quantities": device_quantities_table,
 }

@@ -136,16 +136,16 @@ def check_clocks(problem: Problem, theta: Array) -> None:
                 )
 
 
-def remarks(problem: Problem, theta: Array) -> tuple[str, ...]:
-    """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks."""
+def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
+    """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks.
+
+    With a `misfit`, an offset is a consequence of what is wrong elsewhere rather than a fault of the sensor.
+    """
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     for r, c, channel in problem.channels():
         offset = problem.nuisance(theta, "offset", r, c)
         if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0:
-            sentences.append(
-                f"{channel.file}: {channel.column} reads {offset:+.2f} K off, more than the "
-                f"{problem.offset_sd_K:g} K (SD) that sensors are assumed to be; calibrate it".replace("-", "−", 1)
-            )
+            sentences.append(_offset(channel, offset, problem.offset_sd_K, misfit))
     for r, run in enumerate(problem.runs):
         if problem.start_count == STEADY_BEFORE and (change := problem.nuisance(theta, "start", r, 0)):
             sentences.append(
@@ -160,6 +160,17 @@ def remarks(problem: Problem, theta: Array) -> tuple[str, ...]:
                 f"{drift * 1e6:.0f} parts per million".replace("-", "−")
             )
     return tuple(sentences)
+
+
+def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> str:
+    size = f"{offset_K:+.2f} K".replace("-", "−")
+    usual = f"more than the {usual_K:g} K (SD) that sensors are assumed to be"
+    if not misfit:
+        return f"{channel.file}: {channel.column} reads {size} off, {usual}; calibrate it"
+    return (
+        f"{channel.file}: {channel.column} is fitted with an offset of {size}, {usual}; since the rig does not match "
+        f"the log, the offset may stand for what the rig has wrong: mend that before you doubt the sensor"
+    )
 
 
 def _slow_drives(problem: Problem) -> list[str]:

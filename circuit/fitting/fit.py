@@ -16,11 +16,11 @@ from ..rig.rig import Rig
 from .checks import aligned, check_clocks, check_sensors, remarks, unsteady
 from .identify import T95, Parameter, cures, is_identified
 from .keys import FitError, FitKey, free_keys, value_of
-from .left_out import left_out
-from .log import Log
+from .left_out import beyond_noise, left_out
+from .log import Log, LogError
 from .log_files import read_log
 from .problem import FREE_START, STEADY, STEADY_BEFORE, Problem
-from .rig_file import reason_of, uncertainties
+from .rig_file import LARGEST, reason_of, uncertainties
 from .rig_fit import ChannelFit, RigFit
 from .runs import runs_of
 from .solve import Solution, fits_better, solve
@@ -34,6 +34,10 @@ BOUND = 1e-3
 ALIKE = 3.0
 """From so many alike neighbours on, a note says that the rig leaves something out."""
 
+NOT_NARROWED = (
+    "the rig does not match the logs within their noise, so that the uncertainty which the safety gate relies on is "
+    "not narrowed by this fit"
+)
 MOST_OFFSET_K = 10.0
 """A sensor that is off by more is broken."""
 
@@ -125,7 +129,15 @@ def _solved(problem: Problem, held: bool | None) -> tuple[Problem, Solution]:
 
 def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
     several = [logs] if isinstance(logs, Log | str | Path) else list(logs)
-    return [log if isinstance(log, Log) else read_log(log) for log in several]
+    read = [log if isinstance(log, Log) else read_log(log) for log in several]
+    for place, log in enumerate(read):
+        for earlier in read[:place]:
+            if earlier is log or (log.sha256 and log.sha256 == earlier.sha256):
+                raise LogError(
+                    f"{log.name}: has the same content as {earlier.name}, given before it; counted twice, a log "
+                    f"makes the intervals too narrow: name it once"
+                )
+    return read
 
 
 def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
@@ -155,24 +167,75 @@ def _result(
         _parameter(start, key, float(solution.theta[k]), float(deviation[k]), sure[k], advice.get(k, ""))
         for k, key in enumerate(keys)
     )
-    fitted = problem.rig_at(solution.theta)
+    noise = left_out(problem, solution)
+    alike = _alike(problem, solution)
+    stopped = () if solution.converged else ("the fit did not come to rest; free fewer keys",)
+    unknown = tuple(item for item in parameters if not item.identified)
+    kept = _without(problem, solution, unknown) if unknown and not noise else ()
+    misfit = bool(noise or alike or kept or stopped)
+    fitted = problem.rig.with_(**{item.key: item.value for item in parameters if item.identified})
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
+    skin = start.bench_load is None
     if not measured:  # a voltage alone cannot show what the rig leaves out
         notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters, skin=start.bench_load is None):
+    elif stated := uncertainties(keys, parameters, skin=skin, misfit_of=start.uncertainty if misfit else None):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
-        fitted = fitted.with_(**changes, **{"uncertainty.reason": reason_of(start, sources)})
-    alike = [
+        reason = {} if misfit else {"uncertainty.reason": reason_of(start, sources)}
+        fitted = fitted.with_(**changes, **reason)
+    closing = (
+        *_kept_sentences(unknown),
+        *((NOT_NARROWED,) if misfit and measured else ()),
+        *_too_narrow(fitted, start),
+    )
+    remarked = remarks(problem, solution.theta, misfit=misfit)
+    return RigFit(
+        fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
+        (*notes, *noise, *alike, *kept, *stopped, *remarked, *closing), solution.converged, misfit,
+    )  # fmt: skip
+
+
+def _alike(problem: Problem, solution: Solution) -> tuple[str, ...]:
+    """Sentences on channels whose residuals have a structure, although they may be as small as the noise."""
+    return tuple(
         f"{channel.file}: {channel.column}: neighbouring residuals are alike, so that the rig leaves something out; "
         f"intervals are {math.sqrt(factor):.1f} times as wide as its noise alone would make them"
         for (_, _, channel), factor in zip(problem.channels(), solution.inflation, strict=True)
         if factor > ALIKE
+    )
+
+
+def _without(problem: Problem, solution: Solution, unknown: Sequence[Parameter]) -> tuple[str, ...]:
+    """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
+    theta, names = solution.theta.copy(), {item.key for item in unknown}
+    for k, key in enumerate(problem.keys):
+        if key.key in names:
+            theta[k] = problem.first[k]
+    if problem.predictions(theta) is not None and not beyond_noise(problem, theta):
+        return ()
+    return (
+        "the logs need another combination of the keys that are not identified, and the rig that keeps their values "
+        "misses the logs by more than their noise: leave one of them out of the free keys",
+    )
+
+
+def _too_narrow(fitted: Rig, start: Rig) -> tuple[str, ...]:
+    """A sentence on uncertainties that reached the most a rig file may state."""
+    most = [
+        f"{key} = {limit:g}"
+        for key, limit in LARGEST.items()
+        if getattr(fitted.uncertainty, key) == limit > getattr(start.uncertainty, key)
     ]
-    stopped = () if solution.converged else ("the fit did not come to rest; free fewer keys",)
-    return RigFit(
-        fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
-        (*notes, *remarks(problem, solution.theta), *alike, *left_out(problem, solution), *stopped), solution.converged,
-    )  # fmt: skip
+    if not most:
+        return ()
+    return (f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",)
+
+
+def _kept_sentences(unknown: Sequence[Parameter]) -> tuple[str, ...]:
+    """What the fitted rig keeps, since the logs do not say it."""
+    if not unknown:
+        return ()
+    values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in unknown)
+    return (f"not identified, so that the fitted rig keeps value and uncertainty of the rig before: {values}",)
 
 
 def _at_bound(problem: Problem, theta: Array, place: int) -> bool:

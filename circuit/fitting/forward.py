@@ -89,7 +89,11 @@ def predict(rig: Rig, run: Run, start: Start | None = None, guess_A: Array | Non
         change, current = float(np.abs(better - current).max()), better
         if change < SETTLED_A:
             return found
-    raise RigError(f"rig {rig.name}: no current follows the voltage of {run.name}; check voltage_V and the module")
+    others = f"; columns that are not used: {run.unused}" if run.unused else ""
+    raise RigError(
+        f"rig {rig.name}: no current follows from voltage_V of {run.name}, which is taken as the drive since there is "
+        f"no column current_A or command_V{others}; give the current as current_A, or check voltage_V and the module"
+    )
 
 
 def _play(rig: Rig, drive: Drive, start: Start | None) -> Trace:

@@ -21,14 +21,28 @@ WORTH = 0.3
 MOST_NAMED = 2
 
 
+def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
+    """Sentences on channels whose residuals at a point exceed the noise of the log; few wild rows do not count."""
+    found = problem.predictions(theta)
+    assert found is not None
+    sentences = []
+    for r, c, channel in problem.channels():
+        inside = problem.inside(theta, r, channel)
+        residual = (channel.values - problem.modelled(theta, r, c, found[r]))[inside]
+        noise = noise_of(channel)
+        if residual.size and 1.4826 * float(np.median(np.abs(residual))) > BEYOND * noise:
+            rms = float(np.sqrt(np.mean(residual**2)))
+            unit = "K" if channel.temperature else "V"
+            sentences.append(
+                f"{channel.file}: {channel.column}: residuals of {milli(rms, unit)} rms exceed the log's own noise of "
+                f"{milli(noise, unit)}"
+            )
+    return tuple(sentences)
+
+
 def left_out(problem: Problem, solution: Solution) -> tuple[str, ...]:
     """Sentences on channels whose residuals exceed the noise of the log, and on keys to free."""
-    beyond = [
-        f"{channel.file}: {channel.column}: residuals scatter by {_milli(sd, channel)}, the log's own noise is "
-        f"{_milli(noise, channel)}"
-        for (_, _, channel), sd in zip(problem.channels(), solution.sigma, strict=True)
-        if sd > BEYOND * (noise := noise_of(channel))
-    ]
+    beyond = beyond_noise(problem, solution.theta)
     if not beyond:
         return ()
     keys = explaining(problem, solution)
@@ -82,5 +96,11 @@ def _can_move(value: float | None) -> bool:
     return value is not None and value != 0.0
 
 
-def _milli(value: float, channel: Channel) -> str:
-    return f"{1e3 * value:.2g} m{'K' if channel.temperature else 'V'}"
+def milli(value: float, unit: str) -> str:
+    """A difference in K or V in thousandths, from 1 on in the unit itself.
+
+    >>> milli(0.0344, "V"), milli(-1.23, "K")
+    ('34.4 mV', '−1.23 K')
+    """
+    text = f"{1e3 * value:.3g} m{unit}" if abs(value) < 0.9995 else f"{value:.3g} {unit}"
+    return text.replace("-", "−")

@@ -59,6 +59,8 @@ class Log:
         Name and values (rows,) of every column; NaN where nothing was recorded.
     notes
         What was adjusted or left out on reading.
+    unused
+        The file's columns that are not used, as people read them.
 
     Examples
     --------
@@ -72,6 +74,7 @@ class Log:
     time_s: Array
     columns: tuple[tuple[str, Array], ...]
     notes: tuple[str, ...] = field(default=())
+    unused: str = ""
 
     def __repr__(self) -> str:
         span = self.time_s[-1] - self.time_s[0]
@@ -85,10 +88,12 @@ class Log:
         sha256: str = "",
         notes: Sequence[str] = (),
         rows: Sequence[str] | None = None,
+        unused: str = "",
     ) -> Log:
         """Return a checked log of columns by name, `time_s` among them.
 
-        `rows` are the places of the rows in a file, for messages. Raises LogError for what cannot be a log.
+        `rows` are the places of the rows in a file, and `unused` its other columns, for messages.
+        Raises LogError for what cannot be a log.
         """
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
@@ -113,7 +118,7 @@ class Log:
         more = (f"{name}: columns that are not used: {', '.join(left_out)}",) if left_out else ()
         for array in (time, *used.values()):
             array.setflags(write=False)
-        return Log(name, sha256, time, tuple(used.items()), (*notes, *more))
+        return Log(name, sha256, time, tuple(used.items()), (*notes, *more), unused or ", ".join(left_out))
 
     @property
     def drive(self) -> str | None:

@@ -43,6 +43,15 @@ NOTHINGS = (NOTHING, "na", "nan")
 MISSPELT = 0.85
 """A name of a column that is so much alike a known one is taken for a slip of the pen."""
 
+OTHER_NAMES = {
+    "current_A": ("amps", "amp", "ampere", "amperes", "a", "i", "current", "i_a", "amps_a"),
+    "voltage_V": ("volts", "volt", "v", "u", "voltage", "u_v"),
+    "command_V": ("command", "control", "control_v", "input_v"),
+    "display_C": ("display", "temp", "temperature", "temp_c", "thermistor", "thermocouple"),
+    "skin_C": ("skin", "skin_temp"),
+}
+"""Names that people give to columns of a log, in lower case; none is taken for the other without being asked."""
+
 SESSION_TIME = ("time_s", "onset", "time", "t")
 
 
@@ -133,9 +142,10 @@ def _from_text(where: Path, text: str, digest: str) -> Log:
     notes = (f"{where.name}: display_C and setpoint_C are means over the zones",) if merged else ()
     used = set(values) if merged else set(columns)
     left_out = [name for name in header if name not in used and name != "icon"]
-    more = (f"{where.name}: columns that are not used: {', '.join(left_out[:8])}",) if left_out else ()
+    listed = ", ".join(_with_likely_name(name, columns) for name in left_out[:8])
+    more = (f"{where.name}: columns that are not used: {listed}",) if left_out else ()
     texts = tuple(f"{where.name}: {gap}" for gap in gaps)
-    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts, *more), rows=places)
+    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts, *more), rows=places, unused=listed)
 
 
 def _check_header(header: Sequence[str], place: str) -> None:
@@ -167,6 +177,12 @@ def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str
     parts = [f"missing: {', and '.join(missing)}"] if missing else []
     parts += [*wrong, *hints, f"found {', '.join(header[:12])}"]
     raise LogError(f"{name}: {'; '.join(parts)}")
+
+
+def _with_likely_name(cell: str, columns: Mapping[str, Array]) -> str:
+    """A column that is not used, with the name it should have where it goes by another that people use."""
+    likely = next((name for name, others in OTHER_NAMES.items() if cell.lower() in others), None)
+    return cell if likely is None or likely in columns else f"{cell} (rename it {likely}, if that is what it is)"
 
 
 def _misspelt(cell: str, known: Sequence[str]) -> str | None:

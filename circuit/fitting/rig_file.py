@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..program import own_version
+from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rig_text import toml_text
 from ..rig.rigfile import UncertaintyTable
@@ -17,6 +18,10 @@ from .keys import FitKey
 DIGEST_DIGITS = 16
 MOST_LOGS_NAMED = 5
 PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
+MISFIT = (
+    "The rig does not match these logs within their noise, so that the intervals cannot be trusted: [uncertainty] is "
+    "as wide as before the fit, or wider."
+)
 LEAST_SHARE = 0.5
 """Share of the shipped uncertainty that is written at least: what a fit holds fixed, skin and heat sink above all, may
 bias it by more than its interval says, and the safety gate relies on it."""
@@ -30,23 +35,46 @@ LARGEST = {
 """The largest uncertainty that a rig file may state."""
 
 
-def uncertainties(keys: Sequence[FitKey], parameters: Sequence[Parameter], *, skin: bool = True) -> dict[str, float]:
+def uncertainties(
+    keys: Sequence[FitKey],
+    parameters: Sequence[Parameter],
+    *,
+    skin: bool = True,
+    misfit_of: Uncertainty | None = None,
+) -> dict[str, float]:
     """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
 
     Both plates share one key: it is the wider of both, and nothing where only one was fitted. Contact with a load
-    (`skin` is False) says nothing of contact with skin.
+    (`skin` is False) says nothing of contact with skin. `misfit_of` is the uncertainty of the rig before a fit whose
+    residuals exceed the noise: only what must be wider is returned then, so that what the rig held before still is.
     """
     stated: dict[str, float] = {}
     identified = {item.key for item in parameters if item.identified}
     for key, item in zip(keys, parameters, strict=True):
-        if not key.uncertainty or not item.identified or (key.key in PLATES and not set(PLATES) <= identified):
+        if not key.uncertainty or not item.identified:
             continue
         if not skin and key.uncertainty == "contact_resistance_relative":
+            continue
+        if misfit_of is not None:
+            before = getattr(misfit_of, key.uncertainty)
+            width = min(_rounded_up(_covering(item, before)), LARGEST[key.uncertainty])
+            if width > before:
+                stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
+            continue
+        if key.key in PLATES and not set(PLATES) <= identified:
             continue
         least = LEAST_SHARE * getattr(_SHIPPED, key.uncertainty)
         width = min(max(least, _rounded_up(item.half_width)), LARGEST[key.uncertainty])
         stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
     return stated
+
+
+def _covering(item: Parameter, before: float) -> float:
+    """Half width about a fitted value that holds the interval and all that the rig before held, ±`before`."""
+    ends = before * item.start if item.log else before
+    low, high = min(item.low, item.start - ends), max(item.high, item.start + ends)
+    most = max(high - item.value, item.value - low)
+    return most / item.value if item.log else most
 
 
 def reason_of(rig: Rig, sources: Sequence[tuple[str, str]]) -> str:
@@ -67,25 +95,40 @@ def named(sources: Sequence[tuple[str, str]]) -> str:
 
 
 def fitted_text(
-    rig: Rig, parameters: Sequence[Parameter], sources: Sequence[tuple[str, str]], name: str | None = None
+    rig: Rig,
+    parameters: Sequence[Parameter],
+    sources: Sequence[tuple[str, str]],
+    name: str | None = None,
+    *,
+    misfit: bool = False,
 ) -> str:
-    """Return the TOML of a fitted rig, by a `name` of its own; every fitted value has interval and logs in [source]."""
+    """Return the TOML of a fitted rig, by a `name` of its own; every fitted value has interval and logs in [source].
+
+    A parameter that was not identified has the value that it had before. `misfit`: residuals exceed the noise.
+    """
     document: dict[str, Any] = _without_nothing(json.loads(rig.document))
     if name:
         document["name"] = name
     origin = document.setdefault("source", {})
     for item in parameters:
-        doubt = "" if item.identified else "; not identified by these logs"
+        if not item.identified:
+            earlier = f"{origin[item.key]}; " if item.key in origin else ""
+            origin[item.key] = (
+                f"{earlier}kept at {item.start:.6g} {item.unit}: not identified by these logs, thermicon "
+                f"{own_version()}; log {named(sources)}"
+            )
+            continue
         origin[item.key] = (
             f"fitted by thermicon {own_version()}: {item.value:.6g} {item.unit}, 95 % {item.low:.6g} to "
-            f"{item.high:.6g}, before {item.start:.6g}{doubt}; log {named(sources)}"
+            f"{item.high:.6g}, before {item.start:.6g}; log {named(sources)}"
         )
-    free = ", ".join(item.key for item in parameters)
+    free = ", ".join(item.key for item in parameters if item.identified) or "nothing"
     notes = [note for note in document.get("notes", []) if not note.startswith("fitted:")]
+    close = MISFIT if misfit else "The intervals hold for the person, the contact and the room of these logs."
     document["notes"] = [
         *notes,
         f"fitted: {free}; logs {'; '.join(f'{name} sha256 {digest}' for name, digest in sources)}; thermicon "
-        f"{own_version()}. The intervals hold for the person, the contact and the room of these logs.",
+        f"{own_version()}. {close}",
     ]
     return toml_text(document)
 

@@ -73,7 +73,7 @@ class RigFit:
     Attributes
     ----------
     rig
-        The fitted rig, with the intervals in its uncertainty.
+        The fitted rig, with the intervals in its uncertainty. What was not identified stays as it was before.
     parameters
         The free keys in the order in which they were named.
     correlation
@@ -86,6 +86,8 @@ class RigFit:
         Sentences on columns, clocks, sensors and the fit itself.
     converged
         Whether the fit came to rest.
+    misfit
+        Whether residuals exceed the noise of the logs; the uncertainty of `rig` is then never narrower than before.
 
     Examples
     --------
@@ -103,6 +105,7 @@ class RigFit:
     sources: tuple[tuple[str, str], ...]
     notes: tuple[str, ...]
     converged: bool
+    misfit: bool = False
 
     def __repr__(self) -> str:
         parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]
@@ -117,7 +120,7 @@ class RigFit:
 
     @property
     def values(self) -> Mapping[str, float]:
-        """Fitted values by key, in the units of the rig file."""
+        """Fitted values by key, in the units of the rig file; those that were not identified are not in `rig`."""
         return {item.key: item.value for item in self.parameters}
 
     @property
@@ -147,7 +150,7 @@ class RigFit:
 
     def rig_text(self, name: str | None = None) -> str:
         """Return the rig file of the fitted rig, with where its numbers come from; None keeps the name of the rig."""
-        return fitted_text(self.rig, self.parameters, self.sources, name)
+        return fitted_text(self.rig, self.parameters, self.sources, name, misfit=self.misfit)
 
     def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the fitted rig as a rig file with its provenance.

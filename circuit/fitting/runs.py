@@ -49,7 +49,8 @@ class Run:
     """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
-    first row by the drive's own clock; `clocks` names the files of the further clocks.
+    first row by the drive's own clock; `clocks` names the files of the further clocks, `unused`
+    the columns that are not used.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Run:
     begin_s: float
     channels: tuple[Channel, ...]
     clocks: tuple[str, ...] = ()
+    unused: str = ""
 
 
 def runs_of(logs: Sequence[Log], rig: Rig, held: bool) -> tuple[Run, ...]:
@@ -116,7 +118,7 @@ def _run(log: Log, sensors: Sequence[Log], rig: Rig, held: bool) -> Run:
     for clock, sensor in enumerate(sensors, 1):
         channels += [_channel(sensor, name, clock) for name in sensor.measured]
     clocks = tuple(sensor.name for sensor in sensors)
-    return Run(log.name, driven_by, time - begin, drive, held, begin, tuple(channels), clocks)
+    return Run(log.name, driven_by, time - begin, drive, held, begin, tuple(channels), clocks, log.unused)
 
 
 def _channel(log: Log, name: str, clock: int) -> Channel:

@@ -35,6 +35,18 @@ _UNITS_SHORT = {
 }
 
 
+def name_of(key: str) -> str:
+    """Return a key without the unit that ends it.
+
+    >>> name_of("contact.resistance_m2K_per_W"), name_of("skin.site")
+    ('contact.resistance', 'skin.site')
+    """
+    for unit in sorted((*_UNITS, *_UNITS_SHORT), key=len, reverse=True):
+        if key.endswith("_" + unit):
+            return key.removesuffix("_" + unit)
+    return key
+
+
 def unit_of(key: str) -> str:
     """Return the unit that ends a key's name, written as people write it.
 

@@ -214,13 +214,40 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
         low, high = sorted(sheet.mean_C for sheet in extractions)
         sentence += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
         if not low <= mean_C <= high:
-            side, end = ("below", low) if mean_C < low else ("above", high)
-            warnings.append(
-                f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … "
-                f"{high:.1f} °C that its two data sheets stand for; the parameters at {end:.1f} °C are used: add a "
-                "[[module.datasheet]] of a hotter side to the rig file, or fit the module to a log (thermicon fit)"
-            )
+            warnings.append(_beyond_sheets(extractions, mean_C, (low, high), own=table.name is None))
     return Peltier(*at_mean_C(extractions, mean_C), *plates, *legs), ModuleOrigin(sentence + ".", tuple(warnings))
+
+
+def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tuple[float, float], *, own: bool) -> str:
+    """A mean temperature beyond both sheets of a module: how much the parameters may be off, and what to do."""
+    low, high = span_C
+    side, end, sheet = ("below", low, "colder") if mean_C < low else ("above", high, "hotter")
+    steps = abs(mean_C - end) / (high - low)
+    first, last = (at_mean_C(extractions, place) for place in span_C)
+    nearest = first if side == "below" else last
+    change = max(abs(b - a) / at * steps for a, b, at in zip(first, last, nearest, strict=True))
+    cure = f"give a [[module.datasheet]] of a {sheet} side in place of one of the two, or " if own else ""
+    return (
+        f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … {high:.1f} °C "
+        f"that its two data sheets stand for; the parameters at {end:.1f} °C are used, from which the trend of both "
+        f"sheets leads away by up to {100 * change:.2g} %: where that matters, {cure}fit the module to a log "
+        f"(thermicon fit)"
+    )
+
+
+def unlike_record(name: str, plates: tuple[float, float], share: float) -> list[str]:
+    """Return a sentence where plates (hot, cold) in J/K are not those on record for a module, within a share of them.
+
+    >>> unlike_record("TEC1-12706", (4.6, 4.6), 0.2)
+    []
+    """
+    plate = build_of(name).plate_J_per_K
+    if plate is None or all(abs(each - plate) <= share * plate for each in plates):
+        return []
+    return [
+        f"module {name}: module.hot_plate_J_per_K and module.cold_plate_J_per_K are {plates[0]:g} and {plates[1]:g} "
+        f"J/K, those on record for it {plate:g} J/K each: set both to that, or state in [source] where yours are from"
+    ]
 
 
 def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:

@@ -156,13 +156,16 @@ class Rig:
         """The rig as the text of a rig file."""
         return toml_text(json.loads(self.document))
 
-    def save(self, path: str | Path) -> None:
+    def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the rig as a rig file, which `Rig.load` reads as an equal rig; an existing file is replaced.
 
         Parameters
         ----------
         path
             A file whose name ends in `.toml`.
+        name
+            Name of the saved rig; None: the rig's own. Give a changed copy of a shipped rig a name of its own, since
+            what is exported for it bears that name.
 
         Raises
         ------
@@ -174,8 +177,9 @@ class Rig:
         where = Path(path)
         if where.suffix != ".toml":
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
-        text = self.toml
-        if _build(parse_toml(text, str(where)), str(where)) != self:
+        saved = self if name is None else self.with_(name=name)
+        text = saved.toml
+        if _build(parse_toml(text, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
             where.write_text(text, encoding="utf-8")

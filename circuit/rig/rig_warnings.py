@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
-from .modules import module_names, unlike_before
+from .modules import module_names, unlike_before, unlike_record
 from .uncertainty import tightened
 
 if TYPE_CHECKING:
     from .rig import Rig
+
+PLATE_KEYS = ("hot_plate_J_per_K", "cold_plate_J_per_K")
+PLATE_SHARE = 0.2
+"""Plates on record are assumed from the footprint, within 20 % for ceramics of 0.5 to 0.8 mm."""
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
@@ -39,7 +44,8 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
         sentences.append(resting)
     sentences += _beyond_the_command(rig)
     origin = () if rig.pump is None else rig.pump.origin.warnings
-    return (*sentences, *origin, *_left_from_another_module(rig), *_left_from_another_site(rig))
+    left = (*_left_from_another_module(rig), *_plates_of_another_module(rig), *_left_from_another_site(rig))
+    return (*sentences, *origin, *left)
 
 
 def _skin_sentences(rig: Rig) -> list[str]:
@@ -93,6 +99,17 @@ def _left_from_another_site(rig: Rig) -> list[str]:
         f"skin.site = {rig.site} changes the name of the site, and thresholds and nerve path that go by it; layers and "
         f"receptor depths are still those of rig {rig.name}: {cure}, skin.cold_receptor_mm and skin.warm_receptor_mm"
     ]
+
+
+def _plates_of_another_module(rig: Rig) -> list[str]:
+    """A sentence where a rig names a module and has the plates of another, without a source for them."""
+    document = json.loads(rig.document)
+    name, plates = document.get("module", {}).get("name"), [f"module.{key}" for key in PLATE_KEYS]
+    stated = {*document.get("source", {}), *(text.partition("=")[0] for text in rig.changes)}
+    if name not in module_names() or stated & set(plates):
+        return []
+    pair = (rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K)
+    return unlike_record(str(name), pair, PLATE_SHARE)
 
 
 def _left_from_another_module(rig: Rig) -> list[str]:

@@ -50,7 +50,7 @@ def simulate_file(
     _write(traces, output, power)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, log, look)
+        draw_overview(played, picture, rig.changes, log, look, settled=tail_s is None)
     cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
     _report(traces, rig, output, pictures, cures, power)
     _beside(log, traces[0], output)

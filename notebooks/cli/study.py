@@ -39,6 +39,7 @@ def study_command(
     from ..study.judging import Refused
 
     materials = read_materials(file)
+    _check_free(folder)
     check_export_folder(folder)
     for warning in materials.rig.warnings:
         note(f"warning: {warning}")
@@ -56,6 +57,17 @@ def study_command(
         typer.echo(line)
     note(f"wrote {len(files)} files into {folder}")
     note(CAUTION)
+
+
+def _check_free(folder: Path) -> None:
+    """Raise OutputError for a folder that holds a study already; answers of participants are named."""
+    from ..files.outputs import OutputError
+
+    if not (folder / "study.json").is_file():
+        return
+    people = len(list((folder / "data").glob("sub-*_answers.csv")))
+    held = f"the answers of {people} participant{'s' if people > 1 else ''} (data/)" if people else "a study"
+    raise OutputError(f"{folder} holds {held} already and was kept; {KEPT}")
 
 
 def report_lines(plan: Plan) -> list[str]:

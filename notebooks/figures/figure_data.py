@@ -106,8 +106,9 @@ def _cells(ax: Axes, values: Any) -> Iterator[list[str]]:
 
 
 def _names(axis: Any, count: int) -> list[str]:
-    ticks = {math.floor(float(tick) + 1e-9): text.get_text() for tick, text in
-             zip(axis.get_ticklocs(), axis.get_ticklabels(), strict=False) if text.get_text()}  # fmt: skip
+    places = axis.get_ticklocs()
+    texts = axis.get_major_formatter().format_ticks(places)  # also of labels that are not shown
+    ticks = {math.floor(float(tick) + 1e-9): text for tick, text in zip(places, texts, strict=True) if text}
     return [ticks.get(k, str(k)) for k in range(count)]
 
 

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from .overview import INK
-from .sweep_figure import icon_styles, key_axis, key_label, key_places, small_multiples, sweep_legend
+from .sweep_figure import draw_missed, icon_styles, key_axis, key_label, key_places, small_multiples, sweep_legend
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 LABELS = {
@@ -21,6 +22,8 @@ LABELS = {
 }
 SHARES = ("correct", "detected")
 BAND = 0.13
+STEP, LEAST_SPAN = 10.0, 20.0
+"""Axes of shares end at tens, and show 20 % at least."""
 
 
 def measure_figure(
@@ -46,6 +49,8 @@ def measure_figure(
     figure, axes = small_multiples(len(columns), across, 3.6)
     places, names = key_places(frame, key)
     styles = icon_styles(frame[frame["icon"] != whole])
+    missed = frame["reached"] == False  # noqa: E712
+    banded = False
     for ax, (value, low, high) in zip(axes, columns, strict=True):
         scale = 100.0 if value in SHARES else 1.0
         for icon, (color, mark) in {**styles, whole: (INK, "")}.items():
@@ -57,7 +62,10 @@ def measure_figure(
             at = places[rows.index]
             style: dict[str, Any] = {"lw": 2.2, "zorder": 4} if icon == whole else {"lw": 1.2, "zorder": 3}
             ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, **style)
+            lost = missed[rows.index]
+            draw_missed(ax, at[lost], scale * rows[value][lost], color)
             if rows[low].notna().any():
+                banded = True
                 ax.fill_between(
                     at, scale * rows[low].astype(float), scale * rows[high].astype(float), color=color,
                     alpha=BAND if icon == whole else 0.5 * BAND, lw=0.0, zorder=1,
@@ -66,11 +74,25 @@ def measure_figure(
         ax.tick_params(labelsize=8)
         ax.grid(alpha=0.25, linewidth=0.6)
         ax.spines[["top", "right"]].set_visible(False)
-        ax.set_ylim(bottom=0.0)
         if value in SHARES:
-            ax.set_ylim(0.0, 103.0)
-        key_axis(ax, names, log)
-    sweep_legend(figure, styles, False, False, whole=whole)
+            ax.set_ylim(*_share_limits(ax))
+        else:
+            ax.set_ylim(bottom=0.0)
+        key_axis(ax, names, log, places)
+    band = "95 % interval, new laboratory" if banded else ""
+    sweep_legend(figure, styles, bool(missed.any()), False, whole=whole, band=band)
     figure.align_ylabels(axes)
     figure.supxlabel(key_label(key), fontsize=10)
     return figure
+
+
+def _share_limits(ax: Axes) -> tuple[float, float]:
+    """Limits in per cent that hold all lines and bands: tens, with room for the marks at 100 %."""
+    import math
+
+    low, high = ax.dataLim.y0, ax.dataLim.y1
+    low = max(0.0, STEP * math.floor(low / STEP))
+    high = min(100.0, STEP * math.ceil(high / STEP))
+    low = max(0.0, min(low, high - LEAST_SPAN))
+    high = max(high, low + LEAST_SPAN)
+    return low, high + 0.03 * (high - low)

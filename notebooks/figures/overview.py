@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from thermicon.perception import Percept, Ranking
 
 COOL, WARM = "#2166ac", "#e08214"
+FLAT = 0.75
+"""Height of a cell to its width, where two heat maps stand below one another."""
 INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
 
 
@@ -151,8 +153,15 @@ def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
     longest = max(map(len, map(draw_heat.short, ranking.labels)))
     side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
     down, across = (2, 1) if stacked else (1, 2)
-    figure = Figure(figsize=(across * (side + 0.6), down * side), layout="constrained")
+    names = 0.06 * longest if stacked else 0.0  # of the upper one, which stand below the lower one
+    high = down * (FLAT if stacked else 1.0) * side - names
+    figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
     distance, confusion = figure.subplots(down, across)
     draw.plot_distance(ranking, ax=distance)
     draw.plot_confusion(ranking, ax=confusion)
+    if stacked:
+        distance.set_xlabel("")
+        distance.tick_params(labelbottom=False)
+        for ax in (distance, confusion):
+            ax.set_aspect(FLAT)
     return figure

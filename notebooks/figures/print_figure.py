@@ -7,6 +7,7 @@ on what is drawn alone: no dates, and fonts are embedded.
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Mapping
 from pathlib import Path
@@ -29,6 +30,9 @@ TYPE_PT, SMALLEST_PT, LARGEST_PT = 7.5, 5.5, 9.0
 HEIGHT_POWER = 0.6
 """Panels lose less height than width, since their labels do not shrink as much as they do."""
 THINNER = 0.75
+IN_BRACKETS = re.compile(r"\s*\([^()]*\)$")
+WIDEST_LABEL = 0.85
+"""Share of the figure's width that a label of the abscissa may take before it is broken."""
 LONGEST_KEY = 30
 """Letters of a line in the key below the panels."""
 EMBEDDED: Mapping[str, Any] = {
@@ -87,17 +91,18 @@ def restyle(figure: Figure, look: Look) -> None:
 
 
 def _drop_title(figure: Figure) -> None:
-    """Titles of panels stay where there are several, since they say what each shows."""
+    """Titles of panels stay where there are several, since they say what each shows; what is in brackets goes."""
     held: Any = figure
     title = figure.get_suptitle() and held._suptitle
     if title:
         title.set_in_layout(False)
         title.set_visible(False)
         title.set_text("")
-    panels = panels_of(figure)
-    if len(panels) == 1:
+    panels: list[Any] = panels_of(figure)
+    for panel in panels:
         for place in ("left", "center", "right"):
-            panels[0].set_title("", loc=place)
+            title = panel.get_title(loc=place)
+            panel.set_title("" if len(panels) == 1 else IN_BRACKETS.sub("", title), loc=place)
 
 
 def _letter_panels(figure: Figure) -> None:
@@ -115,18 +120,30 @@ def _letter_panels(figure: Figure) -> None:
 
 def _resize(figure: Figure, width_mm: float, natural_mm: float) -> None:
     """Give the figure its width, and letters, lines and keys the sizes that go with it."""
+    key_inches = _key_inches(figure)
     if width_mm < NARROW_MM:
         _keys_below(figure)
     _break_titles(figure)
     ratio = min(1.0, width_mm / natural_mm)
-    even = any(ax.get_aspect() == 1.0 for ax in figure.axes)
+    even = any(ax.get_aspect() != "auto" for ax in figure.axes)
     tall = ratio if even else ratio**HEIGHT_POWER
     height = float(figure.get_figheight()) * tall
     figure.set_size_inches(width_mm / MM_PER_INCH, height)
     _resize_letters(figure)
     _resize_lines(figure)
+    _break_labels(figure)
     for legend in list(figure.legends):
         _fit(figure, legend)
+    if key_inches:  # panels keep their height, whatever the key needs
+        figure.set_figheight(height + _key_inches(figure) - tall * key_inches)
+
+
+def _key_inches(figure: Figure) -> float:
+    """Height of the keys of the whole figure, in inches."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    return sum(float(legend.get_window_extent(renderer).height) for legend in figure.legends) / float(figure.dpi)
 
 
 def _break_titles(figure: Figure) -> None:
@@ -136,6 +153,23 @@ def _break_titles(figure: Figure) -> None:
         for loc in ("left", "center"):
             if " (" in (title := ax.get_title(loc=loc)):
                 ax.set_title(title.replace(" (", "\n("), loc=loc)
+
+
+def _break_labels(figure: Figure) -> None:
+    """Labels of the abscissa that are wider than the figure go on in another line."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    held: Any = figure
+    renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    below = [held._supxlabel] if held._supxlabel is not None else []
+    for text in [*below, *(ax.xaxis.label for ax in figure.axes)]:
+        most = WIDEST_LABEL * float(figure.bbox.width)
+        lines: list[str] = []
+        for line in text.get_text().split("\n"):
+            text.set_text(line)
+            wide = float(text.get_window_extent(renderer).width)
+            lines += textwrap.wrap(line, max(10, int(len(line) * most / wide))) if wide > most else [line]
+        text.set_text("\n".join(lines))
 
 
 def _resize_letters(figure: Figure) -> None:
@@ -194,6 +228,10 @@ def _keys_below(figure: Figure) -> None:
             dashes = thing.get_linestyle() if hasattr(thing, "get_linestyle") else ""
             entries.setdefault((label, str(colour), str(dashes)), (thing, label))
         legend.remove()
+    for label, colour, dashes in list(entries):
+        # cold and cold receptor, skin and skin surface: one line, one entry
+        if any(other[0].startswith(f"{label} ") and other[1:] == (colour, dashes) for other in entries):
+            del entries[label, colour, dashes]
     if entries:
         handles, labels = zip(*sorted(entries.values(), key=lambda entry: len(entry[1])), strict=True)
         figure.legend(

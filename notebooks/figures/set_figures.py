@@ -61,7 +61,11 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
                 f"and {names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
             )
         draw_overview(
-            simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{stem}.{kind}", rig.changes, look=look
+            simulate(icon, rig, tail_s=FELT_TAIL_S),
+            folder / f"overview-{stem}.{kind}",
+            rig.changes,
+            look=look,
+            settled=True,
         )
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
     note(f"wrote {', '.join(f'{name}.{kind}' for name in drawn)} and {count} into {folder}")

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 COOLS = ("#0b3c6f", "#2166ac", "#5aa5dc", "#9ccbee")
 WARMS = ("#7a3603", "#e08214", "#f3a95c", "#fbc894")
-MARKS = "osD^vPX*"
+MARKS = "osD^vP*h"
+MISSED = "x"
 PANELS = (
     (("largest_miss_K",), "largest miss\n(K)"),
     (("current_min_A", "current_max_A"), "current (A)\nleast dashed"),
@@ -26,13 +27,16 @@ PANELS = (
     (("cold_receptor_delay_s",), "delay behind the skin,\ncold receptor (s)"),
 )
 """Columns of a sweep and the label of their panel."""
+MOST_DOWN = 3
+"""Of more panels below one another each is lower, so that the figure fits on a page."""
+MOST_TICKS = 6
 
 
 def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int = 3) -> Figure:
     """Draw the table of a sweep, one panel per quantity and one line per icon.
 
-    Icons that mainly cool are blue, others orange, and each has its own mark. A hollow mark stands for an icon that was
-    not reached, a grey band for values at which nothing could be played.
+    Icons that mainly cool are blue, others orange, and each has its own mark. A cross stands for an icon that was not
+    reached, a grey band for values at which nothing could be played.
 
     Parameters
     ----------
@@ -70,11 +74,11 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
         ax.tick_params(labelsize=8)
         ax.grid(alpha=0.25, linewidth=0.6)
         ax.spines[["top", "right"]].set_visible(False)
-        key_axis(ax, names, log)
+        key_axis(ax, names, log, places)
     axes[0].set_ylim(bottom=0.0)
     if frame["largest_miss_K"].abs().max() < 1e-3:
         axes[0].set_ylim(0.0, 0.1)
-        axes[0].text(0.5, 0.5, "everywhere within 1 mK", ha="center", transform=axes[0].transAxes, fontsize=8)
+        axes[0].text(0.5, 0.5, "everywhere\nwithin 1 mK", ha="center", transform=axes[0].transAxes, fontsize=8)
     shaded = _shade(axes, frame, places)
     sweep_legend(figure, styles, bool((frame["reached"] == False).any()), shaded)  # noqa: E712
     figure.align_ylabels(axes)
@@ -88,7 +92,8 @@ def small_multiples(count: int, across: int, wide: float = 3.2) -> tuple[Figure,
 
     across = min(across, count)
     down = -(-count // across)
-    figure = Figure(figsize=(wide * across, 0.4 + 2.6 * down), layout="constrained")
+    height = 2.6 if down <= MOST_DOWN else 1.8
+    figure = Figure(figsize=(wide * across, 0.4 + height * down), layout="constrained")
     axes = list(figure.subplots(down, across, sharex=True, squeeze=False).flat)
     for ax in axes[count:]:
         ax.remove()
@@ -107,38 +112,57 @@ def key_places(frame: pd.DataFrame, key: str) -> tuple[pd.Series, list[str]]:
 
 
 def key_label(key: str) -> str:
-    """The key with its unit; an age is in years."""
-    from thermicon.circuit.rig.keyunits import unit_of
+    """The key in words with its unit; an age is in years.
+
+    >>> key_label("contact.area_cm2"), key_label("module.seebeck_V_per_K"), key_label("age_years"), key_label("site")
+    ('contact area (cm²)', 'module Seebeck coefficient (V/K)', 'age (years)', 'site')
+    """
+    from thermicon.circuit.rig.keyunits import name_of, unit_of
 
     unit = "years" if key.endswith("_years") else unit_of(key)
-    return f"{key.removesuffix('_years')} ({unit})" if unit == "years" else f"{key} ({unit})" if unit else key
+    words = name_of(key).removesuffix("_years").replace(".", " ").replace("_", " ")
+    words = words.replace("seebeck", "Seebeck coefficient")
+    return f"{words} ({unit})" if unit else words
 
 
-def key_axis(ax: Axes, names: list[str], log: bool) -> None:
-    """Names in the place of numbers, or equal ratios."""
+def key_axis(ax: Axes, names: list[str], log: bool, places: pd.Series) -> None:
+    """Names in the place of numbers, or equal ratios with ticks at the values that were computed."""
     if names:
         ax.set_xticks(range(len(names)), names, rotation=30, ha="right")
         ax.margins(x=0.08)
     elif log:
-        _log_axis(ax)
+        _log_axis(ax, sorted(set(places.astype(float))))
 
 
-def _log_axis(ax: Axes) -> None:
-    """Equal ratios on the abscissa, with plain numbers at 1, 2 and 5 of every decade."""
-    from matplotlib.ticker import LogLocator, NullLocator, StrMethodFormatter
+def _log_axis(ax: Axes, values: list[float]) -> None:
+    """Equal ratios on the abscissa, ticks at the values; of many, labels at every second, third and so on."""
+    from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
     ax.set_xscale("log")
-    ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    ax.xaxis.set_minor_locator(NullLocator())
+    every = -(-(len(values) - 1) // (MOST_TICKS - 1)) or 1
+    labelled = values[::every]
+    ax.xaxis.set_major_locator(FixedLocator(labelled))
+    ax.xaxis.set_major_formatter(FixedFormatter([f"{value:.3g}" for value in labelled]))
+    ax.xaxis.set_minor_locator(FixedLocator([value for value in values if value not in labelled]))
+    ax.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _line(ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str) -> None:
-    fill = [color if reached is not False else "white" for reached in rows["reached"].fillna(True).astype(bool)]
     for place, column in enumerate(columns):
         values = rows[column].abs() if column == "largest_miss_K" else rows[column]
         ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
-        ax.scatter(at, values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3)
+        missed = rows["reached"] == False  # noqa: E712
+        ax.scatter(at[~missed], values[~missed], color=color, marker=mark, s=18, linewidths=0.8, zorder=3)
+        draw_missed(ax, at[missed], values[missed], color)
+
+
+def draw_missed(ax: Axes, at: pd.Series, values: pd.Series, color: str) -> None:
+    """Crosses on a white ground where an icon was not reached, above all else."""
+    from matplotlib.patheffects import withStroke
+
+    if len(at):
+        ground = [withStroke(linewidth=4.0, foreground="white")]
+        ax.scatter(at, values, color=color, marker=MISSED, s=26, linewidths=1.3, zorder=6, path_effects=ground)
 
 
 def icon_styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:
@@ -166,9 +190,9 @@ def _shade(axes: list[Axes], frame: pd.DataFrame, places: pd.Series) -> bool:
 
 
 def sweep_legend(
-    figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, shaded: bool, whole: str = ""
+    figure: Figure, styles: dict[str, tuple[str, str]], missed: bool, shaded: bool, whole: str = "", band: str = ""
 ) -> None:
-    """The key of a sweep: icons, the whole set where it is named, what was not reached or impossible."""
+    """The key of a sweep: icons, the whole set where it is named, bands, what was not reached or impossible."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -177,12 +201,14 @@ def sweep_legend(
         for name, (color, mark) in styles.items()
     ]
     if whole:
-        handles.append(Line2D([], [], color=INK, lw=2.2, label=f"{whole}, band: 95 %"))
+        handles.append(Line2D([], [], color=INK, lw=2.2, label=whole))
+    if band:
+        handles.append(Patch(color=INK, alpha=0.15, lw=0.0, label=band))
     if missed:
-        hollow = Line2D([], [], color="none", marker="o", markersize=5, label="not reached")
-        hollow.set_markerfacecolor("white")
-        hollow.set_markeredgecolor(GREY)
-        handles.append(hollow)
+        cross = Line2D([], [], color="none", marker=MISSED, markersize=6, label="not reached")
+        cross.set_markeredgecolor(GREY)
+        cross.set_markeredgewidth(1.5)
+        handles.append(cross)
     if shaded:
         handles.append(Patch(color=GREY, alpha=0.18, label="impossible"))
     figure.legend(handles=handles, loc="outside upper center", ncols=4, frameon=False, fontsize=9)

@@ -21,6 +21,8 @@ PLAN_HEAD = (
 )
 LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
 USUAL_DIGITS, MOST_DIGITS = 4, 7
+MOST_FACTOR = 1e3
+"""Ends of an interval that are so many times apart say nothing."""
 CLOSE = 0.9
 """Correlations from here on are printed."""
 
@@ -31,19 +33,22 @@ def parameter_table(fitted: RigFit) -> Table:
     for item in fitted.parameters:
         width = item.interval.removeprefix("±") if item.identified else "unknown"
         digits = _digits(item.value, 0.5 * (item.high - item.low)) if item.identified else None
-        ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}"
+        known = item.identified or not item.log or item.high < MOST_FACTOR * item.low
+        ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}" if known else "not known"
         rows.add_row(item.key, _short(item.value, digits), ends, width)
     return rows
 
 
 def residual_table(fitted: RigFit) -> Table:
     """Every measured column: rms, largest residual and its time, and the sensor's offset."""
+    from thermicon.circuit.fitting.left_out import milli
+
     rows = table("measured − fitted", "rms", "largest", "at", "offset", numbers=("rms", "largest", "at", "offset"))
     for each in fitted.channels:
         words = each.column.rpartition("_")[0].replace("_", " ")
         offset = f"{_signed(each.offset_K, 3)} K" if each.unit == "K" else "–"
         rows.add_row(
-            f"{words} ({each.file})", _milli(each.rms, each.unit), _milli(each.largest, each.unit),
+            f"{words} ({each.file})", milli(each.rms, each.unit), milli(each.largest, each.unit),
             f"{each.largest_s:.1f} s", offset,
         )  # fmt: skip
     return rows
@@ -63,7 +68,7 @@ def doubts(fitted: RigFit) -> list[str]:
 
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
-    """What the safety gate and virtual people vary from now on, where it is less than before."""
+    """What the safety gate and virtual people vary from now on, where it is not what it was before."""
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [
@@ -74,6 +79,11 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     ]
     if not changed:
         return None
+    if fitted.misfit:
+        return (
+            f"uncertainty of the fitted rig, widened to hold all that the rig before held, since the two do not agree "
+            f"and the logs are not matched: {', '.join(changed)}"
+        )
     return (
         f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
         f"it with --set uncertainty.KEY=VALUE for other people"
@@ -113,7 +123,3 @@ def _digits(value: float, half: float) -> int:
 
 def _signed(value: float, digits: int) -> str:
     return f"{value:.{digits}f}".replace("-", "−")
-
-
-def _milli(value: float, unit: str) -> str:
-    return f"{1e3 * value:.3g} m{unit}".replace("-", "−")

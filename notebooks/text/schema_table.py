@@ -22,6 +22,25 @@ def rig_keys_table() -> str:
     return _table(RigTable)
 
 
+def modules_table() -> str:
+    """Return the modules on record, a line for each data sheet, as a table of Markdown.
+
+    >>> [line for line in modules_table().splitlines() if "TEC1-12706" in line][0]
+    '| `TEC1-12706` | 40 × 40 mm | 4.6 | 25 | 6.4 | 14.4 | 50 | 66 |'
+    """
+    from thermicon.circuit.rig.modules import build_of, module_table
+
+    rows = []
+    for record in sorted(module_table(), key=lambda record: (str(record.get("module")), float(record.get("t_hot_C")))):
+        printed, name = dict(record.extra), str(record.get("module"))
+        size = str(printed["footprint_mm"]).replace("x", "×") + " mm" if printed.get("footprint_mm") else "–"
+        plate = build_of(name).plate_J_per_K
+        figures = [f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")]
+        rows.append(f"| {' | '.join((f'`{name}`', size, '–' if plate is None else f'{plate:g}', *figures))} |")
+    head = "| name | face | plates, J/K each | hot side °C | Imax A | Vmax V | Qmax W | ΔTmax K |"
+    return "\n".join([head, "|---|---|---|---|---|---|---|---|", *rows])
+
+
 def device_keys_table() -> str:
     """Return every key of a device file with its values and its default, as a table of Markdown."""
     from thermicon.circuit.delivery.devicefile import DeviceTable

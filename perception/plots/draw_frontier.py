@@ -29,15 +29,16 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
             f"{point.total_s:.0f} s", (size, value), (0, 7), textcoords="offset points", ha="center", fontsize=8
         )
     axes.set_xticks(sizes)
-    axes.set_ylim(0.0, 108.0)
+    axes.set_ylim(0.0, 112.0)
+    axes.set_yticks(range(0, 101, 20))
     axes.set_xlim(float(sizes.min()) - 0.5, float(sizes.max()) + 0.5)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel(f"number of icons, the best by {found.objective} of {found.pool} (total time of the set)")
+    axes.set_xlabel(f"number of icons, the best of {found.pool} by {found.objective}\n(above the points: total time)")
     axes.set_ylabel("correct (%)")
     axes.set_title("How many icons are distinguishable", loc="left")
-    axes.legend(frameon=False, loc="lower left")
+    axes.legend(frameon=False, loc="best")
     return axes
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from thermicon.circuit import Rig, RigFit, fit
 from thermicon.circuit.fitting.keys import FitError
-from thermicon.circuit.fitting.laboratory import write_log
+from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
 from thermicon.circuit.fitting.log import Log
 from thermicon.circuit.program import own_version
 from thermicon.circuit.safety.corners import corners_of
@@ -28,9 +28,11 @@ def fitted(log: Log, thenar: Rig, tmp_path_factory: pytest.TempPathFactory) -> R
 def test_the_file_reads_back_with_values_uncertainty_and_provenance(fitted: RigFit, tmp_path: Path) -> None:
     fitted.save(tmp_path / "mine.toml")
     back = Rig.load(tmp_path / "mine.toml")
-    for key, value in fitted.values.items():
-        table, _, name = key.partition(".")
+    for item in fitted.parameters:
+        table, _, name = item.key.partition(".")
+        value = item.value if item.identified else item.start
         assert getattr(getattr(back, table), name) == pytest.approx(value, rel=1e-12)
+    assert {item.key for item in fitted.unidentified} == {"ambient.temperature_C", "skin.rest_C"}
     assert back.uncertainty == fitted.rig.uncertainty
     text = (tmp_path / "mine.toml").read_text(encoding="utf-8")
     name, digest = fitted.sources[0]
@@ -49,6 +51,43 @@ def test_intervals_become_what_the_gate_varies(fitted: RigFit, thenar: Rig) -> N
     assert uncertainty.ambient_K == thenar.uncertainty.ambient_K  # not identified
     assert uncertainty.plates_relative == thenar.uncertainty.plates_relative
     assert {abs(corner.seebeck_relative) for corner in corners_of(fitted.rig)} == {0.0, 0.025}
+
+
+def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, thenar: Rig, tmp_path: Path) -> None:
+    key = "contact.resistance_m2K_per_W"
+    found = fit(log, thenar, free=[key])
+    before, after = thenar.uncertainty.contact_resistance_relative, found.rig.uncertainty.contact_resistance_relative
+    value, start = found[key].value, thenar.contact.resistance_m2K_per_W
+    assert found.misfit and value < 0.8 * TRUTH[key]  # contact makes up for the wrong Seebeck coefficient
+    assert after > before
+    assert value * (1 - after) <= start * (1 - before) and value * (1 + after) >= start * (1 + before) > TRUTH[key]
+    assert found.rig.uncertainty.reason == ""
+    assert any("exceed the log's own noise" in note for note in found.notes)
+    assert any("is not narrowed by this fit" in note for note in found.notes)
+    (offset,) = (note for note in found.notes if "display_C is fitted with an offset" in note)
+    assert "may stand for what the rig has wrong" in offset
+    assert not any("calibrate it" in note for note in found.notes)
+    found.save(tmp_path / "monday.toml")
+    assert any("is as wide as before the fit, or wider" in note for note in Rig.load(tmp_path / "monday.toml").notes)
+
+
+def test_a_log_of_another_site_leaves_what_it_cannot_say(log: Log, thenar: Rig) -> None:
+    fingertip = Rig.load("fingertip").with_(**{"driver.update_Hz": 20})
+    found = fit(log, fingertip, free=["contact.resistance_m2K_per_W", "module.seebeck_V_per_K"])
+    assert "contact.resistance_m2K_per_W" in {item.key for item in found.unidentified}
+    assert found.rig.contact == fingertip.contact
+    assert found.misfit
+    for name in ("contact_resistance_relative", "heat_sink_K", "seebeck_relative"):
+        assert getattr(found.rig.uncertainty, name) >= getattr(fingertip.uncertainty, name)
+    assert any("not identified, so that the fitted rig keeps" in note and "0.00054" in note for note in found.notes)
+
+
+def test_a_combination_that_only_unknown_keys_explain_is_a_misfit(thenar: Rig) -> None:
+    warm = synthetic_log(thenar.with_(**{"skin.rest_C": 34.0}), seed=3, rate_Hz=20.0)
+    found = fit(warm, thenar, free=["contact.resistance_m2K_per_W", "ambient.temperature_C", "skin.rest_C"])
+    assert found.rig.skin.rest_C == 32.0 and found.misfit
+    assert any("another combination of the keys that are not identified" in note for note in found.notes)
+    assert found.rig.uncertainty.contact_resistance_relative >= thenar.uncertainty.contact_resistance_relative
 
 
 def test_a_second_fit_replaces_the_note_of_the_first(fitted: RigFit, thenar: Rig, log: Log, tmp_path: Path) -> None:

@@ -84,10 +84,29 @@ def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
     assert _parameters(warm) == pytest.approx(at_mean_C(found[1:], 0.0))
     assert warm.warnings == (
         "module: the mean of heat sink and resting skin, 36.0 °C, lies above the 8.5 … 31.2 °C that its two data "
-        "sheets stand for; the parameters at 31.2 °C are used: add a [[module.datasheet]] of a hotter side to the rig "
-        "file, or fit the module to a log (thermicon fit)",
+        "sheets stand for; the parameters at 31.2 °C are used, from which the trend of both sheets leads away by up to "
+        "2.3 %: where that matters, give a [[module.datasheet]] of a hotter side in place of one of the two, or fit "
+        "the module to a log (thermicon fit)",
     )
+    named = THENAR.with_(**{"module.name": "TEC1-12706"}).warnings[0]
+    assert "by up to 2.3 %: where that matters, fit the module to a log" in named
     assert "lies below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
+
+
+def test_a_file_with_the_plates_of_another_module_warns(tmp_path: Path) -> None:
+    text = THENAR.with_(**{"module.name": "TEC1-12706", "contact.area_cm2": 16}).toml.replace("= 4.6", "= 2.6")
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    mine = Rig.load(tmp_path / "mine.toml")
+    (plates,) = (text for text in mine.warnings if "plate_J_per_K" in text)
+    assert plates.startswith(
+        "module TEC1-12706: module.hot_plate_J_per_K and module.cold_plate_J_per_K are 2.6 and 2.6"
+    )
+    assert "those on record for it 4.6 J/K each: set both to that, or state in [source]" in plates
+    sourced = text.replace("[source]", '[source]\n"module.hot_plate_J_per_K" = "weighed"')
+    (tmp_path / "sourced.toml").write_text(sourced, encoding="utf-8")
+    near = mine.with_(**{"module.hot_plate_J_per_K": 4.0, "module.cold_plate_J_per_K": 5.0})
+    for rig in (Rig.load(tmp_path / "sourced.toml"), near, THENAR.with_(**{"module.name": "TEC1-12706"})):
+        assert not any("those on record" in text for text in rig.warnings)
 
 
 @pytest.mark.parametrize("name", module_names())

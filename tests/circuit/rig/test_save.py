@@ -35,6 +35,15 @@ def test_changes_probes_sheets_and_odd_texts_survive(tmp_path: Path) -> None:
     assert again.contact.area_m2 == rig.contact.area_m2
 
 
+def test_a_changed_copy_is_saved_by_a_name_of_its_own(tmp_path: Path) -> None:
+    THENAR.with_(contact={"area_cm2": 4}).save(tmp_path / "mine.toml", name="bench")
+    again = Rig.load(tmp_path / "mine.toml")
+    assert again.name == "bench" and again.contact.area_m2 == pytest.approx(4e-4)
+    with pytest.raises(RigError, match="name"):
+        THENAR.save(tmp_path / "other.toml", name="two\nlines")
+    assert not (tmp_path / "other.toml").exists()
+
+
 def test_what_cannot_be_saved_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RigError, match=r"ends in \.toml; call it rig\.json\.toml"):
         THENAR.save(tmp_path / "rig.json")

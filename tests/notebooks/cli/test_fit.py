@@ -101,11 +101,11 @@ def test_a_key_that_is_held_wrong_is_named_and_the_rig_gets_its_name(cli: Cli, t
     write_log(synthetic_log(truth, seed=1, rate_Hz=20.0), path)
     said = cli("fit", path, "--free", CONTACT, "-o", rig, *RATE)
     text = " ".join(said.stderr.split())
-    assert "display_C: residuals scatter by" in text and "the log's own noise is 2" in text
+    assert "display_C: residuals of 51.3 mK rms exceed the log's own noise of 2" in text
     assert "what is held fixed is taken as right: free heat_sink.resistance_K_per_W" in text
     assert Rig.load(rig).name == "tuesday"
     named = cli("fit", path, "--free", f"{CONTACT},heat_sink.resistance_K_per_W", "-o", rig, "--name", "bench 2", *RATE)
-    assert "residuals scatter" not in named.stderr
+    assert "exceed the log's own noise" not in named.stderr
     assert Rig.load(rig).name == "bench 2"
     assert cli("fit", path, "--free", CONTACT, "--name", "bench").exit_code == 2
 
@@ -127,6 +127,28 @@ def test_misspelt_columns_and_text_cells_are_named(cli: Cli, log: Path, tmp_path
     gaps.write_text("\n".join(lines) + "\n", encoding="utf-8")
     said = cli("fit", gaps, "--free", CONTACT, *RATE)
     assert "display_C is 'n/a' in 10 of" in said.stderr
+
+
+def test_a_current_by_another_name_and_one_log_twice_are_named(cli: Cli, log: Path, tmp_path: Path) -> None:
+    text = log.read_text(encoding="utf-8")
+    amps, twin = tmp_path / "amps.csv", tmp_path / "twin.csv"
+    amps.write_text(text.replace("current_A", "amps"), encoding="utf-8")
+    twin.write_text(text, encoding="utf-8")
+    said = cli("fit", amps, "--free", CONTACT, *RATE)
+    words = " ".join(said.stderr.split())
+    assert said.exit_code == 1 and "voltage_V of amps.csv, which is taken as the drive" in words
+    assert "columns that are not used: amps (rename it current_A, if that is what it is)" in words
+    for second in (log, twin):
+        said = cli("fit", log, second, "--free", CONTACT, *RATE)
+        assert said.exit_code == 1 and "has the same content as rig.csv" in " ".join(said.stderr.split())
+
+
+def test_an_interval_that_says_nothing_is_said_to(cli: Cli, log: Path) -> None:
+    said = cli("fit", log, "--rig", "fingertip", "--free", f"{CONTACT},heat_sink.temperature_C,{SEEBECK}", *RATE)
+    row = next(line for line in said.stdout.splitlines() if line.startswith(CONTACT))
+    assert row.split()[2:] == ["not", "known", "unknown"]
+    assert "K   " in next(line for line in said.stdout.splitlines() if line.startswith("display ("))
+    assert "widened to hold all that the rig before held" in " ".join(said.stdout.split())
 
 
 @pytest.mark.slow

@@ -162,8 +162,23 @@ def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
     (out / "study.json").write_text("mine", encoding="utf-8")
     said = cli("study", write_study(tmp_path, QUICK), "-o", out)
     assert said.exit_code == 1
-    assert "already exists and was kept; give another folder with -o" in said.stderr
+    assert "out holds a study already and was kept; give another folder with -o" in " ".join(said.stderr.split())
     assert [path.name for path in out.iterdir()] == ["study.json"]
+    (out / "data").mkdir()
+    (out / "data" / "dataset_description.json").write_text("{}", encoding="utf-8")
+    assert "holds a study already" in " ".join(cli("study", tmp_path / "study.toml", "-o", out).stderr.split())
+    (out / "data" / "sub-A_task-quick_answers.csv").write_text("participant\n", encoding="utf-8")
+    said = cli("study", tmp_path / "study.toml", "-o", out)
+    assert "holds the answers of 1 participant (data/) already and was kept" in " ".join(said.stderr.split())
+
+
+def test_one_file_of_a_study_is_kept_too(tmp_path: Path, cli: Cli) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "README.txt").write_text("mine", encoding="utf-8")
+    said = cli("study", write_study(tmp_path, QUICK), "-o", out)
+    assert said.exit_code == 1
+    assert "README.txt already exists and was kept; give another folder with -o" in " ".join(said.stderr.split())
 
 
 def test_a_read_only_folder_is_said_before_anything_is_simulated(

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
+from matplotlib.collections import PathCollection
 
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure
 from thermicon.notebooks.figures import sweep_figure as sweepfigure
+from thermicon.notebooks.figures.figure_look import Look
+from thermicon.notebooks.figures.measure_figure import measure_figure
 from thermicon.notebooks.figures.overview import COOL, WARM
+from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.set_figures import write_figures
+from thermicon.notebooks.figures.trace_overview import end_when_settled
 from thermicon.perception import Percept, perceive, rank
 
 
@@ -81,3 +87,41 @@ def test_overviews_of_names_that_differ_in_capitals_do_not_overwrite_each_other(
         "warning: the overview of A-B is overview-A-B-3.png, since some disks take A-B and a-b for the same name"
         in capsys.readouterr().err
     )
+
+
+def test_an_overview_ends_when_everything_has_come_to_rest() -> None:
+    trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=30.0)
+    figure = overview(trace, perceive(trace))
+    icon_s = float(trace.time_s[-1]) - 30.0
+    end_when_settled(figure)
+    ends = {ax.get_xlim()[1] for ax in figure.axes}
+    assert len(ends) == 1 and icon_s < ends.pop() < icon_s + 10.0
+
+
+def test_two_maps_below_one_another_name_the_columns_once() -> None:
+    ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=2)
+    figure = set_figure(ranking, stacked=True)
+    restyle(figure, Look("paper", 85.0, title=False))
+    upper, lower = figure.axes
+    assert upper.get_xticklabels() == [] and len(lower.get_xticklabels()) == 6
+    assert upper.get_title().endswith("Predicted d′ between icons")
+    assert float(figure.get_figheight()) * 25.4 < 115.0
+
+
+def test_a_sweep_marks_what_was_not_reached_and_shows_the_range_of_shares() -> None:
+    names, values = ["dip", "dip", "all icons", "all icons"], [0.5, 1.5, 0.5, 1.5]
+    frame = pd.DataFrame({
+        "icon": names, "driver.current_limit_A": values, "reached": [False, True, None, None],
+        "cold_receptor_peak_change_K": [-1.0, -2.0, None, None],
+        "correct": [0.81, 0.93, 0.81, 0.93], "correct_low": [0.72, 0.85, 0.72, 0.85],
+        "correct_high": [0.9, 0.96, 0.9, 0.96],
+    })  # fmt: skip
+    columns = [("correct", "correct_low", "correct_high")]
+    figure = measure_figure(frame, "driver.current_limit_A", columns, "all icons")
+    (ax,) = figure.axes
+    assert ax.get_ylim() == pytest.approx((70.0, 100.9))
+    said = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert said == ["dip", "all icons", "95 % interval, new laboratory", "not reached"]
+    points = [held.get_offsets().tolist() for held in ax.collections if isinstance(held, PathCollection)]
+    assert points == [[[0.5, 81.0]]]
+    assert figure.get_supxlabel() == "driver current limit (A)"

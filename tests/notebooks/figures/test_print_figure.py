@@ -73,6 +73,59 @@ def test_the_screen_is_as_drawn_and_a_title_can_be_left_out() -> None:
     assert one.axes[0].get_title() == ""
 
 
+def test_without_titles_panels_say_what_they_show_and_no_more() -> None:
+    figure = two_panels()
+    for ax, title in zip(
+        figure.axes, ("Predicted d′ (episodes norm)", "Answers, % (diagonal correct: 85 %)"), strict=True
+    ):
+        ax.set_title(title)
+    restyle(figure, Look("paper", 85.0, title=False))
+    titles = [ax.get_title().partition("$  ")[2] for ax in figure.axes]
+    assert titles == ["Predicted d′", "Answers, %"]
+
+
+def test_a_long_label_goes_on_in_another_line_and_the_key_names_a_line_once() -> None:
+    figure = two_panels()
+    upper, lower = figure.axes
+    for ax, names in ((upper, ("skin surface", "display")), (lower, ("skin", "display"))):
+        for line, name in zip(ax.get_lines(), names, strict=True):
+            line.set_label(name)
+        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    lower.set_xlabel("time since the hand was placed on the display, in seconds, by the clock of the receptors (s)")
+    restyle(figure, Look("paper", 85.0))
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["display", "skin surface"]
+    assert lower.get_xlabel().count("\n") >= 1
+    figure.draw_without_rendering()
+    box = lower.xaxis.label.get_window_extent()
+    assert box.x0 >= 0.0 and box.x1 <= figure.bbox.width
+
+
+def test_panels_keep_their_height_whatever_the_key_needs() -> None:
+    heights = []
+    for count in (2, 12):
+        figure = Figure(figsize=(8.0, 3.0), layout="constrained")
+        ax = figure.add_subplot()
+        for place in range(count):
+            ax.plot([0, 1], [0, place], label=f"a line with the number {place}")
+        figure.legend(loc="outside upper center", ncols=4)
+        restyle(figure, Look("paper", 85.0))
+        figure.draw_without_rendering()
+        heights.append(ax.get_window_extent().height / figure.dpi)
+    assert heights[1] == pytest.approx(heights[0], rel=0.25) and heights[1] > 0.6
+
+
+def test_names_that_are_not_shown_are_in_the_data(tmp_path: Path) -> None:
+    figure = Figure()
+    ax = figure.add_subplot()
+    ax.pcolormesh([[-0.5, 0.5], [-0.5, 0.5]], [[-0.5, -0.5], [0.5, 0.5]], [[1.0]])
+    ax.set_xticks([0], ["dip"])
+    ax.set_yticks([0], ["glow"])
+    ax.tick_params(labelbottom=False)
+    write_figure(figure, tmp_path / "a.svg", Look(data=tmp_path))
+    assert (tmp_path / "a.csv").read_text(encoding="utf-8").splitlines()[1] == "glow,dip,1"
+
+
 def test_a_dark_figure_has_light_ink_and_keeps_blue_and_orange() -> None:
     figure = two_panels()
     restyle(figure, Look("dark"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import subprocess
 import sys
 import threading
 import time
@@ -118,6 +119,62 @@ def test_the_stop_key_ends_after_the_trial_and_resume_goes_on(script: Runner, tm
     assert "8 answers" in rest.stdout
     assert [int(row["trial"]) for row in answers(tmp_path)] == list(range(1, 9))
     assert len(events(tmp_path, run=2)) == 8 - len(some)
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--press", "escape", "escape is not S:KEY, a time in s and a key, such as 60:escape"),
+        ("--press", "60:", "60: is not S:KEY"),
+        ("--press", "nan:q", "nan:q is not S:KEY"),
+        ("--correct", "1.5", "1.5 is not a share; give 0 to 1"),
+        ("--correct", "nan", "nan is not a share"),
+        ("--threshold", "0", "0 is not a threshold; give K above 0"),
+    ],
+)
+def test_an_option_of_the_virtual_person_is_checked(option: str, value: str, words: str, script: Runner) -> None:
+    done = script("--participant", "A", "--simulate", option, value)
+    assert done.returncode == 2
+    assert words in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_reader_who_leaves_does_not_end_the_run(quick: Path, tmp_path: Path) -> None:
+    command = [sys.executable, quick / "run_study.py", "--participant", "A", "--simulate", "--verbose"]
+    with subprocess.Popen(
+        [*map(str, command), "--output", str(tmp_path)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as run:
+        assert run.stdout is not None and run.stderr is not None
+        assert "Place the hand" in run.stdout.readline()
+        run.stdout.close()
+        assert run.stderr.read() == ""
+        assert run.wait(timeout=60) == 0
+    assert len(answers(tmp_path)) == 8
+
+
+def test_a_run_that_is_done_is_not_resumed_and_adds_nothing(script: Runner, tmp_path: Path) -> None:
+    script("--participant", "A", "--simulate")
+    before = sorted(tmp_path.rglob("*"))
+    again = script("--participant", "A", "--simulate", "--resume")
+    assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_a_start_that_fails_or_ends_before_a_trial_leaves_no_data(
+    script: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    absent = "raise ModuleNotFoundError(\"No module named 'psychopy'\", name='psychopy')\n"
+    (tmp_path / "psychopy.py").write_text(absent, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    for arguments, words in (
+        (("--bench", "missing.py"), "--bench missing.py: there is no such file"),
+        (("--marker", "bell"), "--marker bell: give none, serial:PORT"),
+        ((), "the package psychopy is missing in this Python"),
+    ):
+        done = script("--participant", "A", *arguments, output=tmp_path / "data")
+        assert done.returncode == 1 and words in done.stderr and "Traceback" not in done.stderr
+    assert not (tmp_path / "data").exists()
+    script("--participant", "A", "--simulate", "--press", "5:escape")
+    assert not list(tmp_path.rglob("sub-*"))
 
 
 @pytest.mark.parametrize("at_s", [5, 32, 45, 60], ids=["landing", "a play", "a question or pause", "later"])
