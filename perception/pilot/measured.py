@@ -16,7 +16,7 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from .changes import ChangedConstant, changed
-from .laboratory_file import laboratory_draws, laboratory_texts
+from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
 from .measurement_conditioning import Reweighted, reweight
 from .measurement_fit import ConditionFit, MeasurementFit, compare_measurements
 from .measurements import Measurements
@@ -84,15 +84,20 @@ class MeasuredPilot:
         )
 
     def draws(self) -> PosteriorDraws:
-        """Draws of the constants in this laboratory, equally weighted; its offset is part of the thresholds."""
+        """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         found, played = self.conditioned, self.confusions_after
         outcome = np.column_stack([played.correct, played.bits, found.predicted_after.mean])
-        note = "; ".join(self.provenance[:3])
-        return laboratory_draws(self.prior, found.after, outcome, note, found.effective_after)
+        resampling = Resampling(
+            note="; ".join(self.provenance[:3]),
+            how=how_resampled(len(found.before), found.effective, found.rounds),
+            rig=", ".join((self.rig, *self.rig_changes)),
+            effective=found.effective_after,
+        )
+        return laboratory_draws(self.prior, found.after, outcome, resampling)
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
-        return laboratory_texts(self.prior, self.conditioned.after, self.draws(), self.version, self.provenance)
+        return laboratory_texts(self.draws(), self.version, self.provenance)
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
