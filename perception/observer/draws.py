@@ -2,7 +2,7 @@
 
 The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
 where the evidence does not separate two of them, they trade off from draw to draw. Memory is no part of the inference
-and stays that of the shipped observer, except in draws of one laboratory, whose answers tell of its participants' memory.
+and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of memory.
 """
 
 from __future__ import annotations

@@ -271,7 +271,9 @@ def _check_names(name: str, header: DrawsHeader, names: Sequence[str]) -> None:
     expected = _inferred(header.variable, header.model)
     for each in names:
         if each not in expected and each not in MEMORY_NAMES:
-            raise RecordError(f"{name}: {each!r} is not a constant of this observer: {did_you_mean(each, {*expected, *MEMORY_NAMES})}")
+            raise RecordError(
+                f"{name}: {each!r} is not a constant of this observer: {did_you_mean(each, {*expected, *MEMORY_NAMES})}"
+            )
     for each in expected:
         if each not in names:
             raise RecordError(f"{name}: there is no column {each!r}: {CURE}")

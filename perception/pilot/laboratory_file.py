@@ -20,6 +20,8 @@ from ..observer.channels import CHANNELS
 from ..observer.draws import LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
 from ..observer.memory_constants import noise_name
+from .nominal import middle_of
+from .playing import Stage
 from .states import OFFSETS, Laboratories, LaboratoryPrior
 
 NO_SPREAD = 1e-6
@@ -29,7 +31,7 @@ OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resa
 
 @dataclass(frozen=True, slots=True)
 class Resampling:
-    """Where the draws of a laboratory come from, for their header: `note` on the data, `how`, the `rig`, and `effective`.
+    """Where the draws of a laboratory come from: a `note` on the data, `how` they were resampled, and the `rig`.
 
     `effective` is how many independent draws stand behind them.
     """
@@ -41,12 +43,12 @@ class Resampling:
 
 
 def laboratory_draws(
-    prior: LaboratoryPrior, some: Laboratories, predicted: Array, resampling: Resampling
+    prior: LaboratoryPrior, some: Laboratories, predicted: Array, played: Stage, resampling: Resampling
 ) -> PosteriorDraws:
     """Draws of one laboratory, its offset in the thresholds, its memory beside the constants; to the figures of a file.
 
-    The first is nearest to the medians of constants and memory, and of what is `predicted` (laboratories, numbers), of
-    which the medians of constants alone may be far. A single constant of it may lie off its own median.
+    The first is the one in the middle, by its constants and by what each `predicted` (laboratories, numbers) of a set
+    that was `played` and of what was measured; a single constant of it may lie off its own median.
     """
     values = prior.values(some)
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
@@ -58,7 +60,7 @@ def laboratory_draws(
     header = prior.draws.header
     # Offsets of the laboratories of the evidence say nothing of this one.
     counted = np.hstack([own[:, [k for k, name in enumerate(names) if not header.is_offset(name)]], memory])
-    first = int((off_middle(counted) + off_middle(predicted)).argmin())
+    first = middle_of(some, counted, predicted, played)
     order = [first, *(k for k in range(len(own)) if k != first)]
     distinct = len(np.unique(np.hstack([own, memory]), axis=0))
     stated = replace(
@@ -124,17 +126,3 @@ def _narrowed(record: Record, value: float, each: Array) -> Record:
 def _method(record: Record) -> str:
     """The method of a record is the norm where it is memory's, and must then stay."""
     return record.method if record.quantity.startswith("memory noise") else "conditioned on a laboratory's own answers"
-
-
-def off_middle(values: Array) -> Array:
-    """Mean square (rows,) of how many SDs a row lies from the median of each column, in logarithms where they exist.
-
-    >>> int(off_middle(np.array([[0.0], [1.0], [5.0]])).argmin())
-    1
-    """
-    positive = (values > 0.0).all(axis=0)
-    values = np.where(positive, np.log(np.where(positive, values, 1.0)), values)
-    spread = values.std(axis=0)
-    off = np.divide(values - np.median(values, axis=0), spread, out=np.zeros_like(values), where=spread > 0.0)
-    found: Array = np.square(off).mean(axis=1)
-    return found

@@ -21,7 +21,7 @@ from .conditioning import Conditioned, condition
 from .fit import Fit, compare
 from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
 from .likelihood import person_log_likelihoods
-from .playing import laboratories_for, stage
+from .playing import Stage, laboratories_for, stage
 from .prediction import ChangedPrediction, Three, three
 from .states import LaboratoryPrior
 from .trials import Trials
@@ -66,6 +66,7 @@ class Observed:
     constants: tuple[ChangedConstant, ...]
     conditioned: Conditioned
     prior: LaboratoryPrior
+    played: Stage
     rig: str
     rig_changes: tuple[str, ...]
     norm: str
@@ -98,7 +99,7 @@ class Observed:
             rig=", ".join((self.rig, *self.rig_changes)),
             effective=found.effective_after,
         )
-        return laboratory_draws(self.prior, found.after, predicted, resampling)
+        return laboratory_draws(self.prior, found.after, predicted, self.played, resampling)
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
@@ -226,9 +227,12 @@ def observed(
         fit=compare(trials, found.confusions_before, seed=seed),
         fit_after=compare(trials, found.confusions_after, seed=seed),
         predictions=tuple(predictions),
-        constants=changed(prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units),
+        constants=changed(
+            prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units
+        ),
         conditioned=found,
         prior=prior,
+        played=main,
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         norm=norm,

@@ -1,8 +1,9 @@
 """Laboratories that the evidence allows: constants, memory, an offset of the laboratory, and the people in it.
 
 A laboratory is one draw θ of the posterior, memory m drawn from its intervals (or the draw's own, where it has one), an
-offset δ of its sensitivity, and a seed of its people. All but the seed are kept in coordinates in which the prior is standard normal, so that they can be
-moved without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.
+offset δ of its sensitivity, and a seed of its people. All but the seed are kept in coordinates in which the prior is
+standard normal, so that they can be moved without leaving it: constants on the scales of their priors, with the mean and
+covariance of the draws.
 """
 
 from __future__ import annotations
@@ -60,8 +61,8 @@ class Laboratories:
 class LaboratoryPrior:
     """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
 
-    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones). Memory that
-    the draws have themselves is kept with their constants, on the scale of its shipped interval.
+    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones). Memory
+    that the draws have themselves is kept with their constants, on the scale of its shipped interval.
 
     >>> prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
     >>> some = prior.first(50, seed=0)
