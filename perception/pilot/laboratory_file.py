@@ -119,8 +119,8 @@ def _record(record: Record, each: dict[str, Array], remembered: Sequence[str]) -
 
 def _narrowed(record: Record, value: float, each: Array) -> Record:
     low, high = (float(f"{number:.5g}") for number in np.percentile(each, [2.5, 97.5]).tolist())
-    ends = {"low": min(low, value), "value": value, "high": max(high, value)}
-    return replace(record, **ends, method=_method(record), use="calibrate")
+    low, high = min(low, value), max(high, value)
+    return replace(record, low=low, value=value, high=high, method=_method(record), use="calibrate")
 
 
 def _method(record: Record) -> str:

@@ -2,8 +2,8 @@
 
 A laboratory is one draw θ of the posterior, memory m drawn from its intervals (or the draw's own, where it has one), an
 offset δ of its sensitivity, and a seed of its people. All but the seed are kept in coordinates in which the prior is
-standard normal, so that they can be moved without leaving it: constants on the scales of their priors, with the mean and
-covariance of the draws.
+standard normal, so that they can be moved without leaving it: constants on the scales of their priors, with the mean
+and covariance of the draws.
 """
 
 from __future__ import annotations
