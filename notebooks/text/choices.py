@@ -119,9 +119,9 @@ def laboratory(observer: str, own: bool) -> str:
     """Which laboratory an interval is for: a new one, or the one whose draws an observer's file holds.
 
     >>> laboratory("lab.csv", True)
-    'your laboratory (lab.csv)'
+    'your laboratory, lab.csv'
     """
-    return f"your laboratory ({observer})" if own else "a new laboratory"
+    return f"your laboratory, {observer}" if own else "a new laboratory"
 
 
 def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Iterator[str]:

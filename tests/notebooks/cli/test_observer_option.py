@@ -80,7 +80,7 @@ def test_as_many_draws_are_used_as_there_are(cli: Cli, two: Path, tmp_path: Path
     assert said.exit_code == 0, said.stderr
     assert "note: lab.csv has 6 draws: all of them are used (--parameters is 128 by default)" in said.stderr
     assert "conditioned on" not in said.stderr
-    assert "people in your laboratory (lab.csv) (95 %): " in " ".join(said.stdout.split())
+    assert "people in your laboratory, lab.csv (95 %): " in " ".join(said.stdout.split())
     assert "a new laboratory" not in said.stdout
     said = cli("rank", two, "--people", 4, "--observer", lab, "--parameters", 7)
     assert (said.exit_code, said.stdout) == (1, "")
