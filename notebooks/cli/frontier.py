@@ -72,7 +72,8 @@ def frontier_command(
     from .sweep import write_study
 
     check_norm_option(norm)
-    icons, where, model = read_set(files), load_rig(rig, changes or []), load_observer(observer)
+    icons, where = read_set(files), load_rig(rig, changes or [])
+    model = load_observer(observer, where)
     warn_of_frames(files, icons, where)
     with progress_bar("choosing") as progress:
         found = frontier(

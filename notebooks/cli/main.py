@@ -234,13 +234,14 @@ def rank_command(
         typer.Option("--by", metavar="|".join(RANKED_BY), help="Score with the model, or with rules of thumb alone."),
     ] = "model",
     parameters: Annotated[
-        int,
+        int | None,
         typer.Option(
             "--parameters",
             metavar="N",
-            help="Draws of the posterior for the intervals of a new laboratory; 0 for none.",
+            help="Draws of the posterior for the intervals of a new laboratory; 0 for none.  [default: 128, or all "
+            "there are]",
         ),
-    ] = 128,
+    ] = None,
     tracking: Tracking = None,
     norm: NormName = "episodes",
     trials: Annotated[
@@ -286,7 +287,7 @@ def rank_command(
         ("--people", people, 1, 100_000),
         ("--seed", seed, 0, 2**63 - 1),
         ("--trials", trials, 1, 1_000_000),
-        ("--parameters", parameters, 0, 10_000),
+        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
     )
     for option, value, least, most in bounds:
         if not least <= value <= most:

@@ -16,8 +16,8 @@ from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separat
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import (
     Changes,
+    DrawsFile,
     NormName,
-    ObserverFile,
     OneFile,
     RigName,
     Tracking,
@@ -61,14 +61,14 @@ def observed_command(
             "--keep",
             metavar="LAB.toml",
             readable=False,
-            help="Write the conditioned observer, and its draws beside it as LAB.csv.",
+            help="Write the conditioned observer, and its draws, half as many as --draws, beside it as LAB.csv.",
         ),
     ] = None,
     draws: Draws = 1000,
     seed: Seed = 0,
     norm: NormName = "episodes",
     tracking: Tracking = None,
-    observer: ObserverFile = None,
+    observer: DrawsFile = None,
     json: JsonOut = None,
     figure: FigureFile = None,
     width: FigureWidth = None,
@@ -108,7 +108,8 @@ def observed_command(
     from ..text.measured_text import show_measured
     from ..text.observed_text import show_observed
 
-    icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
+    icons, where = read_set([file]), load_rig(rig, changes or [])
+    model = load_observer(observer, where, "laboratories are drawn from draws of a posterior")
     by_measurements = is_measurements(trials)
     values = read_measurements(trials, where) if by_measurements else None
     answers = None if by_measurements else read_trials(trials, [icon.name for icon in icons])
@@ -200,7 +201,7 @@ def plan_command(
     seed: Seed = 0,
     norm: NormName = "episodes",
     tracking: Tracking = None,
-    observer: ObserverFile = None,
+    observer: DrawsFile = None,
     json: JsonOut = None,
     rig: RigName = None,
     changes: Changes = None,
@@ -233,7 +234,7 @@ def plan_command(
     from ..text.plan_text import show_plan
 
     sets, where = [read_set([name]) for name in files], load_rig(rig, changes or [])
-    model = load_observer(observer)
+    model = load_observer(observer, where, "laboratories are drawn from draws of a posterior")
     for name, each in zip(files, sets, strict=True):
         warn_of_frames([name], each, where)
     wish = width if other is None else power

@@ -45,7 +45,8 @@ OTHER_PICTURES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 class Request:
     """Options of ``rank``: people, seed, tracking (None: by the icons' control), norm, trials, and what to score by.
 
-    ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory; 0 draws none.
+    ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory (None: 128, or
+    as many as there are); 0 draws none.
     ``choosing`` selects the best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all``
     indistinguishable pairs.
     ``rig`` is the rig as it was asked for, a name or a file; ``observer`` a file in place of the shipped observer.
@@ -59,7 +60,7 @@ class Request:
     norm: str = "episodes"
     trials: int = 48
     by: str = "model"
-    parameters: int = 128
+    parameters: int | None = None
     choosing: Selection | None = None
     goal: str | None = None
     edits: str = "worst"
@@ -84,6 +85,7 @@ def rank_files(
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import Task, rank
+    from thermicon.perception.identification.laboratory import DRAWS
     from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.goal import Goal
 
@@ -101,8 +103,8 @@ def rank_files(
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     warnings = [*rig.warnings, *warn_of_frames(files, icons, rig)]
     wanted = None if request.goal is None else Goal.parse(request.goal)
-    model = load_observer(request.observer)
-    check_draws(model, request.parameters, "--parameters")
+    model = load_observer(request.observer, rig)
+    draws = check_draws(model, request.parameters, "--parameters", DRAWS)
     what = f"{icons}\0{rig.document}\0{request}"
     with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
         ranking = rank(
@@ -114,7 +116,7 @@ def rank_files(
             tracking=request.tracking,
             norm=request.norm,
             by=request.by,
-            parameters=request.parameters,
+            parameters=draws,
             choosing=request.choosing,
             goal=wanted,
             edits=request.edits if request.by == "model" else "none",

@@ -11,7 +11,7 @@ from thermicon.icons.number_text import number, percent, percent_span
 
 from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
-from ..text.choices import goal_lines
+from ..text.choices import goal_lines, laboratory
 from ..text.messages import note, progress_bar
 from ..text.tables import show, table
 
@@ -151,7 +151,7 @@ class FoundSet:
         intervals = [each.new_laboratory for each in pair]
         if all(intervals):
             one, other = (percent_span(*each.proportion_correct) for each in intervals if each is not None)
-            yield "  a new laboratory (95 %)", one, other
+            yield f"  {laboratory(self.after.observer, self.after.own_laboratory)} (95 %)", one, other
         yield "information, bits", f"{before.information_bits:.2f}", f"{after.information_bits:.2f}"
         yield "information rate, bits/s", f"{before.bits_per_s:.2f}", f"{after.bits_per_s:.2f}"
         yield "total duration, s", number(self.before.total_s), number(self.after.total_s)

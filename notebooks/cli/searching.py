@@ -63,9 +63,13 @@ def search_command(
     most_time: MostTime = None,
     most_energy: MostEnergy = None,
     parameters: Annotated[
-        int,
-        typer.Option("--parameters", metavar="N", help="Draws of the posterior for intervals and goals; 0 for none."),
-    ] = 128,
+        int | None,
+        typer.Option(
+            "--parameters",
+            metavar="N",
+            help="Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
+        ),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -97,7 +101,7 @@ def search_command(
         ("--evaluations", evaluations, 10, 1_000_000),
         ("--people", people, 1, 100_000),
         ("--seed", seed, 0, 2**32 - 1),
-        ("--parameters", parameters, 0, 10_000),
+        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
     )
     for option, value, least, most in bounds:
         if not least <= value <= most:
@@ -119,13 +123,15 @@ def search_command(
     check_figures(figure)
     check_separate([file], [output, report])
     from thermicon.perception import Goal, search
+    from thermicon.perception.identification.laboratory import DRAWS
 
     from ..files.cues import read_set, warn_of_frames
 
     wanted = None if goal is None else Goal.parse(goal)
     objective = objective or _objective(wanted)
-    icons, where, model = read_set([file]), load_rig(rig, changes or []), load_observer(observer)
-    check_draws(model, parameters, "--parameters")
+    icons, where = read_set([file]), load_rig(rig, changes or [])
+    model = load_observer(observer, where)
+    drawn = check_draws(model, parameters, "--parameters", DRAWS)
     warn_of_frames([file], icons, where)
     with progress_bar("searching") as progress:
         found = search(
@@ -152,7 +158,7 @@ def search_command(
         with complete_or_absent(output) as draft:
             draft.write_text(str(found.found), encoding="utf-8")
         note(f"wrote {output}")
-    made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, parameters), wanted)
+    made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, drawn), wanted)
     if report is not None or figure is not None:
         made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
     made.show(icons.title, where.name)

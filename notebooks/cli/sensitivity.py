@@ -30,7 +30,7 @@ class Request:
 
     people: int = 24
     seed: int = 0
-    draws: int = 256
+    draws: int | None = None
     norm: str = "episodes"
     observer: Path | None = None
 
@@ -40,6 +40,7 @@ def sensitivity_file(
 ) -> None:
     """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import sensitivity
+    from thermicon.perception.sensitivity.sensitivity import DRAWS, FEWEST_DRAWS
 
     check_norm_option(request.norm)
     if output is not None:
@@ -51,17 +52,15 @@ def sensitivity_file(
     if len(icons) < 2:
         fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")
     warn_of_frames([file], icons, rig)
-    model = load_observer(request.observer)
-    check_draws(model, request.draws, "--draws")
-    if model.posterior is None:
-        fail(f"{model.name}: a sensitivity is read from draws of a posterior: give a table of thermicon calibrate")
+    model = load_observer(request.observer, rig, "a sensitivity is read from draws of a posterior")
+    draws = check_draws(model, request.draws, "--draws", DRAWS, FEWEST_DRAWS)
     with progress_bar("sensitivity") as progress:
         found = sensitivity(
             icons,
             rig,
             people=request.people,
             seed=request.seed,
-            draws=request.draws,
+            draws=draws,
             norm=request.norm,
             observer=model,
             progress=progress,

@@ -22,7 +22,7 @@ from ..files.outputs import (
     complete_or_absent,
 )
 from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
-from ..text.options import Changes, IconName, ObserverFile, OneFile, RigName, Tail, check_tail
+from ..text.options import Changes, DrawsFile, IconName, OneFile, RigName, Tail, check_tail
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -236,9 +236,14 @@ def sensitivity_command(
     people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people in each run.")] = 24,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
     draws: Annotated[
-        int, typer.Option("--draws", metavar="N", help="Draws of the posterior; more take longer and scatter less.")
-    ] = 256,
-    observer: ObserverFile = None,
+        int | None,
+        typer.Option(
+            "--draws",
+            metavar="N",
+            help="Draws of the posterior; more take longer and scatter less.  [default: 256, or all there are]",
+        ),
+    ] = None,
+    observer: DrawsFile = None,
     norm: Annotated[
         str, typer.Option("--norm", metavar="NAME", help="episodes, naming, max, rms or integral.")
     ] = "episodes",
@@ -265,7 +270,11 @@ def sensitivity_command(
     The shares are read from draws of the posterior, with which the set is predicted as a new laboratory would see it.
     """
     check_changes(changes or [])
-    bounds = (("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1), ("--draws", draws, 64, 100_000))
+    bounds = (
+        ("--people", people, 1, 10_000),
+        ("--seed", seed, 0, 2**32 - 1),
+        ("--draws", 64 if draws is None else draws, 64, 100_000),
+    )
     for option, value, least, most in bounds:
         if not least <= value <= most:
             raise usage(f"{value} is outside {least} to {most}", option)

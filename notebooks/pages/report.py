@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
 from ..text import rank_notes, rank_text
-from ..text.choices import choice_lines, goal_lines
+from ..text.choices import choice_lines, goal_lines, laboratory
 from ..text.rank_notes import rules_caveat, rules_lines
 from .blocks import Block, Bullets, Cards, Cell, Code, Facts, Heading, Text, as_html, grid
 from .report_views import icon_parts, view_parts
@@ -188,7 +188,7 @@ def _ranking(result: dict[str, Any], ranking: Ranking) -> Iterator[Block]:
     columns = ("place", "icon", "correct", "detected", "onset", "felt as", "most confused with", "playable")
     yield grid(columns, made, ("place", "correct", "detected", "onset"))
     if result["chosen"]:
-        best, *more = choice_lines(result["chosen"])
+        best, *more = choice_lines(result["chosen"], laboratory(result["observer"], result["set"]["own_laboratory"]))
         yield Heading(best, 3)
         yield Bullets(tuple(line.strip().removeprefix("- ") for line in more))
     yield Heading("The set")

@@ -115,7 +115,16 @@ def goal_value(part: dict[str, Any]) -> tuple[str, str]:
     return f"{number(shown, 2)}{words}", f"{number(gap, 2)}{words}"
 
 
-def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
+def laboratory(observer: str, own: bool) -> str:
+    """Which laboratory an interval is for: a new one, or the one whose draws an observer's file holds.
+
+    >>> laboratory("lab.csv", True)
+    'your laboratory, lab.csv'
+    """
+    return f"your laboratory, {observer}" if own else "a new laboratory"
+
+
+def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Iterator[str]:
     """Report what was chosen, how certain that is, its scores as a set of its own, and the excluded icons.
 
     >>> scored("worst", 2.449), scored("correct", 0.914), scored("bits-per-s", 0.3)
@@ -143,7 +152,7 @@ def choice_lines(chosen: dict[str, Any]) -> Iterator[str]:
     if own["proportion_correct_interval_new_laboratory"]:
         low, high = own["proportion_correct_interval_new_laboratory"]
         least, most = own["information_bits_interval_new_laboratory"]
-        yield (f"  - for a new laboratory (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
+        yield (f"  - for {where} (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
     energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
     yield f"  - total duration {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:

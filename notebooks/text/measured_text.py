@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .observed_text import POOR, constant_lines, p_text, sets_table
+from .observed_text import constant_lines, few_lines, misfit, p_text, sets_table
 from .tables import show, table
 
 if TYPE_CHECKING:
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 LEAST_CARRIED = 30
 """Laboratories below which an interval is rough."""
+LEAST_VALUES = 6
+"""Values below which a test of fit judges nobody."""
 
 
 def show_measured(found: MeasuredPilot, files: Sequence[str]) -> None:
@@ -61,13 +63,12 @@ def fit_sentences(found: MeasuredPilot) -> list[str]:
     if missed:
         lines.append(f"* lies outside its predicted 95 % ({missed} of {len(found.conditions)}).")
     before, after = found.fit.p, found.fit_after.p
-    verdict = "the measurements are what the prediction allows"
-    if after < POOR:
-        verdict = (
-            "the model cannot explain these values, not even with other constants; check units, method and stimulus"
-        )
-    elif before < POOR:
-        verdict = "the prediction missed, but laboratories that the evidence allows explain the values"
+    verdict = misfit(before, after, "values", len(found.conditioned.after))
+    if values.total < LEAST_VALUES:
+        verdict = f"{values.total} values are too few to judge the model by; {LEAST_VALUES} or more can"
+    elif "cannot explain" in verdict:
+        verdict += "; check units, method and stimulus"
+    verdict = verdict or "the measurements are what the prediction allows"
     lines.append(
         f"Test of fit (posterior predictive): p = {p_text(before)} before, {p_text(after)} after the values were used: "
         f"{verdict}"
@@ -101,4 +102,4 @@ def draws_sentences(found: MeasuredPilot) -> list[str]:
     ]
     if own.effective_after < LEAST_CARRIED:
         lines.append("So few carry rough intervals only: use more --draws.")
-    return lines + constant_lines(found)
+    return lines + few_lines(found) + constant_lines(found)

@@ -93,8 +93,12 @@ def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
     return rig
 
 
-def load_observer(file: Path | None) -> ObserverModel:
-    """Load the shipped observer, or that of ``--observer``, of which notes on stderr say what it cannot give."""
+def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = "") -> ObserverModel:
+    """Load the shipped observer, or that of ``--observer``, of which notes on stderr say what it cannot give.
+
+    Draws of a laboratory that was asked on another than the `rig` are warned of; `needs_draws` says what cannot be done
+    without draws, which is then refused.
+    """
     from thermicon.perception.observer.observer_model import ObserverModel
 
     with warnings.catch_warnings(record=True) as raised:
@@ -103,14 +107,42 @@ def load_observer(file: Path | None) -> ObserverModel:
     for warning in raised:
         note(f"warning: {warning.message}")
     if model.posterior is None:
-        note(f"note: {model.name} has no posterior draws, so that there are no intervals for a new laboratory")
+        cure = _cure_without_draws(file)
+        if needs_draws:
+            fail(f"{model.name}: {needs_draws}, which this observer does not have: {cure}")
+        note(f"note: {model.name} has no posterior draws, so that there are no intervals for a new laboratory: {cure}")
+    elif (
+        rig is not None
+        and (held := model.posterior.header.rig)
+        and held != (now := ", ".join((rig.name, *rig.changes)))
+    ):
+        note(f"warning: {model.name} was conditioned on the {held} rig, not on {now}: its answers say less of this one")
     return model
 
 
-def check_draws(model: ObserverModel, draws: int, option: str) -> None:
-    """Fail where more draws are asked for than the observer has."""
+def _cure_without_draws(file: Path | None) -> str:
+    """Which file of draws to give instead: the one beside the records, where `observed --keep` has written one."""
+    beside = None if file is None else file.with_suffix(".csv")
+    if beside is not None and beside.exists():
+        return f"give {beside}, which stands beside it"
+    return "give the table of draws (.csv) that observed --keep writes beside it, or one of thermicon calibrate"
+
+
+def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int, least: int = 2) -> int:
+    """The number of draws to use: what was asked for, or the usual number, or as many as the observer has.
+
+    Fail where more are asked for than there are, and where there are fewer than `least`.
+    """
+    if model.posterior is not None and (held := len(model.posterior)) < least:
+        fail(f"{model.name} has {held} draws, and {least} are needed: keep more with observed --draws {2 * least}")
+    if asked is None:
+        if 0 < (draws := model.most_draws(usual)) < usual:
+            note(f"note: {model.name} has {draws} draws: all of them are used ({option} is {usual} by default)")
+        return draws
+    draws = asked
     if model.posterior is not None and draws > len(model.posterior):
         fail(f"{option} {draws}: the {model.name} posterior has {len(model.posterior)} draws: ask for as many or fewer")
+    return draws
 
 
 @contextlib.contextmanager

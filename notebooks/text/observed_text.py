@@ -20,7 +20,11 @@ if TYPE_CHECKING:
     from thermicon.perception.pilot.observed import Observed
 
 MOST_PEOPLE, MOST_PAIRS, MOST_CONSTANTS = 20, 8, 8
-POOR = 0.05
+POOR, DOUBTFUL = 0.05, 0.1
+LEAST_TRIALS = 20
+"""Answers below which a test of fit judges nobody: a single slip decides it."""
+LEAST_LABORATORIES = 100
+"""Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 
 
 def show_observed(found: Observed, files: Sequence[str]) -> None:
@@ -117,16 +121,56 @@ def p_text(p: float) -> str:
 
 
 def _verdict(found: Observed) -> str:
-    if found.fit_after.p < POOR:
-        return ": the model cannot explain these answers, not even with other constants; trust the answers"
-    if found.fit.p < POOR:
-        return ": the prediction missed, but laboratories that the evidence allows explain the answers"
+    if (total := found.trials.total) < LEAST_TRIALS:
+        few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
+        return f": {few} to judge the model by; {LEAST_TRIALS} or more can"
+    why = misfit(found.fit.p, found.fit_after.p, "answers", len(found.conditioned.after))
+    if why:
+        return f": {why}"
+    missed, pairs = len(found.fit.missed), len(found.fit.pairs)
+    if more_than_chance(missed, pairs):
+        return (
+            f": as a whole the answers do not contradict the prediction, but it missed {missed} of {pairs} pairs, more "
+            "than chance does"
+        )
+    if found.fit.p < DOUBTFUL:
+        return ": the answers are near the limit of what the prediction allows"
     return ": the answers are what the prediction allows"
+
+
+def misfit(before: float, after: float, what: str, laboratories: int) -> str:
+    """What a small p says of the model; empty where neither is small.
+
+    >>> misfit(0.02, 0.3, "answers", 500)
+    'the prediction missed, but laboratories that the evidence allows explain the answers'
+    """
+    if after < POOR and laboratories < LEAST_LABORATORIES:
+        return (
+            f"the {what} are unlikely, but {laboratories} laboratories are too few to say that no constants explain "
+            f"them: use --draws {2 * LEAST_LABORATORIES} or more"
+        )
+    if after < POOR:
+        return f"the model cannot explain these {what}, not even with other constants"
+    if before < POOR:
+        return f"the prediction missed, but laboratories that the evidence allows explain the {what}"
+    return ""
+
+
+def more_than_chance(missed: int, pairs: int) -> bool:
+    """Whether more pairs lie outside their 95 % than chance makes likely (5 %).
+
+    >>> more_than_chance(3, 15), more_than_chance(2, 15)
+    (True, False)
+    """
+    fewer = sum(math.comb(pairs, k) * 0.05**k * 0.95 ** (pairs - k) for k in range(missed))
+    return 1.0 - fewer < POOR
 
 
 def sets_table(found: Observed | MeasuredPilot, files: Sequence[str]) -> Table:
     """Each set before and after: per cent correct and bits of people who did not take part."""
-    made = table("set", "", "correct", "95 %", "bits", "95 %", "narrower", numbers=("correct", "bits", "narrower"))
+    enough = len(found.conditioned.after) >= LEAST_LABORATORIES
+    columns = ["set", "", "correct", "95 %", "bits", "95 %"] + ["narrower"] * enough
+    made = table(*columns, numbers=("correct", "bits", "narrower"))
     for file, each in zip(files, found.predictions, strict=True):
         for when, one in (("before", each.before), ("after", each.after)):
             (share, low, high), (bits, least, most) = one.proportion_correct, one.information_bits
@@ -137,7 +181,7 @@ def sets_table(found: Observed | MeasuredPilot, files: Sequence[str]) -> Table:
                 percent_span(low, high),
                 f"{bits:.2f}",
                 f"{least:.2f}–{most:.2f}",
-                f"{each.narrower:.2f} ×" if when == "after" else "",
+                *[f"{each.narrower:.2f} ×" if when == "after" else ""] * enough,
             )
     return made
 
@@ -156,7 +200,17 @@ def draws_sentences(found: Observed) -> list[str]:
             f"{conditioned.rounds} rounds by their pooled answers"
         )
     lines.append(f"The answers weigh the draws: {carried}.")
-    return lines + constant_lines(found)
+    return lines + few_lines(found) + constant_lines(found)
+
+
+def few_lines(found: Observed | MeasuredPilot) -> list[str]:
+    """That the intervals after are too rough to compare their widths, where few laboratories make them."""
+    if (count := len(found.conditioned.after)) >= LEAST_LABORATORIES:
+        return []
+    return [
+        f"Intervals after rest on {count} laboratories, too few to say by how much they narrowed: use --draws "
+        f"{2 * LEAST_LABORATORIES} or more."
+    ]
 
 
 def constant_lines(found: Observed | MeasuredPilot) -> list[str]:

@@ -44,6 +44,15 @@ ObserverFile = Annotated[
         help="Predict with another observer: draws of thermicon calibrate or observed (.csv), or its records (.toml).",
     ),
 ]
+DrawsFile = Annotated[
+    Path | None,
+    typer.Option(
+        "--observer",
+        metavar="FILE",
+        readable=False,
+        help="Draw from another posterior: the table of draws (.csv) of thermicon calibrate or observed --keep.",
+    ),
+]
 Keep = Annotated[
     Path | None,
     typer.Option(

@@ -8,7 +8,7 @@ from typing import Any
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
 from .assumption_text import assumption_lines
-from .choices import choice_lines, goal_lines
+from .choices import choice_lines, goal_lines, laboratory
 from .rank_notes import (
     carried_lines,
     norm_lines,
@@ -26,7 +26,7 @@ DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
     "channel what most of them go by, from 50 % on."
 )
-NO_INTERVAL = "     no interval for a new laboratory: --parameters 2 or more and an observer with draws give one"
+NO_INTERVAL = "     no interval for a new laboratory: "
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 
 
@@ -63,7 +63,7 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
             percent(icon["proportion_correct"]),
             rival(result["confusion"], labels.index(icon["name"])),
         )
-    best = ["", *choice_lines(result["chosen"])] if result["chosen"] else []
+    best = ["", *choice_lines(result["chosen"], _where(result))] if result["chosen"] else []
     goal = ["", *goal_lines(result["goal"])] if result["goal"] else []
     depends = assumption_lines(result["assumptions"])
     lines = [*set_lines(result), *depends, *best, *goal, *_disagreements(result)]
@@ -115,24 +115,35 @@ def number_lines(result: dict[str, Any]) -> list[str]:
     if whole["proportion_correct_interval_new_laboratory"]:
         low, high = whole["proportion_correct_interval_new_laboratory"]
         people = whole["new_laboratory_people"]
-        lines.append(f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}")
+        lines.append(f"     mean of {people} people in {_where(result)} (95 %): {percent_span(low, high)}")
     elif not result["chosen"]:
-        lines.append(NO_INTERVAL)
+        lines.append(_no_interval(result["observer"]))
     if bits is not None:
         least, most = whole["information_bits_interval"]
         plugin = whole["information_bits_plugin"]
         lines += [
             f"     {bits:.2f} bits" + _range(result, f"{least:.2f}–{most:.2f} bits"),
-            *_bits_range(whole["information_bits_interval_new_laboratory"]),
+            *_bits_range(whole["information_bits_interval_new_laboratory"], _where(result)),
             f"     {whole['bits_per_s']:.2f} bits/s",
             f"     a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)",
         ]
     return lines
 
 
-def _bits_range(interval: Sequence[float] | None) -> Iterator[str]:
+def _where(result: dict[str, Any]) -> str:
+    return laboratory(result["observer"], result["set"]["own_laboratory"])
+
+
+def _no_interval(observer: str) -> str:
+    """Why there is none: an observer without draws, or no draws asked for."""
+    if observer.lower().endswith(".toml"):
+        return f"{NO_INTERVAL}{observer} is one observer without draws; a table of draws (.csv) gives one"
+    return f"{NO_INTERVAL}--parameters 2 or more give one"
+
+
+def _bits_range(interval: Sequence[float] | None, where: str) -> Iterator[str]:
     if interval is not None:
-        yield f"     in a new laboratory (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
+        yield f"     in {where} (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
 
 
 def _range(result: dict[str, Any], interval: str) -> str:

@@ -1,8 +1,8 @@
 """A set as every draw of the posterior predicts it: draws with their own people, laboratory and memory.
 
 Every draw is one consistent set of constants. It brings its own spread between people, an offset of the laboratory
-drawn from the spread between laboratories, and memory drawn from its intervals, which no posterior knows of. Depths of
-receptors stay those of the rig.
+drawn from the spread between laboratories, and memory: its own, where the draws are those of one laboratory, otherwise
+drawn from its intervals, which no published posterior knows of. Depths of receptors stay those of the rig.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import Norm
+from ..observer.memory_constants import with_memory
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
 from ..sensation.detection import pooled
-from ..sensation.memory_parameters import memory_parameters, with_memory
+from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import latin
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
@@ -103,14 +104,15 @@ def laboratory_draws(
         raise ValueError(f"{model.name} has no posterior draws, from which an interval for a new laboratory is made")
     count = len(persons)
     chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
-    offsets, memory = held.new_laboratory(seed), memory_parameters(norm, records=model.records)
+    offsets = held.new_laboratory(seed)
+    memory = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
     shares = latin(len(memory), draws, seed)
     everyone = np.arange(count)
 
     def one(place: int) -> tuple[Array, ...]:
         k = int(chosen[place])
         moved = {p.name: p.at(float(share)) for p, share in zip(memory, shares[place], strict=True)}
-        observer = with_memory(held.observer(k), moved, norm)
+        observer = with_memory(held.observer(k), moved)
         drawn = draw_people(count, seed, age_years=model.age_years, spreads=held.draw(k))
         people = drawn.less_sensitive(*(-offsets[k]))
         return scored(
@@ -122,9 +124,9 @@ def laboratory_draws(
         found.append(scores)
         if step is not None:
             step()
-    names = (*held.names, *(parameter.name for parameter in memory), "laboratory, cold", "laboratory, warm")
+    names = (*held.names, *held.memory_names, *(p.name for p in memory), "laboratory, cold", "laboratory, warm")
     moved = np.array([[p.at(float(s)) for p, s in zip(memory, row, strict=True)] for row in shares]).reshape(draws, -1)
-    values = np.hstack([held.draws[chosen], moved, offsets[chosen]])
+    values = np.hstack([held.draws[chosen], held.memory[chosen], moved, offsets[chosen]])
     return LaboratoryDraws(names, values, *(np.stack([scores[k] for scores in found]) for k in range(8)))
 
 

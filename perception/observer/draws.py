@@ -1,15 +1,15 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
 The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
-where the evidence does not separate two of them, they trade off from draw to draw. Noise of memory is no part of
-the inference and stays that of the shipped observer.
+where the evidence does not separate two of them, they trade off from draw to draw. Memory is no part of the inference
+and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of memory.
 """
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -22,10 +22,13 @@ from ..arrays import Array, own_arrays
 from .channels import CHANNELS
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .from_draw import observer_with
+from .memory_constants import noise_name
 from .observer import Observer, variant_records
 from .variants import Model, Variable, check_variant, source_of
 
 LABORATORIES = "sensitivity between laboratories"
+ONE = 1e-3
+"""Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
 INFERRED = "inferred from published evidence"
 """How the source of a record begins whose value a draw replaces."""
 
@@ -34,7 +37,8 @@ INFERRED = "inferred from published evidence"
 class PosteriorDraws:
     """Equally weighted draws: `draws` (n, constants) read-only, in each constant's own unit, columns as in `names`.
 
-    The first is the nominal one: its constants, and what they predict of the evidence, are nearest to their medians.
+    `memory` (n, constants of memory) belongs to `memory_names` and has no columns where memory is not known of. The
+    first draw is the nominal one: its constants, and what they predict of the evidence, are nearest to their medians.
 
     >>> posterior = PosteriorDraws.load()
     >>> posterior.values("cold limit").shape == (len(posterior),)
@@ -47,12 +51,18 @@ class PosteriorDraws:
     header: DrawsHeader
     names: tuple[str, ...]
     draws: Array
+    memory_names: tuple[str, ...] = ()
+    memory: Array = field(default_factory=lambda: np.empty((0, 0)))
 
     def __post_init__(self) -> None:
-        own_arrays(self, "draws")
+        if not self.memory_names:
+            object.__setattr__(self, "memory", np.empty((len(self.draws), 0)))
+        own_arrays(self, "draws", "memory")
         if self.draws.ndim != 2 or self.draws.shape[1] != len(self.names) or not self.draws.shape[0]:
             raise ValueError(f"draws of {len(self.names)} constants need as many columns, not {self.draws.shape}")
-        if not np.isfinite(self.draws).all():
+        if self.memory.shape != (len(self.draws), len(self.memory_names)):
+            raise ValueError(f"memory of {len(self.draws)} draws needs as many rows, not {self.memory.shape}")
+        if not np.isfinite(self.draws).all() or not np.isfinite(self.memory).all():
             raise ValueError("every constant of every draw must be a finite number")
 
     @classmethod
@@ -64,7 +74,7 @@ class PosteriorDraws:
         Parameters
         ----------
         path
-            A table written by ``thermicon calibrate``; None for the shipped one.
+            A table written by ``thermicon calibrate`` or kept by ``thermicon observed``; None for the shipped one.
         variable, model
             The variant of the shipped table; a file has its own.
 
@@ -102,8 +112,14 @@ class PosteriorDraws:
         return column
 
     def draw(self, k: int) -> Mapping[str, float]:
-        """All constants of one draw by name, offsets of the laboratories of the evidence included."""
-        return dict(zip(self.names, self.draws[k].tolist(), strict=True))
+        """All constants of one draw by name, offsets of the laboratories of the evidence and own memory included."""
+        remembered = zip(self.memory_names, self.memory[k].tolist(), strict=True)
+        return {**dict(zip(self.names, self.draws[k].tolist(), strict=True)), **dict(remembered)}
+
+    @property
+    def one_laboratory(self) -> bool:
+        """Whether all draws are of one laboratory, so that there is next to no spread between laboratories."""
+        return bool(self.values(LABORATORIES).max() < ONE)
 
     def interval(self, name: str, share: float = 0.95) -> tuple[float, float, float]:
         """Lower end, median and upper end of the central interval of a constant."""
@@ -115,6 +131,10 @@ class PosteriorDraws:
         values, variant = self.draw(k), source_of(*self.variant)
         records = []
         for record in variant_records(*self.variant):
+            remembered = noise_name(record.method) if record.quantity == "memory noise" else record.quantity
+            if remembered in self.memory_names:
+                records.append(replace(record, value=values[remembered], low=None, high=None))
+                continue
             if not record.source.startswith(INFERRED):
                 records.append(record)
                 continue
@@ -156,4 +176,5 @@ class PosteriorDraws:
 
 @lru_cache(maxsize=8)
 def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
-    return PosteriorDraws(*read_draws(file))
+    header, (names, draws), (memory_names, memory) = read_draws(file)
+    return PosteriorDraws(header, names, draws, memory_names, memory)

@@ -18,6 +18,7 @@ from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
+from .memory_constants import MEMORY_NAMES, objection_to
 from .observer import DATA
 from .variants import Model, Variable, check_variant
 
@@ -27,6 +28,8 @@ FIGURES = 6
 TABLE = "sha256 of the table"
 """Label of the line with the digest of the draws."""
 FIRST_LINE = "# written by thermicon calibrate from inputs "
+LABORATORY_LINE = "# written by thermicon observed from inputs "
+"""How the draws of one laboratory begin."""
 CURE = "write it again with thermicon calibrate -o FILE"
 CONSTANTS = DATA / "constants.csv"
 VARIANT_NAMES: Mapping[str, tuple[Variable, Model]] = {
@@ -43,7 +46,8 @@ class DrawsHeader:
     """What a table of draws was made from: digests, variant, sampler and diagnostics, all as text in the file.
 
     `inputs`, `evidence` and `priors` are digests; `left_out` names experiments that were not conditioned on;
-    `r_hat` is the largest and `ess` the least bulk effective sample size over all constants.
+    `r_hat` is the largest and `ess` the least bulk effective sample size over all constants. Draws of one laboratory
+    say how they were `resampled`, and on which `rig` its answers or measurements were made; others leave both empty.
     """
 
     inputs: str
@@ -60,6 +64,8 @@ class DrawsHeader:
     ess: float
     converged: bool
     offsets: tuple[str, ...]
+    resampled: str = ""
+    rig: str = ""
 
     def __post_init__(self) -> None:
         check_variant(self.variable, self.model)
@@ -71,6 +77,8 @@ class DrawsHeader:
     @property
     def status(self) -> str:
         """Diagnostics in a few words."""
+        if self.resampled:
+            return f"resampled {self.resampled}"
         if APPROXIMATE in self.sampler:
             return f"{APPROXIMATE}, not sampled"
         reached = "" if self.converged else "NOT CONVERGED, "
@@ -93,6 +101,8 @@ LABELS: Mapping[str, str] = {
     "offsets": "offsets of laboratories",
 }
 """Names of the header's lines by field; `inputs` ends the first line."""
+OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
+"""Further lines of one laboratory's draws."""
 
 
 def variant_named(name: str) -> tuple[Variable, Model]:
@@ -119,15 +129,29 @@ def shipped_file(variable: Variable, model: Model) -> Path:
 def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
     """The whole file, numbers to six figures."""
     text, table = StringIO(), StringIO()
-    text.write(f"{FIRST_LINE}{header.inputs}\n# form: {FORM}\n")
-    for field, label in LABELS.items():
+    begin, labels = (LABORATORY_LINE, {**LABELS, **OF_LABORATORY}) if header.resampled else (FIRST_LINE, LABELS)
+    text.write(f"{begin}{header.inputs}\n# form: {FORM}\n")
+    for field, label in labels.items():
         text.write(f"# {label}: {_to_text(getattr(header, field))}\n")
     writer = csv.writer(table, lineterminator="\n")
     writer.writerow(names)
-    writer.writerows([f"{value:.{FIGURES}g}" for value in row] for row in draws.tolist())
+    writer.writerows([_figures(value) for value in row] for row in draws.tolist())
     rows = table.getvalue()
     text.write(f"# {TABLE}: {_digest(rows.splitlines())}\n{rows}")
     return text.getvalue()
+
+
+def as_written(values: Array) -> Array:
+    """Numbers as a table has them, to six figures.
+
+    >>> as_written(np.array([0.12345678])).tolist()
+    [0.123457]
+    """
+    return np.array([float(_figures(value)) for value in values.ravel().tolist()]).reshape(values.shape)
+
+
+def _figures(value: float) -> str:
+    return f"{value:.{FIGURES}g}"
 
 
 def _digest(rows: Sequence[str]) -> str:
@@ -154,15 +178,19 @@ def _to_text(value: object) -> str:
     return f"{value:.5g}" if isinstance(value, float) else str(value)
 
 
-def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array]:
-    """Header, names and draws (n, constants) of a file; a RecordError says what is wrong, where, and the cure."""
+Columns = tuple[tuple[str, ...], Array]
+"""Names, and what stands below them (n, names)."""
+
+
+def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
+    """Header, draws of the constants and of memory of a file; a RecordError says what is wrong, where, and the cure."""
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not text"
         raise RecordError(f"{path}: posterior draws cannot be read: {reason}: check the path, or {CURE}") from error
     head = [line for line in lines if line.startswith("#")]
-    if not head or not head[0].startswith(FIRST_LINE):
+    if not head or not head[0].startswith((FIRST_LINE, LABORATORY_LINE)):
         raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")
     header = _header(path.name, head)
     _check_table(path.name, head, lines[len(head) :])
@@ -178,7 +206,12 @@ def read_draws(path: Path) -> tuple[DrawsHeader, tuple[str, ...], Array]:
             raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
         for place, text in enumerate(row):
             draws[number, place] = _number(text, f"{where}, {names[place]}")
-    return header, names, draws
+            if names[place] in MEMORY_NAMES and (why := objection_to(names[place], float(draws[number, place]))):
+                raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
+    remembered = [name in MEMORY_NAMES for name in names]
+    constants = tuple(name for name in names if name not in MEMORY_NAMES)
+    memory = tuple(name for name in names if name in MEMORY_NAMES)
+    return header, (constants, draws[:, np.logical_not(remembered)]), (memory, draws[:, remembered])
 
 
 def _header(name: str, head: Sequence[str]) -> DrawsHeader:
@@ -190,7 +223,8 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
     missing = [label for label in LABELS.values() if label not in known]
     if missing:
         raise RecordError(f"{name}: the header has no line {missing[0]!r}: {CURE}")
-    inputs, current = head[0].removeprefix(FIRST_LINE).strip(), current_inputs()
+    inputs = head[0].removeprefix(FIRST_LINE).removeprefix(LABORATORY_LINE).strip()
+    current = current_inputs()
     if inputs != current:
         raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
     text = {field: known[label] for field, label in LABELS.items()}
@@ -213,6 +247,7 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
         _number(text["ess"], f"{name}, least bulk ESS"),
         text["converged"] == "yes",
         _words(text["offsets"]),
+        **{field: known.get(label, "") for field, label in OF_LABORATORY.items()},
     )
 
 
@@ -235,8 +270,10 @@ def _check_names(name: str, header: DrawsHeader, names: Sequence[str]) -> None:
         raise RecordError(f"{name}: two columns have one name: {CURE}")
     expected = _inferred(header.variable, header.model)
     for each in names:
-        if each not in expected:
-            raise RecordError(f"{name}: {each!r} is not a constant of this observer: {did_you_mean(each, expected)}")
+        if each not in expected and each not in MEMORY_NAMES:
+            raise RecordError(
+                f"{name}: {each!r} is not a constant of this observer: {did_you_mean(each, {*expected, *MEMORY_NAMES})}"
+            )
     for each in expected:
         if each not in names:
             raise RecordError(f"{name}: there is no column {each!r}: {CURE}")
@@ -256,4 +293,4 @@ def current_inputs() -> str:
         return file.readline().rpartition(" ")[2].strip()
 
 
-assert {field.name for field in fields(DrawsHeader)} == {*LABELS, "inputs"}
+assert {field.name for field in fields(DrawsHeader)} == {*LABELS, *OF_LABORATORY, "inputs"}

@@ -8,11 +8,12 @@ from dataclasses import replace
 
 from .channels import Channel
 from .memory import Ratings
+from .memory_constants import with_memory
 from .observer import Observer, Receptor
 
 
 def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
-    """The observer whose inferred constants have these values, by name; all else is that of `base`.
+    """The observer whose constants, those of memory among them, have these values; all else is that of `base`.
 
     >>> base = Observer.load()
     >>> values = {"criterion of speeded answers": 3.0, "cold limit": 33.0}
@@ -47,7 +48,7 @@ def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
         whole = math.hypot(value("scatter of ratings", scatter), exponent * own.rated * gain_noise)
         return Ratings(value(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
 
-    return replace(
+    moved = replace(
         base,
         cold=receptor("cold"),
         warm=receptor("warm"),
@@ -62,3 +63,4 @@ def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
         decision_noise=value("decision time between trials", base.decision_noise),
         memory=replace(base.memory, cold=ratings("cold"), warm=ratings("warm")),
     )
+    return with_memory(moved, values)

@@ -79,7 +79,8 @@ class ObserverModel:
         Parameters
         ----------
         path
-            Draws written by ``thermicon calibrate`` (.csv), or records of one observer (.toml).
+            Draws written by ``thermicon calibrate`` or kept by ``thermicon observed`` (.csv), or records of one
+            observer (.toml).
 
         Raises
         ------
@@ -95,6 +96,14 @@ class ObserverModel:
         nominal = Observer.from_table(records) if draws is None else draws.nominal()
         spreads = _spreads(records) if draws is None else draws.draw(0)
         return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, spreads, records, draws)
+
+    def most_draws(self, wanted: int) -> int:
+        """As many draws as are wanted, or as many as there are.
+
+        >>> ObserverModel.load().most_draws(128)
+        128
+        """
+        return 0 if self.posterior is None else min(wanted, len(self.posterior))
 
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""

@@ -4,6 +4,9 @@ Bits are the plug-in estimate, which is biased upwards by about (cells − rows 
 counts of what was used (Miller 1955); less that, they are called Miller–Madow here. Answers that are possible but did
 not occur are not counted, so that with a few trials an icon some bias is left. The interval is normal about the
 corrected bits, with the jackknife's standard error over participants, or over trials where there is one participant.
+
+A few participants may happen to be alike, or right throughout: the interval of all answers is therefore never narrower
+than the one that their number alone leaves, Wilson's for per cent correct and the jackknife over trials for bits.
 """
 
 from __future__ import annotations
@@ -88,7 +91,7 @@ def score_person(trials: Trials, person: int) -> AnswerScore:
 
 
 def score_pooled(trials: Trials) -> AnswerScore:
-    """Scores of all participants together; both intervals follow the spread between participants."""
+    """Scores of all participants together; intervals follow their spread and the number of trials."""
     counts = trials.pooled
     known = [time for time in trials.time_s if not math.isnan(time)]
     time = float(np.median(known)) if known else math.nan
@@ -99,9 +102,11 @@ def score_pooled(trials: Trials) -> AnswerScore:
     correct = np.trace(without, axis1=1, axis2=2) / without.sum(axis=(1, 2))
     share = float(np.trace(counts) / counts.sum())
     half = _student(len(without) - 1) * _jackknife(correct)
-    ends = max(share - half, 0.0), min(share + half, 1.0)
+    low, high = wilson(float(np.trace(counts)), float(counts.sum()))
+    ends = max(min(share - half, low), 0.0), min(max(share + half, high), 1.0)
     bits = np.array([_corrected(each) for each in without])
-    return _score("all", counts, ends, _student(len(without) - 1) * _jackknife(bits), time)
+    spread = max(_student(len(without) - 1) * _jackknife(bits), _over_trials(counts))
+    return _score("all", counts, ends, spread, time)
 
 
 def wilson(successes: float, trials: float) -> tuple[float, float]:
@@ -135,10 +140,19 @@ def _jackknife(each: Array) -> float:
 
 
 def _over_trials(counts: Array) -> float:
-    """Half the 95 % interval of the bits of one person, by the jackknife over trials; of one trial all is possible."""
+    """Half the 95 % interval of bits, by the jackknife over trials; of one trial all is possible.
+
+    Answers that are all right show no spread: they are taken to be no surer than with one of them wrong.
+    """
     total = int(counts.sum())
     if total < FEWEST:
         return math.log2(len(counts))
+    if np.trace(counts) == total:
+        icon = int(counts.sum(axis=1).argmax())
+        slip = counts.copy()
+        slip[icon, icon] -= 1.0
+        slip[icon, icon - 1] += 1.0
+        return _corrected(counts) - _corrected(slip) + _over_trials(slip)
     cells = np.argwhere(counts > 0.0)
     without, times = [], []
     for a, b in cells.tolist():

@@ -51,6 +51,11 @@ class Conditioned:
     confusions_after: Confusions
     rounds: int
 
+    @property
+    def effective_after(self) -> float:
+        """How many independent draws stand behind `after`."""
+        return float(len(self.after)) if self.rounds else self.effective
+
     def __repr__(self) -> str:
         how = "reweighted" if not self.rounds else f"refreshed in {self.rounds} rounds"
         return f"Conditioned({len(self.before)} laboratories, ESS {self.effective:.0f}; {len(self.after)} {how})"

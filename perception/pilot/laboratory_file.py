@@ -1,105 +1,128 @@
-"""A conditioned laboratory as files: a table of draws like the shipped one, and an observer with its memory.
+"""A conditioned laboratory as files: a table of draws like the shipped one, and the observer in the middle of them.
 
-`LAB.csv` has the form of `posterior.csv` and is read by `PosteriorDraws.load` and `Observer.load`. Draws are resampled
-by their weights. The offset of the laboratory is part of its thresholds there, so that the spread between laboratories
-is next to nothing: the draws are those of this one. Memory has no column in that form; its intervals, narrowed by the
-answers, are in `LAB.toml`, which is a whole parameter file for `Observer.load`.
+`LAB.csv` has the form of `posterior.csv`, with further columns for the constants of memory, and is read by
+`PosteriorDraws.load` and `Observer.load`. Draws are resampled by their weights. The offset of the laboratory is part of
+its thresholds there, so that the spread between laboratories is next to nothing: the draws are those of this one.
+`LAB.toml` is the first of these draws as a whole parameter file for `Observer.load`, with 95 % intervals of all.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thermicon.circuit.records import Record, Table, dump_records
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, noise_norm
+from ..observer.channels import CHANNELS
 from ..observer.draws import LABORATORIES, PosteriorDraws
-from ..observer.draws_file import to_text
+from ..observer.draws_file import as_written, to_text
+from ..observer.memory_constants import noise_name
+from .nominal import middle_of
+from .playing import Stage
 from .states import OFFSETS, Laboratories, LaboratoryPrior
 
 NO_SPREAD = 1e-6
 """Spread between laboratories (ln) in the draws of one: nothing, but for the logarithm that is taken of it."""
+OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resampled"
+
+
+@dataclass(frozen=True, slots=True)
+class Resampling:
+    """Where the draws of a laboratory come from: a `note` on the data, `how` they were resampled, and the `rig`.
+
+    `effective` is how many independent draws stand behind them.
+    """
+
+    note: str
+    how: str
+    rig: str
+    effective: float
 
 
 def laboratory_draws(
-    prior: LaboratoryPrior, some: Laboratories, predicted: Array, note: str, effective: float
+    prior: LaboratoryPrior, some: Laboratories, predicted: Array, played: Stage, resampling: Resampling
 ) -> PosteriorDraws:
-    """Draws of one laboratory, its offset in the thresholds.
+    """Draws of one laboratory, its offset in the thresholds, its memory beside the constants; to the figures of a file.
 
-    The first is nearest to the medians of constants and of what is `predicted` (laboratories, numbers), of which the
-    medians of constants alone may be far. `note` says what they were conditioned on, in the header's line of the
-    sampler.
+    The first is the one in the middle, by its constants and by what each `predicted` (laboratories, numbers) of a set
+    that was `played` and of what was measured; a single constant of it may lie off its own median.
     """
     values = prior.values(some)
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
     for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
         own[:, names.index(f"{channel} threshold drive")] *= np.exp(-values[:, prior.names.index(offset)])
     own[:, names.index(LABORATORIES)] = NO_SPREAD
-    first = int((off_middle(own) + off_middle(predicted)).argmin())
+    remembered = tuple(parameter.name for parameter in prior.memory)
+    memory = values[:, [prior.names.index(name) for name in remembered]]
     header = prior.draws.header
-    sampler = f"{header.sampler}; {note}"
+    # Offsets of the laboratories of the evidence say nothing of this one.
+    counted = np.hstack([own[:, [k for k, name in enumerate(names) if not header.is_offset(name)]], memory])
+    first = middle_of(some, counted, predicted, played)
     order = [first, *(k for k in range(len(own)) if k != first)]
-    return PosteriorDraws(replace(header, sampler=sampler, ess=min(header.ess, effective)), names, own[order])
+    distinct = len(np.unique(np.hstack([own, memory]), axis=0))
+    stated = replace(
+        header,
+        sampler=f"{header.sampler}; {resampling.note}",
+        ess=min(header.ess, resampling.effective),
+        resampled=f"{resampling.how}, {distinct} distinct rows of {len(own)}",
+        rig=resampling.rig,
+    )
+    return PosteriorDraws(stated, names, as_written(own[order]), remembered, as_written(memory[order]))
 
 
-def laboratory_texts(
-    prior: LaboratoryPrior, some: Laboratories, draws: PosteriorDraws, version: str, provenance: Sequence[str]
-) -> tuple[str, str]:
+def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
+    """How laboratories were resampled, in a few words.
+
+    >>> how_resampled(100, 83.4, 0)
+    'by weights from 100 laboratories, effective sample size 83'
+    """
+    if not rounds:
+        return f"by weights from {laboratories} laboratories, effective sample size {effective:.0f}"
+    times = "1 round" if rounds == 1 else f"{rounds} rounds"
+    return f"in {times} of fresh laboratories, since weights left {effective:.0f} effective of {laboratories}"
+
+
+def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[str]) -> tuple[str, str]:
     """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory."""
     head = (f"Observer of one laboratory, written by thermicon observed ({version}).", *provenance)
-    return observer_text(prior, some, draws, head), draws_text(draws, provenance)
+    return observer_text(draws, head), draws_text(draws, provenance)
 
 
 def draws_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
     """The table of draws with further lines of provenance in its header."""
-    first, rest = to_text(draws.header, draws.names, draws.draws).split("\n", 1)
-    return "\n".join([first, *(f"# {line}" for line in lines), rest])
+    columns, values = (*draws.names, *draws.memory_names), np.hstack([draws.draws, draws.memory])
+    first, rest = to_text(draws.header, columns, values).split("\n", 1)
+    return "\n".join([first, *(f"# {line}" for line in (*lines, OF_SOURCE)), rest])
 
 
-def observer_text(prior: LaboratoryPrior, some: Laboratories, draws: PosteriorDraws, lines: Sequence[str]) -> str:
-    """The parameter file: constants of the first draw with 95 % intervals of all, memory as the answers leave it."""
-    values = prior.values(some)
-    memory = {parameter.name: values[:, prior.names.index(parameter.name)] for parameter in prior.memory}
-    first = {name: draws.draws[:, k] for k, name in enumerate(draws.names)}
+def observer_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
+    """The parameter file: constants and memory of the first draw, with 95 % intervals of all."""
+    each = dict(zip((*draws.names, *draws.memory_names), np.hstack([draws.draws, draws.memory]).T, strict=True))
     return dump_records(
-        Table("laboratory", tuple(_record(record, first, memory, prior) for record in draws.table(0))),
+        Table("laboratory", tuple(_record(record, each, draws.memory_names) for record in draws.table(0))),
         comment="\n".join(lines),
     )
 
 
-def _record(record: Record, constants: dict[str, Array], memory: dict[str, Array], prior: LaboratoryPrior) -> Record:
+def _record(record: Record, each: dict[str, Array], remembered: Sequence[str]) -> Record:
     name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
-    if record.quantity == "memory noise" and record.method == noise_norm(prior.norm):
-        name = f"memory noise ({record.method})"
-    if name in memory:
-        return _narrowed(record, float(np.median(memory[name])), memory[name])
-    if name in constants and record.value is not None and record.method.startswith("draw "):
-        return _narrowed(record, record.value, constants[name])
+    if record.quantity == "memory noise":
+        name = noise_name(record.method)
+    moved = name in remembered or record.method.startswith("draw ")
+    if name in each and record.value is not None and moved:
+        return _narrowed(record, record.value, each[name])
     return record
 
 
 def _narrowed(record: Record, value: float, each: Array) -> Record:
-    low, high = np.percentile(each, [2.5, 97.5]).tolist()
-    numbers = [float(f"{number:.5g}") for number in (min(low, value), value, max(high, value))]
-    return replace(record, low=numbers[0], value=numbers[1], high=numbers[2], method=_method(record), use="calibrate")
+    low, high = (float(f"{number:.5g}") for number in np.percentile(each, [2.5, 97.5]).tolist())
+    low, high = min(low, value), max(high, value)
+    return replace(record, low=low, value=value, high=high, method=_method(record), use="calibrate")
 
 
 def _method(record: Record) -> str:
     """The method of a record is the norm where it is memory's, and must then stay."""
     return record.method if record.quantity.startswith("memory noise") else "conditioned on a laboratory's own answers"
-
-
-def off_middle(values: Array) -> Array:
-    """Mean square (rows,) of how many SDs a row lies from the median of each column.
-
-    >>> int(off_middle(np.array([[0.0], [1.0], [5.0]])).argmin())
-    1
-    """
-    spread = values.std(axis=0)
-    off = np.divide(values - np.median(values, axis=0), spread, out=np.zeros_like(values), where=spread > 0.0)
-    found: Array = np.square(off).mean(axis=1)
-    return found

@@ -16,12 +16,12 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from .changes import ChangedConstant, changed
-from .laboratory_file import laboratory_draws, laboratory_texts
+from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
 from .measurement_conditioning import Reweighted, reweight
 from .measurement_fit import ConditionFit, MeasurementFit, compare_measurements
 from .measurements import Measurements
 from .observed import DRAWS, LEAST_DRAWS, Progress, counted
-from .playing import Confusions, laboratories_for, stage
+from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedPrediction
 from .simulated_measurements import Setting, predicted
 from .states import Laboratories, LaboratoryPrior
@@ -62,6 +62,7 @@ class MeasuredPilot:
     conditioned: Reweighted
     confusions_after: Confusions
     prior: LaboratoryPrior
+    played: Stage
     rig: str
     rig_changes: tuple[str, ...]
     norm: str
@@ -84,15 +85,20 @@ class MeasuredPilot:
         )
 
     def draws(self) -> PosteriorDraws:
-        """Draws of the constants in this laboratory, equally weighted; its offset is part of the thresholds."""
+        """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         found, played = self.conditioned, self.confusions_after
         outcome = np.column_stack([played.correct, played.bits, found.predicted_after.mean])
-        note = "; ".join(self.provenance[:3])
-        return laboratory_draws(self.prior, found.after, outcome, note, found.effective_after)
+        resampling = Resampling(
+            note="; ".join(self.provenance[:3]),
+            how=how_resampled(len(found.before), found.effective, found.rounds),
+            rig=", ".join((self.rig, *self.rig_changes)),
+            effective=found.effective_after,
+        )
+        return laboratory_draws(self.prior, found.after, outcome, self.played, resampling)
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
-        return laboratory_texts(self.prior, self.conditioned.after, self.draws(), self.version, self.provenance)
+        return laboratory_texts(self.draws(), self.version, self.provenance)
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
@@ -189,9 +195,10 @@ def condition_on_measurements(
         return predicted(prior, some, setting, measurements.conditions, step if some is before else None)
 
     found = reweight(measurements, before, simulate, seed=seed, kept=kept)
+    main = stage(icons, rig, prior, seed=seed, tracking=tracking)
     predictions, after = list[ChangedPrediction](), None
     for each in (icons, *others):
-        played = stage(each, rig, prior, seed=seed, tracking=tracking)
+        played = main if each is icons else stage(each, rig, prior, seed=seed, tracking=tracking)
         pair = played.confusions(before, step), played.confusions(found.after, step)
         after = pair[1] if after is None else after
         predictions.append(ChangedPrediction.of(each.title, *pair))
@@ -207,6 +214,7 @@ def condition_on_measurements(
         conditioned=found,
         confusions_after=after,
         prior=prior,
+        played=main,
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         norm=norm,

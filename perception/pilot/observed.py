@@ -19,9 +19,9 @@ from .answers import AnswerScore, score_person, score_pooled
 from .changes import ChangedConstant, changed
 from .conditioning import Conditioned, condition
 from .fit import Fit, compare
-from .laboratory_file import laboratory_draws, laboratory_texts
+from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
 from .likelihood import person_log_likelihoods
-from .playing import laboratories_for, stage
+from .playing import Stage, laboratories_for, stage
 from .prediction import ChangedPrediction, Three, three
 from .states import LaboratoryPrior
 from .trials import Trials
@@ -66,6 +66,7 @@ class Observed:
     constants: tuple[ChangedConstant, ...]
     conditioned: Conditioned
     prior: LaboratoryPrior
+    played: Stage
     rig: str
     rig_changes: tuple[str, ...]
     norm: str
@@ -87,16 +88,22 @@ class Observed:
         )
 
     def draws(self) -> PosteriorDraws:
-        """Draws of the constants in this laboratory, equally weighted; its offset is part of the thresholds."""
+        """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         found = self.conditioned
         played = found.confusions_after
         each = np.diagonal(played.pooled, axis1=1, axis2=2)
         predicted = np.column_stack([played.correct, played.bits, each])
-        return laboratory_draws(self.prior, found.after, predicted, "; ".join(self.provenance[:3]), found.effective)
+        resampling = Resampling(
+            note="; ".join(self.provenance[:3]),
+            how=how_resampled(len(found.before), found.effective, found.rounds),
+            rig=", ".join((self.rig, *self.rig_changes)),
+            effective=found.effective_after,
+        )
+        return laboratory_draws(self.prior, found.after, predicted, self.played, resampling)
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
-        return laboratory_texts(self.prior, self.conditioned.after, self.draws(), self.version, self.provenance)
+        return laboratory_texts(self.draws(), self.version, self.provenance)
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
@@ -212,7 +219,6 @@ def observed(
         also = stage(other, rig, prior, seed=seed, tracking=tracking)
         pair = also.confusions(before, step), also.confusions(found.after, step)
         predictions.append(ChangedPrediction.of(other.title, *pair))
-    effective = found.effective if not found.rounds else float(kept)
     return Observed(
         trials=trials,
         pooled=score_pooled(trials),
@@ -221,9 +227,12 @@ def observed(
         fit=compare(trials, found.confusions_before, seed=seed),
         fit_after=compare(trials, found.confusions_after, seed=seed),
         predictions=tuple(predictions),
-        constants=changed(prior.names, prior.values(before), prior.values(found.after), effective, prior.units),
+        constants=changed(
+            prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units
+        ),
         conditioned=found,
         prior=prior,
+        played=main,
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         norm=norm,

@@ -1,8 +1,9 @@
 """Laboratories that the evidence allows: constants, memory, an offset of the laboratory, and the people in it.
 
-A laboratory is one draw θ of the posterior, memory m drawn from its intervals, an offset δ of its sensitivity, and a
-seed of its people. All but the seed are kept in coordinates in which the prior is standard normal, so that they can be
-moved without leaving it: constants on the scales of their priors, with the mean and covariance of the draws.
+A laboratory is one draw θ of the posterior, memory m drawn from its intervals (or the draw's own, where it has one), an
+offset δ of its sensitivity, and a seed of its people. All but the seed are kept in coordinates in which the prior is
+standard normal, so that they can be moved without leaving it: constants on the scales of their priors, with the mean
+and covariance of the draws.
 """
 
 from __future__ import annotations
@@ -21,10 +22,11 @@ from ..inference.posterior import Posterior
 from ..inference.priors import Prior
 from ..observer.channels import CHANNELS, Norm
 from ..observer.draws import LABORATORIES, PosteriorDraws
+from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
-from ..sensation.memory_parameters import memory_parameters, with_memory
+from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import ObserverParameter, latin
 
 LEAST_VARIANCE = 1e-12
@@ -59,7 +61,8 @@ class Laboratories:
 class LaboratoryPrior:
     """What laboratories are drawn from: draws of the posterior, intervals of memory, and the spread of offsets.
 
-    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones).
+    `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones). Memory
+    that the draws have themselves is kept with their constants, on the scale of its shipped interval.
 
     >>> prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
     >>> some = prior.first(50, seed=0)
@@ -69,10 +72,13 @@ class LaboratoryPrior:
 
     def __init__(self, draws: PosteriorDraws, norm: Norm, records: Table | None = None) -> None:
         self.draws, self.norm = draws, norm
-        self.memory: tuple[ObserverParameter, ...] = memory_parameters(norm, records=records)
+        own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
+        free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]
+        self.memory, self._of_draws = (*own, *free), len(own)
         known = {prior.name: prior for prior in Posterior(*draws.variant).priors.each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
         places = np.array([[p.to_place(v) for p, v in zip(self._scales, row, strict=True)] for row in draws.draws])
+        places = np.hstack([places, *(_scores(each, draws)[:, None] for each in own)])
         self._middle = places.mean(axis=0)
         off = places - self._middle
         values, vectors = np.linalg.eigh(off.T @ off / max(len(off) - 1, 1))
@@ -96,7 +102,16 @@ class LaboratoryPrior:
     @property
     def dimensions(self) -> int:
         """Number of coordinates."""
-        return len(self._scales) + len(self.memory) + len(CHANNELS)
+        return self._held + self._free + len(CHANNELS)
+
+    @property
+    def _held(self) -> int:
+        """Coordinates that belong to the draws: constants, and memory that they have themselves."""
+        return len(self._scales) + self._of_draws
+
+    @property
+    def _free(self) -> int:
+        return len(self.memory) - self._of_draws
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -114,31 +129,47 @@ class LaboratoryPrior:
         total = len(self.draws)
         chosen = np.arange(n) % total if n > total else np.linspace(0, total - 1, n).round().astype(np.int64)
         rng = np.random.default_rng(np.random.SeedSequence([seed, 11]))
-        shares = np.clip(latin(len(self.memory), n, seed), OUTERMOST, 1.0 - OUTERMOST)
-        normal = np.array([NormalDist().inv_cdf(share) for share in shares.ravel().tolist()]).reshape(shares.shape)
+        normal = _normal(latin(self._free, n, seed))
         offsets = rng.standard_normal((n, len(CHANNELS)))
         return Laboratories(np.hstack([self._whitened[chosen], normal, offsets]), rng.integers(SEEDS, size=n))
 
     def constants(self, some: Laboratories) -> Array:
         """Constants (n, constants) in their own units, in the order of the draws."""
-        places = self._middle + some.place[:, : len(self._scales)] @ self._spread
-        return np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in places.tolist()])
+        places = self._places(some)[:, : len(self._scales)].tolist()
+        return np.array([[p.to_value(v) for p, v in zip(self._scales, row, strict=True)] for row in places])
 
     def values(self, some: Laboratories) -> Array:
         """Constants, memory in its own units, and offsets (ln), (n, names)."""
-        constants, first = self.constants(some), len(self._scales)
-        scores = some.place[:, first : first + len(self.memory)]
+        constants, first = self.constants(some), self._held
+        own = self._places(some)[:, len(self._scales) :]
+        scores = np.hstack([own, some.place[:, first : first + self._free]])
         memory = np.array(
             [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]
         ).reshape(len(some), len(self.memory))
         spread = constants[:, self.draws.names.index(LABORATORIES)]
         return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
 
+    def _places(self, some: Laboratories) -> Array:
+        found: Array = self._middle + some.place[:, : self._held] @ self._spread
+        return found
+
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""
-        from ..observer.from_draw import observer_with
-
         named = dict(zip(self.names, values.tolist(), strict=True))
-        observer = with_memory(observer_with(self.base, named), named, self.norm)
+        observer = observer_with(self.base, named)
         crowd = draw_people(people, seed, spreads=named)
         return observer, crowd.less_sensitive(*(-named[name] for name in OFFSETS))
+
+
+def _scores(parameter: ObserverParameter, draws: PosteriorDraws) -> Array:
+    """Normal scores (n,) of the memory that draws have, within its interval."""
+    column = draws.memory[:, draws.memory_names.index(parameter.name)]
+    # Tables may have been rounded beyond the ends.
+    values = np.clip(column, parameter.low, parameter.high).tolist()
+    return _normal(np.array([parameter.share(value) for value in values]))
+
+
+def _normal(shares: Array) -> Array:
+    """Normal scores of shares of an interval."""
+    inside = np.clip(shares, OUTERMOST, 1.0 - OUTERMOST)
+    return np.array([NormalDist().inv_cdf(share) for share in inside.ravel().tolist()]).reshape(shares.shape)

@@ -57,7 +57,7 @@ def rank(
     tracking: str | None = None,
     norm: str = USUAL_NORM,
     by: str = "model",
-    parameters: int = DRAWS,
+    parameters: int | None = None,
     choosing: Selection | None = None,
     goal: Goal | str | None = None,
     edits: str = "none",
@@ -92,7 +92,8 @@ def rank(
     by
         `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
     parameters
-        Draws from the posterior of the constants, for the intervals that a new laboratory will find (0: none).
+        Draws from the posterior of the constants, for the intervals that a new laboratory will find (None: 128, or as
+        many as the observer has; 0: none).
     choosing
         Request for the best subset; the intervals are then those of the chosen icons.
     goal
@@ -143,11 +144,11 @@ def rank(
         raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
     if choosing is not None:
         check_selection(choosing, [icon.name for icon in members])
-    if parameters < 0 or parameters == 1:
+    if parameters is not None and (parameters < 0 or parameters == 1):
         raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
-    draws = parameters if by == "model" else 0
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
     model = ObserverModel.of(observer)
+    draws = 0 if by != "model" else (model.most_draws(DRAWS) if parameters is None else parameters)
     if model.posterior is None:
         draws = 0
     elif draws > len(model.posterior):
@@ -216,6 +217,7 @@ def rank(
         norm=chosen,
         content_hash=_hash(icons, rig, model),
         observer=model.name,
+        own_laboratory=model.posterior is not None and model.posterior.one_laboratory,
         rig_text=rig.toml,
         persons=tuple(all_.correct.tolist()),
         total_s=math.fsum(durations),

@@ -134,6 +134,7 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
         "posterior_draws": asked.draws if asked else None,
         "posterior": asked.posterior if asked else None,
         "new_laboratory_people": asked.people if asked else None,
+        "own_laboratory": ranking.own_laboratory,
         "doubt": [doubt.to_dict() for doubt in doubts(asked.each)] if asked else [],
         "rules_score": ranking.rules_score,
         "rules": [r.to_dict() for r in ranking.rules],

@@ -92,6 +92,8 @@ class Ranking:
         What each icon leaves behind for the next where there is a gap; None: nothing.
     observer
         Name of the observer's file, or `shipped`.
+    own_laboratory
+        Whether its draws are those of one laboratory, which intervals are then for, and not for a new one.
     rig_text
         The whole rig file as used.
     persons
@@ -147,6 +149,7 @@ class Ranking:
     task: Task = USUAL
     carry_over: CarryOver | None = None
     observer: str = SHIPPED
+    own_laboratory: bool = False
     rig_text: str = ""
     persons: tuple[float, ...] = ()
     total_s: float = math.nan

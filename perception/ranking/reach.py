@@ -79,7 +79,7 @@ def what_would_help(
             )  # fmt: skip
         except ChoiceError:
             return None
-        draws = DRAWS if model.posterior is not None else 0
+        draws = model.most_draws(DRAWS)
         ranking = rank(
             found.found, where, people=PEOPLE, parameters=draws, seed=seed, norm=norm, goal=wanted, observer=model
         )

@@ -1,19 +1,12 @@
-"""Constants of memory that no posterior knows of: their intervals, and observers with other values of them."""
+"""Constants of memory that no published posterior knows of, and their intervals."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
-
 from thermicon.circuit.records import Table
 
-from ..observer.channels import Norm, noise_norm, trace_norm
-from ..observer.observer import Observer
+from ..observer.channels import Norm, noise_norm
+from ..observer.memory_constants import MISSING, ONSET, SHARE, noise_name
 from .parameters import ObserverParameter, observer_parameters
-
-OF_EPISODES = ("share of the scatter of ratings", "cost of a missing episode")
-ONSET = "onset uncertainty"
 
 
 def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = None) -> tuple[ObserverParameter, ...]:
@@ -22,25 +15,5 @@ def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = 
     >>> [parameter.name for parameter in memory_parameters("episodes")]
     ['share of the scatter of ratings', 'memory noise (episodes)']
     """
-    names = {*OF_EPISODES, ONSET, f"memory noise ({noise_norm(norm)})"}
+    names = {SHARE, MISSING, ONSET, noise_name(noise_norm(norm))}
     return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in names)
-
-
-def with_memory(observer: Observer, values: Mapping[str, float], norm: Norm) -> Observer:
-    """The observer with other constants of memory, by the names of `memory_parameters`."""
-    noise = values.get(f"memory noise ({noise_norm(norm)})")
-    trace = trace_norm(norm)
-    changes: dict[str, Any] = {}
-    if ONSET in values:
-        changes["onset_uncertainty_s"] = values[ONSET]
-    if trace is not None and noise is not None:
-        changes[f"memory_{trace}"] = noise
-    if trace is None:
-        own = observer.memory
-        changes["memory"] = replace(
-            own,
-            timing=own.timing if noise is None else noise,
-            share=values.get("share of the scatter of ratings", own.share),
-            missing=values.get("cost of a missing episode", own.missing),
-        )
-    return replace(observer, **changes)

@@ -63,6 +63,16 @@ class ObserverParameter:
             return self.low * math.pow(self.high / self.low, share)
         return self.low + share * (self.high - self.low)
 
+    def share(self, value: float) -> float:
+        """The share of the interval at which a value lies, as `at` takes it.
+
+        >>> ObserverParameter("time", 1.0, 2.0, 4.0, "s", "assumed", "assumed").share(2.0)
+        0.5
+        """
+        if self.low > 0.0 and self.high / self.low > LOG_FROM:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
     def __repr__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         return f"ObserverParameter({self.name}: {self.value:g} [{self.low:g}, {self.high:g}]{unit}; {self.source})"

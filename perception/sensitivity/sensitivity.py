@@ -176,7 +176,7 @@ def sensitivity(
     *,
     people: int = 24,
     seed: int = 0,
-    draws: int = DRAWS,
+    draws: int | None = None,
     norm: str = USUAL_NORM,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
@@ -194,7 +194,7 @@ def sensitivity(
     seed
         Seed of people, noise and draws: the same arguments give the same numbers.
     draws
-        Draws of the posterior, at least 64.
+        Draws of the posterior, at least 64 (None: 256, or as many as the observer has).
     norm
         What is remembered, as in `rank`.
     observer
@@ -230,6 +230,11 @@ def sensitivity(
         raise ValueError("a sensitivity needs at least two icons: one alone is never confused")
     if model.posterior is None:
         raise ValueError(f"{model.name} has no posterior draws, from which a sensitivity is read")
+    if len(model.posterior) < FEWEST_DRAWS:
+        raise ValueError(
+            f"a sensitivity needs {FEWEST_DRAWS} draws of the posterior; {model.name} has {len(model.posterior)}"
+        )
+    draws = model.most_draws(DRAWS) if draws is None else draws
     if not FEWEST_DRAWS <= draws <= len(model.posterior):
         raise ValueError(
             f"a sensitivity needs {FEWEST_DRAWS} to {len(model.posterior)} draws of the posterior, not {draws}"

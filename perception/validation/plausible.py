@@ -11,9 +11,10 @@ import numpy as np
 
 from ..observer.channels import NORMS
 from ..observer.draws import PosteriorDraws
+from ..observer.memory_constants import with_memory
 from ..observer.observer import Observer, variant_records
 from ..observer.variants import Model, Variable
-from ..sensation.memory_parameters import memory_parameters, with_memory
+from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import latin
 
 
@@ -38,5 +39,5 @@ def plausible_observers(
         shares = latin(len(parameters), n, seed + place)
         for k, row in enumerate(shares.tolist()):
             values = {p.name: p.at(share) for p, share in zip(parameters, row, strict=True)}
-            made[k] = with_memory(made[k], values, norm)
+            made[k] = with_memory(made[k], values)
     return tuple(made)

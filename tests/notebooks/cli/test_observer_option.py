@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from thermicon.perception.observer.draws import LABORATORIES, PosteriorDraws
+from thermicon.perception.observer.draws_file import to_text
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
@@ -41,7 +44,58 @@ def test_records_have_no_interval_and_say_so(cli: Cli, two: Path, records: Path)
     assert "in a new laboratory" not in said.stdout
     said = cli("sensitivity", two, "--observer", records)
     assert (said.exit_code, said.stdout) == (1, "")
-    assert "lab.toml: a sensitivity is read from draws of a posterior" in " ".join(said.stderr.split())
+    words = " ".join(said.stderr.split())
+    assert "lab.toml: a sensitivity is read from draws of a posterior, which this observer does not have: " in words
+    assert "give the table of draws (.csv) that observed --keep writes beside it" in words
+
+
+@pytest.mark.parametrize("command", ["observed", "plan", "sensitivity"])
+def test_what_needs_draws_refuses_records_and_names_the_draws_beside_them(
+    cli: Cli, two: Path, records: Path, tmp_path: Path, command: str
+) -> None:
+    (tmp_path / "lab.csv").write_bytes((DATA / "posterior.csv").read_bytes())
+    trials = tmp_path / "t.csv"
+    trials.write_text("participant,trial,presented,responded\nP,1,cool-step,cool-step\n", encoding="utf-8")
+    files = [trials, two] if command == "observed" else [two]
+    said = cli(command, *files, "--observer", records)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "lab.csv, which stands beside it" in " ".join(said.stderr.split())
+    help_text = " ".join(cli(command, "--help").stdout.split())
+    assert "records (.toml)" not in help_text
+
+
+def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Path:
+    shipped = PosteriorDraws.load()
+    values = shipped.draws[:count].copy()
+    if resampled:
+        values[:, shipped.names.index(LABORATORIES)] = 1e-6
+    header = replace(shipped.header, resampled=resampled, rig=rig)
+    path.write_text(to_text(header, shipped.names, values), encoding="utf-8")
+    return path
+
+
+def test_as_many_draws_are_used_as_there_are(cli: Cli, two: Path, tmp_path: Path) -> None:
+    lab = few_draws(tmp_path / "lab.csv", 6, "by weights from 12 laboratories", "thenar")
+    said = cli("rank", two, "--people", 4, "--observer", lab)
+    assert said.exit_code == 0, said.stderr
+    assert "note: lab.csv has 6 draws: all of them are used (--parameters is 128 by default)" in said.stderr
+    assert "conditioned on" not in said.stderr
+    assert "people in your laboratory, lab.csv (95 %): " in " ".join(said.stdout.split())
+    assert "a new laboratory" not in said.stdout
+    said = cli("rank", two, "--people", 4, "--observer", lab, "--parameters", 7)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "--parameters 7: the lab.csv posterior has 6 draws" in said.stderr
+    said = cli("sensitivity", two, "--observer", lab)
+    assert said.exit_code == 1
+    assert "lab.csv has 6 draws, and 64 are needed: keep more with observed --draws 128" in said.stderr
+
+
+def test_another_rig_than_that_of_the_answers_is_warned_of(cli: Cli, two: Path, tmp_path: Path) -> None:
+    lab = few_draws(tmp_path / "lab.csv", 3, "by weights from 12 laboratories", "hand-dorsum")
+    said = cli("rank", two, "--people", 2, "--observer", lab)
+    assert said.exit_code == 0
+    assert "warning: lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
+    assert said.stderr.count("warning") == 1
 
 
 @pytest.mark.parametrize("command", ["rank", "search", "sensitivity"])

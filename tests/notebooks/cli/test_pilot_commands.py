@@ -66,6 +66,34 @@ def test_an_icon_that_nobody_was_presented_is_named(cli: Cli, two: Path, tmp_pat
     assert "Never presented: warm-step. What is said of them is prediction alone" in " ".join(said.stdout.split())
 
 
+def test_a_single_slip_judges_no_model(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path = tmp_path / "t.csv"
+    path.write_text("participant,trial,presented,responded\nP,1,cool-step,warm-step\n", encoding="utf-8")
+    said = cli("observed", path, two, *QUICK)
+    assert said.exit_code == 0
+    words = " ".join(said.stdout.split())
+    assert "after the answers were used: 1 answer is too little to judge the model by; 20 or more can" in words
+    assert "cannot explain" not in words
+    assert "narrower" not in words
+    assert "Intervals after rest on 12 laboratories, too few to say by how much they narrowed: use --draws 200" in words
+
+
+def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:
+    words = " ".join(cli("observed", answers, two, "--draws", 200).stdout.split())
+    assert "95 % bits 95 % narrower" in words
+    assert "too few to say" not in words
+
+
+def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path, rows = tmp_path / "t.csv", ["participant,trial,presented,responded"]
+    for person in ("ann", "bob", "cem"):
+        rows += [f"{person},{k},{'cool-step' if k % 2 else 'warm-step'},cool-step" for k in range(10)]
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    few, many = (" ".join(cli("observed", path, two, "--draws", n).stdout.split()) for n in (24, 240))
+    assert "the answers are unlikely, but 12 laboratories are too few to say that no constants explain them" in few
+    assert "the model cannot explain these answers, not even with other constants" in many
+
+
 def test_a_bad_table_is_bad_input_and_nothing_is_written(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, out = tmp_path / "t.csv", tmp_path / "out.json"
     path.write_text("participant,trial,presented,responded\nP,1,cool-step,Cool-step\n", encoding="utf-8")

@@ -73,8 +73,9 @@ def test_a_new_laboratory_differs_by_the_inferred_spread(posterior: PosteriorDra
 def test_a_file_comes_back_as_it_was_written(posterior: PosteriorDraws, tmp_path: Path) -> None:
     path = tmp_path / "mine.csv"
     path.write_text(to_text(posterior.header, posterior.names, posterior.draws[:5]), encoding="utf-8")
-    header, names, draws = read_draws(path)
+    header, (names, draws), (memory_names, memory) = read_draws(path)
     assert (header, names) == (posterior.header, posterior.names)
+    assert (memory_names, memory.shape, posterior.memory.shape) == ((), (5, 0), (len(posterior), 0))
     np.testing.assert_allclose(draws, posterior.draws[:5], rtol=1e-5)
     assert Observer.load(path) == PosteriorDraws.load(path).nominal()
     assert Observer.load(path, without=["cold limit"]).cold.limit_C is None

@@ -43,6 +43,25 @@ def test_intervals_over_participants_cover() -> None:
     assert 0.9 <= np.mean(correct) <= 0.99
 
 
+def test_participants_who_happen_to_be_alike_leave_an_interval() -> None:
+    alike = np.zeros((2, 3, 3))
+    alike[:, range(3), range(3)] = 4.0
+    alike[:, 0, 0], alike[:, 0, 1] = 2.0, 2.0
+    score = score_pooled(Trials(("a", "b", "c"), ("P1", "P2"), alike))
+    assert score.proportion_correct == pytest.approx(20 / 24)
+    assert score.proportion_interval == wilson(20.0, 24.0)
+    assert score.bits_interval[1] - score.bits_interval[0] > 0.3
+
+
+def test_answers_without_a_slip_leave_an_interval() -> None:
+    right = Trials(("a", "b", "c"), ("P1", "P2", "P3"), np.stack([np.eye(3)] * 3))
+    for score in (score_pooled(right), score_person(right, 0)):
+        assert score.proportion_interval == wilson(float(score.trials), float(score.trials))
+        assert (score.bits, score.bits_interval[1]) == pytest.approx((math.log2(3), math.log2(3)))
+    few, many = score_pooled(right), score_pooled(Trials(right.icons, right.participants, 20 * right.counts))
+    assert few.bits_interval[0] < 1.2 < 1.4 < many.bits_interval[0] < many.bits
+
+
 def test_one_participant_has_an_interval_over_trials_and_one_trial_says_nothing() -> None:
     rng = np.random.default_rng(2)
     alone = drawn(rng, 1, 20)

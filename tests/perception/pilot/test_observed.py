@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
+from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet, read_cue
 from thermicon.perception.observer.draws import LABORATORIES, PosteriorDraws
 from thermicon.perception.observer.observer import Observer
@@ -99,14 +100,64 @@ def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -
     assert draws.values(LABORATORIES).max() < 1e-5  # these draws are of this laboratory
     assert "participants: 3; trials: 54" in draws.header.sampler
     assert draws.header.ess <= found.conditioned.effective + 0.01
+    assert table.startswith("# written by thermicon observed from inputs ")
+    rows = len(np.unique(np.hstack([draws.draws, draws.memory]), axis=0))
+    assert 1 < rows < 20
+    assert f"# resampled: by weights from 40 laboratories, effective sample size {draws.header.ess:.0f}, " in table
+    assert f", {rows} distinct rows of 20\n" in table
+    assert draws.header.status.startswith("resampled by weights from 40 laboratories")
+    assert draws.header.rig == "thenar" and draws.one_laboratory and not PosteriorDraws.load().one_laboratory
     assert "# effective draws: " in table and "# participants: 3\n" in table
     person = Observer.load(tmp_path / "lab.toml")
-    assert person.cold.threshold_drive == pytest.approx(draws.values("cold threshold drive")[0], rel=1e-3)
+    assert Observer.load(tmp_path / "lab.csv") == draws.nominal() == person
+    model = ObserverModel.load(tmp_path / "lab.csv")
+    whole = ObserverModel.load(tmp_path / "lab.toml")
+    assert model.nominal == whole.nominal == person
+    for field in ("threshold_cold", "threshold_warm", "criterion_cold", "decision_s", "memory"):
+        assert np.array_equal(getattr(model.people(9, 4), field), getattr(whole.people(9, 4), field)), field
+
+
+def test_memory_stands_beside_the_constants_of_each_draw(found: Observed, tmp_path: Path) -> None:
+    (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
+    draws = PosteriorDraws.load(tmp_path / "lab.csv")
+    assert draws.memory_names == ("share of the scatter of ratings", "memory noise (episodes)")
+    assert np.array_equal(draws.draws, found.draws().draws) and np.array_equal(draws.memory, found.draws().memory)
     values = found.prior.values(found.conditioned.after)
-    share = np.median(values[:, found.prior.names.index("share of the scatter of ratings")])
-    assert person.memory.share == pytest.approx(share, rel=1e-3)
-    assert Observer.load(tmp_path / "lab.csv").a == pytest.approx(person.a, rel=1e-3)
-    assert ObserverModel.load(tmp_path / "lab.toml").nominal == person
+    for k, name in enumerate(draws.memory_names):
+        column = values[:, found.prior.names.index(name)]
+        assert np.allclose(np.sort(draws.memory[:, k]), np.sort(column), rtol=1e-5)
+    person = draws.observer(3)
+    assert (person.memory.share, person.memory.timing) == tuple(draws.memory[3])
+    assert draws.table(3).one("memory noise", method="episodes").central == draws.memory[3, 1]
+
+
+def test_memory_that_cannot_be_is_refused(found: Observed, tmp_path: Path) -> None:
+    path, lines = tmp_path / "lab.csv", found.files()[1].splitlines()
+    lines = [line for line in lines if not line.startswith("# sha256")]
+    first = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
+    lines[first] = ",".join([*lines[first].split(",")[:-2], "1.5", "0.3"])
+    path.write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"):
+        PosteriorDraws.load(path)
+    lines[first] = ",".join([*lines[first].split(",")[:-2], "0.5", "-0.3"])
+    path.write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"memory noise \(episodes\): -0\.3 must be above 0"):
+        PosteriorDraws.load(path)
+
+
+def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed, tmp_path: Path) -> None:
+    (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
+    draws = PosteriorDraws.load(tmp_path / "lab.csv")
+    prior = LaboratoryPrior(draws, "episodes")
+    values = prior.values(prior.first(len(draws), 3))
+    assert prior.names.count("memory noise (episodes)") == 1
+    for k, name in enumerate(draws.memory_names):
+        assert np.allclose(values[:, prior.names.index(name)], draws.memory[:, k], rtol=1e-4, atol=1e-5)
+    naming = LaboratoryPrior(draws, "naming")  # its own memory is not all that naming needs
+    others = naming.values(naming.first(len(draws), 3))
+    assert np.ptp(others[:, naming.names.index("cost of a missing episode")]) > 4.0
+    column = others[:, naming.names.index("memory noise (episodes)")]
+    assert np.allclose(column, draws.memory[:, 1], rtol=1e-4)
 
 
 def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed, tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ SET = (
     "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
     "information_bits_plugin trials total_s total_J worst_pair rules_disagree norm_sensitivity norm_changes "
     "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory posterior_draws posterior "
-    "new_laboratory_people doubt rules_score rules"
+    "new_laboratory_people own_laboratory doubt rules_score rules"
 )
 
 
