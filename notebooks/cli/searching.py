@@ -142,6 +142,7 @@ def search_command(
             most_s=most_time,
             most_J=most_energy,
             goal=wanted,
+            parameters=parameters,
             observer=model,
             progress=progress,
         )
@@ -152,7 +153,10 @@ def search_command(
         with complete_or_absent(output) as draft:
             draft.write_text(str(found.found), encoding="utf-8")
         note(f"wrote {output}")
-    made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, parameters), wanted)
+    how = Ranked(
+        people, seed, tracking, norm, parameters, None if must is None else tuple(must), most_time, most_energy
+    )
+    made = FoundSet.ranked(found, icons, where, model, how, wanted)
     if report is not None or figure is not None:
         made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
     made.show(icons.title, where.name)

@@ -14,14 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..selection.goal import QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
+from ..selection.goal import NEEDS_DRAWS, QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
 
 TOLERANCE = 1e-9
-NEEDS_DRAWS = (
-    "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --parameters out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
-    "that has draws"
-)
 
 
 @dataclass(frozen=True, slots=True)
