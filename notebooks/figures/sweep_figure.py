@@ -65,7 +65,7 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
     for ax, (columns, label) in zip(axes, PANELS, strict=True):
         for name, (color, mark) in styles.items():
             rows = frame[frame["icon"] == name]
-            _line(ax, rows, places[rows.index], columns, color, mark)
+            _line(ax, rows, places[rows.index], columns, color, mark, name)
         ax.set_ylabel(label, fontsize=9)
         ax.tick_params(labelsize=8)
         ax.grid(alpha=0.25, linewidth=0.6)
@@ -133,12 +133,15 @@ def _log_axis(ax: Axes) -> None:
     ax.xaxis.set_minor_locator(NullLocator())
 
 
-def _line(ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str) -> None:
+def _line(
+    ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str, icon: str
+) -> None:
     fill = [color if reached is not False else "white" for reached in rows["reached"].fillna(True).astype(bool)]
     for place, column in enumerate(columns):
         values = rows[column].abs() if column == "largest_miss_K" else rows[column]
-        ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
-        ax.scatter(at, values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3)
+        label = icon if len(columns) == 1 else f"{icon}, {column}"
+        ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2, label=label)
+        ax.scatter(at, values, c=fill, edgecolors=color, marker=mark, s=18, linewidths=1.0, zorder=3, label=label)
 
 
 def icon_styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:

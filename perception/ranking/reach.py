@@ -139,7 +139,11 @@ def what_would_help(
 
     changed = [*_rigs(rig), *((text, words, rig, relaxed) for text, words, relaxed in _relaxed(goal))]
     total = len(changed) + 2
-    report = (lambda done: None) if step is None else (lambda done: step(done, total))
+
+    def report(done: int) -> None:
+        if step is not None:
+            step(done, total)
+
     plain = searched(rig, goal)
     report(1)
     reached: list[tuple[str, str, GoalResult]] = []
