@@ -95,11 +95,8 @@ def unlike_before(
             f"module {name}: its plates are unknown, so the rig keeps its own, {plates[0]:g} (hot) and "
             f"{plates[1]:g} J/K (cold); set {' and '.join(keys)}"
         )
-    if build.face_cm2 is not None and area_cm2 > 1.01 * build.face_cm2:
-        sentences.append(
-            f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {build.face_cm2:g} cm²; set "
-            f"contact.area_cm2 to at most that"
-        )
+    if larger := beyond_the_face(name, area_cm2):
+        sentences += larger
     elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < 0.99 * build.face_cm2):
         face = "not on record" if build.face_cm2 is None else f"{build.face_cm2:g} cm²"
         sentences.append(
@@ -112,6 +109,17 @@ def unlike_before(
             f"which more current cools less; set it to at most that"
         )
     return sentences
+
+
+def beyond_the_face(name: str, area_cm2: float) -> list[str]:
+    """Return a sentence where more than the face of a shipped module is in contact; none where its face is unknown."""
+    face_cm2 = build_of(name).face_cm2
+    if face_cm2 is None or area_cm2 <= 1.01 * face_cm2:
+        return []
+    return [
+        f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {face_cm2:g} cm²; set "
+        f"contact.area_cm2 to at most that"
+    ]
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:

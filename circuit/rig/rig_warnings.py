@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from .modules import module_names, unlike_before, unlike_record
+from .modules import beyond_the_face, module_names, unlike_before, unlike_record
 from .uncertainty import tightened
 
 if TYPE_CHECKING:
@@ -112,10 +112,16 @@ def _plates_of_another_module(rig: Rig) -> list[str]:
     return unlike_record(str(name), pair, PLATE_SHARE)
 
 
+def _larger_than_its_module(rig: Rig) -> list[str]:
+    """A sentence where more skin is in contact than the face of a shipped module has."""
+    name = json.loads(rig.document).get("module", {}).get("name")
+    return [] if name not in module_names() else beyond_the_face(name, 1e4 * rig.contact.area_m2)
+
+
 def _left_from_another_module(rig: Rig) -> list[str]:
     """Sentences on what still fits the former module, where a change names another one."""
     changed = dict(text.split("=", 1) for text in rig.changes)
     if (name := changed.get("module.name")) not in module_names():
-        return []
+        return _larger_than_its_module(rig)
     plates = (rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K)
     return unlike_before(str(name), 1e4 * rig.contact.area_m2, rig.driver.current_max_A, plates, [*changed])

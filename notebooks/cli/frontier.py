@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,13 +12,14 @@ from thermicon.icons.number_text import number, percent
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..text.choices import OBJECTIVES, MostTime, check_totals
-from ..text.messages import check_changes, load_observer, load_rig, progress_bar, usage
+from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals
+from ..text.messages import check_changes, check_draws, load_observer, load_rig, progress_bar, usage
 from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_norm_option, check_tracking
 from ..text.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.perception import Frontier
+    from thermicon.perception.ranking.frontier_point import FrontierPoint
 
 
 def frontier_command(
@@ -32,6 +34,15 @@ def frontier_command(
     tracking: Tracking = None,
     norm: NormName = "episodes",
     most_time: MostTime = None,
+    goal: GoalText = None,
+    parameters: Annotated[
+        int | None,
+        typer.Option(
+            "--parameters",
+            metavar="N",
+            help="Draws of the posterior for 95 % of people; 0 for none.  [default: 128, or all there are]",
+        ),
+    ] = None,
     observer: ObserverFile = None,
     output: Annotated[
         Path | None,
@@ -47,7 +58,12 @@ def frontier_command(
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
-    """Choose the best 2, 3, … icons of a file, and report per cent correct, bits and total time of each choice."""
+    """Choose the best 2, 3, … icons of a file, and report per cent correct, bits and total time of each choice.
+
+    What 95 % of people reach is about people and the uncertainty of the model together, as in a goal. With --goal,
+    icons are left out that miss its safety, or for the nominal person its detected or onset; totals are kept; and every
+    choice is judged by it.
+    """
     check_changes(changes or [])
     check_tracking(tracking)
     check_totals(most_time, None)
@@ -56,9 +72,12 @@ def frontier_command(
         ("--most", most, 2, 64),
         ("--people", people, 1, 100_000),
         ("--seed", seed, 0, 2**32 - 1),
+        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
     ):
         if not least <= value <= highest:
             raise usage(f"{value} is outside {least} to {highest}", option)
+    if parameters == 1:
+        raise usage("1 draw has no quantile; give 2 or more, or 0 for none", "--parameters")
     if objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     if output is not None:
@@ -66,14 +85,17 @@ def frontier_command(
     if figure is not None:
         check_output(figure, FIGURE_SUFFIXES, "a figure")
     check_separate(files, [output, figure])
-    from thermicon.perception import frontier
+    from thermicon.perception import Goal, frontier
+    from thermicon.perception.identification.laboratory import DRAWS
 
     from ..files.cues import read_set, warn_of_frames
     from .sweep import write_study
 
     check_norm_option(norm)
+    wanted = None if goal is None else Goal.parse(goal)
     icons, where = read_set(files), load_rig(rig, changes or [])
     model = load_observer(observer, where)
+    drawn = check_draws(model, parameters, "--parameters", DRAWS)
     warn_of_frames(files, icons, where)
     with progress_bar("choosing") as progress:
         found = frontier(
@@ -86,6 +108,8 @@ def frontier_command(
             tracking=tracking,
             norm=norm,
             most_s=most_time,
+            goal=wanted,
+            parameters=drawn,
             observer=model,
             progress=progress,
         )
@@ -95,17 +119,18 @@ def frontier_command(
 
 def show_frontier(found: Frontier, title: str) -> None:
     """Print one row for each number of icons, the names of the largest choices, and what was left out."""
-    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy")
-    made = table(*heads, numbers=heads)
+    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goal)))
+    made = table(*heads, numbers=heads[:7])
     for point in found.points:
         made.add_row(
             str(len(point.icons)) + ("" if point.optimal else " *"),
             percent(point.proportion_correct),
-            f"from {percent(point.low)}",
+            f"from {percent(point.reached)}",
             number(point.d_prime),
             f"{point.information_bits:.2f}",
             f"{number(point.total_s)} s",
             "–" if point.total_J != point.total_J else f"{number(point.total_J)} J",
+            *([] if point.goal is None else ["✓" if point.goal.met else "✗"]),
         )
     last = found.points[-1] if found.points else None
     starred = any(not point.optimal for point in found.points)
@@ -115,11 +140,48 @@ def show_frontier(found: Frontier, title: str) -> None:
         *([title, ""] if title else []),
         made,
         "",
-        *([] if last is None else [f"The {len(last.icons)}: {', '.join(last.icons)}"]),
+        *([] if last is None else [f"The {len(last.icons)}: {_named(last)}"]),
         *(["* not proven to be the best of their number"] if starred else []),
+        *_amber(found),
+        *_goal(found),
         *(f"Left out: {name} {reason}" for name, reason in found.excluded[:3]),
         *([f"and {len(found.excluded) - 3} more left out"] if len(found.excluded) > 3 else []),
         "",
-        f"The best by {found.objective} of {found.pool} icons that can be played, for {crowd} on the {found.rig} "
-        f"rig{what_if} (seed {found.seed}). These are predictions of a model, not measurements.",
+        f"The best by {found.objective} of {found.pool} icons that can be {'chosen' if found.goal else 'played'}, for "
+        f"{crowd} on the {found.rig} rig{what_if} (seed {found.seed}). {_reached(found)} These are predictions of a "
+        "model, not measurements.",
     )
+
+
+def _named(point: FrontierPoint) -> str:
+    return ", ".join(f"{name} (amber)" if name in point.amber else name for name in point.icons)
+
+
+def _amber(found: Frontier) -> Iterator[str]:
+    """From how many icons on a choice has one that passes a soft limit; nothing where none has."""
+    sizes = [str(len(point.icons)) for point in found.points if point.amber]
+    if sizes:
+        yield f"With icons that pass a soft limit of safety (amber): the choices of {', '.join(sizes)}"
+
+
+def _goal(found: Frontier) -> Iterator[str]:
+    """The largest choice that meets the goal, or what is in the way of the smallest."""
+    if found.goal is None or not found.points:
+        return
+    met = [len(point.icons) for point in found.points if point.goal is not None and point.goal.met]
+    if met:
+        more = "the most of these" if max(met) == len(found.points[-1].icons) else "by no larger choice of these"
+        yield f"Goal {found.goal.text}: met by the best {max(met)}, {more}"
+        return
+    first = found.points[0].goal
+    way = "" if first is None else f"; of {len(found.points[0].icons)}, {'; '.join(first.binding)}"
+    yield f"Goal {found.goal.text}: met by none of these choices{way}"
+
+
+def _reached(found: Frontier) -> str:
+    if found.draws:
+        return (
+            "What 95 % of people reach is about people and the uncertainty of the model together "
+            f"({found.draws} draws), as in a goal."
+        )
+    return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."

@@ -11,7 +11,7 @@ from thermicon.icons.number_text import number, percent, percent_span
 
 from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
-from ..text.choices import goal_lines, laboratory
+from ..text.choices import NAMES, goal_lines, goal_value, laboratory
 from ..text.messages import note, progress_bar
 from ..text.tables import show, table
 
@@ -20,24 +20,29 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
     from thermicon.perception import Goal, Ranking, SearchResult
     from thermicon.perception.observer.observer_model import ObserverModel
-    from thermicon.perception.ranking.reach import Trial
+    from thermicon.perception.ranking.reach import Advice, Trial
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_TRIALS = 3
+LEAST_AGAIN = 0.01
+"""Share of what is wanted, below which a second search is not worth a sentence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ranked:
-    """How both sets are ranked, as in ``rank``."""
+    """How both sets are ranked, as in ``rank``, and what any other set of the search has to keep."""
 
     people: int
     seed: int
     tracking: str | None
     norm: str
     parameters: int
+    must: tuple[str, ...] | None = None
+    most_s: float | None = None
+    most_J: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +52,7 @@ class FoundSet:
     found: SearchResult
     before: Ranking
     after: Ranking
-    trials: tuple[Trial, ...]
+    advice: Advice | None
 
     @classmethod
     def ranked(
@@ -76,21 +81,26 @@ class FoundSet:
                 )
                 for each, wanted in ((start, None), (found.found, goal))
             )
-        trials: tuple[Trial, ...] = ()
+        advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
             with progress_bar("trying changes") as bar:
-                trials = what_would_help(
+                advice = what_would_help(
                     icons,
                     rig,
                     after.goal.goal,
+                    found.found,
                     objective=found.objective,
                     count=len(found.found),
+                    must=how.must,
+                    most_s=how.most_s,
+                    most_J=how.most_J,
                     seed=how.seed,
+                    tracking=how.tracking,
                     norm=how.norm,
                     observer=model,
                     step=bar,
                 )
-        return cls(found, before, after, trials)
+        return cls(found, before, after, advice)
 
     def write(self, rig: Rig, report_out: Path | None, figures: Path | None, command: str, look: Look = SCREEN) -> None:
         """Write report and figures of the found set, as ``rank`` does."""
@@ -134,11 +144,19 @@ class FoundSet:
             "",
             *self._goal(),
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
-            f"people, whatever --people is, with the objective {found.objective} (seed {found.seed}). Before and after "
-            f"are for {crowd} on the {rig} rig.",
+            f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed {found.seed}). "
+            f"{self._winner()} Before and after are for {crowd} on the {rig} rig.",
             "These are predictions of a model, not measurements, and the set was optimised for that same model: "
             "expect lower scores from people.",
         )
+
+    def _winner(self) -> str:
+        """What the result was chosen by, of the sets that the search held at its end."""
+        found = self.found
+        if found.finalists == 1:
+            return "One set was held at the end."
+        by = NAMES.get(found.chosen_by, found.chosen_by)
+        return f"Of the {found.finalists} sets held at the end, this one was chosen by {by}."
 
     def _rows(self) -> Iterator[tuple[str, str, str]]:
         before, after = self.found.before, self.found.after
@@ -162,8 +180,8 @@ class FoundSet:
             yield f"At the end of its range: {'; '.join(self.found.at_ends)}. A wider range may hold a better set."
         if self.found.listed:
             yield (
-                f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 s is searched between its "
-                "ends, with or without a step."
+                f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 step 0.5 s is searched "
+                "between its ends, whatever its step."
             )
         for icon in self.after.icons:
             if not icon.playable:
@@ -181,14 +199,48 @@ class FoundSet:
         if goal.met:
             yield ""
             return
-        helpful = [trial for trial in self.trials if trial.met or trial.gain > 0.005]
-        if not self.trials:
-            yield "  Not reachable on this rig by this search, and no change of it could be tried."
-        elif not helpful:
-            yield "  Not reachable on this rig by this search; none of the changes tried brings it nearer."
-        else:
-            yield "  Not reachable on this rig by this search. What would bring it nearer, in short trials:"
-        for trial in helpful[:MOST_TRIALS]:
-            nearer = "the goal is met" if trial.met else f"what misses most is nearer by {100 * trial.gain:.0f} points"
-            yield f"  - {trial.words} ({trial.change}): {nearer}"
+        yield from advice_lines(self.advice)
         yield ""
+
+
+def advice_lines(advice: Advice | None) -> Iterator[str]:
+    """Which changes bring a goal nearer that this search did not reach, and which were tried in vain.
+
+    >>> list(advice_lines(None))
+    ['  Not reached by this search, and no change could be tried.']
+    """
+    if advice is None or not advice.trials:
+        yield "  Not reached by this search, and no change could be tried."
+        return
+    helpful, idle = advice.helpful, advice.idle
+    if helpful:
+        yield (
+            f"  Not reached by this search. What would bring it nearer, for {REFINING_PEOPLE} people, each against the "
+            "best set of the rig as it is:"
+        )
+        yield from (f"  - {trial.words} ({trial.change}): {_nearer(trial, advice)}" for trial in helpful[:MOST_TRIALS])
+        more = helpful[MOST_TRIALS:]
+        if more:
+            yield f"  Nearer by less: {'; '.join(f'{trial.words} ({trial.change})' for trial in more)}"
+        if idle:
+            yield f"  Tried and no nearer: {'; '.join(f'{trial.words} ({trial.change})' for trial in idle)}"
+    else:
+        yield "  Not reached by this search. None of the changes tried brings it nearer:"
+        yield from (f"  - {trial.words} ({trial.change})" for trial in idle)
+    if advice.again > LEAST_AGAIN:
+        yield (
+            f"  Searching again alone came nearer by {100.0 * advice.again:.0f} % of what is wanted: give more "
+            "--evaluations, or another --seed."
+        )
+
+
+def _nearer(trial: Trial, advice: Advice) -> str:
+    """The part that misses most without the change, before and with it."""
+    if trial.result is None:
+        return "the goal is met" if trial.met else "nearer"
+    from thermicon.perception.ranking.reach import missing
+
+    place = max(range(len(advice.baseline.parts)), key=lambda k: missing(advice.baseline.parts[k]))
+    before, after = (goal_value(each.parts[place].to_dict())[0] for each in (advice.baseline, trial.result))
+    met = ", and the goal is met" if trial.met else ""
+    return f"{advice.baseline.parts[place].part.text}: {before} → {after}{met}"

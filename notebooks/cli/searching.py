@@ -148,6 +148,7 @@ def search_command(
             most_s=most_time,
             most_J=most_energy,
             goal=wanted,
+            parameters=drawn,
             observer=model,
             progress=progress,
         )
@@ -158,7 +159,8 @@ def search_command(
         with complete_or_absent(output) as draft:
             draft.write_text(str(found.found), encoding="utf-8")
         note(f"wrote {output}")
-    made = FoundSet.ranked(found, icons, where, model, Ranked(people, seed, tracking, norm, drawn), wanted)
+    how = Ranked(people, seed, tracking, norm, drawn, None if must is None else tuple(must), most_time, most_energy)
+    made = FoundSet.ranked(found, icons, where, model, how, wanted)
     if report is not None or figure is not None:
         made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
     made.show(icons.title, where.name)

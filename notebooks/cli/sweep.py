@@ -268,7 +268,7 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Seque
         from ..figures.measure_figure import LABELS
         from ..figures.sweep_map import SHADES
 
-        maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, _, _ in columns]
+        maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]
         return sweep_map(frame, varied[0].key, varied[1].key, maps)
     return sweep_map(frame, varied[0].key, varied[1].key)
 
@@ -315,20 +315,23 @@ def headline(rows: pd.DataFrame, points: str = "values") -> str:
 
 
 def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], measure: Measure | None) -> list[str]:
-    """The proportion correct of the set where it is lowest and highest; nothing where it is not measured."""
+    """Proportion correct of the set where it is lowest and highest, and so what 95 % of people reach, if measured."""
     from thermicon.perception.sensitivity.swept import ALL
 
-    if measure is None or "correct" not in measure[0]:
-        return []
-    rows = frame[(frame["icon"] == ALL) & frame["correct"].notna()]
-    if rows.empty:
-        return []
-    ordered = rows.sort_values("correct", kind="stable")
-    ends = [ordered.iloc[0], ordered.iloc[-1]]
-    low, high = (
-        f"{percent(row['correct'])} correct at {', '.join(_setting(key, row[key]) for key in keys)}" for row in ends
-    )
-    return [f"{ALL}: from {low} to {high}"]
+    lines = []
+    for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
+        if measure is None or column not in measure[0]:
+            continue
+        rows = frame[(frame["icon"] == ALL) & frame[column].notna()]
+        if rows.empty:
+            continue
+        ordered = rows.sort_values(column, kind="stable")
+        low, high = (
+            f"{percent(row[column])} {words} at {', '.join(_setting(key, row[key]) for key in keys)}"
+            for row in (ordered.iloc[0], ordered.iloc[-1])
+        )
+        lines.append(f"{ALL}: from {low} to {high}")
+    return lines
 
 
 def _setting(key: str, value: float | str) -> str:

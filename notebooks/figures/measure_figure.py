@@ -15,12 +15,13 @@ if TYPE_CHECKING:
 
 LABELS = {
     "correct": "correct (%)",
+    "correct_95": "correct for 95 % of people (%)",
     "detected": "detected (%)",
     "onset_s": "onset (s)",
     "d_prime": "d′ of the nearest icon",
     "bits": "information (bits)",
 }
-SHARES = ("correct", "detected")
+SHARES = ("correct", "correct_95", "detected")
 BAND = 0.13
 STEP, LEAST_SPAN = 10.0, 20.0
 """Axes of shares end at tens, and show 20 % at least."""
@@ -38,7 +39,7 @@ def measure_figure(
     key
         The column on the abscissa.
     columns
-        Value, lower and upper end of each quantity.
+        Value, and where it has an interval its lower and upper end, of each quantity.
     whole
         Name of the rows of the whole set.
     log
@@ -48,10 +49,11 @@ def measure_figure(
     """
     figure, axes = small_multiples(len(columns), across, 3.6)
     places, names = key_places(frame, key)
-    styles = icon_styles(frame[frame["icon"] != whole])
+    measured = frame[[value for value, *_ in columns]].notna().any(axis=1)
+    styles = icon_styles(frame[(frame["icon"] != whole) & measured])
     missed = frame["reached"] == False  # noqa: E712
     banded = False
-    for ax, (value, low, high) in zip(axes, columns, strict=True):
+    for ax, (value, *interval) in zip(axes, columns, strict=True):
         scale = 100.0 if value in SHARES else 1.0
         for icon, (color, mark) in {**styles, whole: (INK, "")}.items():
             rows = frame[frame["icon"] == icon]
@@ -61,14 +63,15 @@ def measure_figure(
                 continue  # it is the lower edge of the icons' lines
             at = places[rows.index]
             style: dict[str, Any] = {"lw": 2.2, "zorder": 4} if icon == whole else {"lw": 1.2, "zorder": 3}
-            ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, **style)
+            ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, label=icon, **style)
             lost = missed[rows.index]
-            draw_missed(ax, at[lost], scale * rows[value][lost], color)
-            if rows[low].notna().any():
+            draw_missed(ax, at[lost], scale * rows[value][lost], color, icon)
+            if interval and rows[interval[0]].notna().any():
                 banded = True
+                low, high = (scale * rows[name].astype(float) for name in interval)
                 ax.fill_between(
-                    at, scale * rows[low].astype(float), scale * rows[high].astype(float), color=color,
-                    alpha=BAND if icon == whole else 0.5 * BAND, lw=0.0, zorder=1,
+                    at, low, high, color=color, alpha=BAND if icon == whole else 0.5 * BAND, lw=0.0, zorder=1,
+                    label=f"{icon}, 95 %",
                 )  # fmt: skip
         ax.set_ylabel(LABELS[value], fontsize=9)
         ax.tick_params(labelsize=8)

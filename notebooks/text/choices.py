@@ -85,6 +85,8 @@ def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:
         yield f"  {'✓' if part['met'] else '✗'} {part['text']}: {_goal_value(part)}"
     if goal["binding"]:
         yield f"  In the way: {'; '.join(goal['binding'])}"
+    if names := goal.get("not_reached"):
+        yield f"  Not reached, and judged as the rig would play them: {', '.join(names)}; export refuses them"
 
 
 def _goal_value(part: dict[str, Any]) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermicon.perception.sensitivity.swept import MEASURES
+from thermicon.perception.sensitivity.swept import ALL, MEASURES, OF_THE_SET
 
 from .tables import table
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 PRINTED: Mapping[str, tuple[float, str, str]] = {
     "correct": (100.0, ".0f", " %"),
+    "correct_95": (100.0, ".0f", " %"),
     "detected": (100.0, ".0f", " %"),
     "onset": (1.0, ".2f", " s"),
     "d_prime": (1.0, ".1f", ""),
@@ -34,7 +35,10 @@ def swept_table(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[s
     ['dip', '4', '82 % (70–91)']
     """
     printed = table("icon", *keys, *quantities, numbers=keys, names=("icon", *keys, *quantities))
+    of_icons = not {*quantities} <= {*OF_THE_SET}
     for row in frame.to_dict("records"):
+        if not of_icons and row["icon"] != ALL:
+            continue
         settings = [row[key] if isinstance(row[key], str) else f"{row[key]:g}" for key in keys]
         printed.add_row(str(row["icon"]), *settings, *(_cell(row, quantity) for quantity in quantities))
     return printed
@@ -46,4 +50,8 @@ def _cell(row: Mapping[Any, Any], quantity: str) -> str:
     if math.isnan(value):
         return "–"
     said = f"{value:{digits}}{unit}"
-    return said if any(map(math.isnan, interval)) else f"{said} ({interval[0]:{digits}}–{interval[1]:{digits}})"
+    return (
+        said
+        if not interval or any(map(math.isnan, interval))
+        else f"{said} ({interval[0]:{digits}}–{interval[1]:{digits}})"
+    )

@@ -34,6 +34,8 @@ def read_measures(text: str, people: int, parameters: int, seed: int) -> tuple[t
             raise usage(f"{value} is outside {least} to {most}", option)
     if parameters == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
+    if parameters == 0 and "correct_95" in names:
+        raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--parameters")
     return names, people, parameters, seed
 
 

@@ -19,10 +19,11 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes = _axes() if ax is None else ax
     sizes = np.array([len(point.icons) for point in found.points])
     correct = np.array([100.0 * point.proportion_correct for point in found.points])
-    low = np.array([100.0 * point.low for point in found.points])
+    low = np.array([100.0 * point.reached for point in found.points])
+    reach = "95 % of people reach, people and model" if found.draws else "95 % of people reach, nominal model"
     axes.fill_between(sizes, low, correct, color="0.9", linewidth=0)
     axes.plot(sizes, correct, color=DARK, marker="o", label="mean over people")
-    axes.plot(sizes, low, color=GREY, marker="v", linestyle="--", label="95 % of people reach")
+    axes.plot(sizes, low, color=GREY, marker="v", linestyle="--", label=reach)
     axes.plot(sizes, 100.0 / sizes, color=GREY, linestyle=":", label="chance")
     for size, value, point in zip(sizes.tolist(), correct.tolist(), found.points, strict=True):
         axes.annotate(

@@ -1,6 +1,7 @@
 """The frontier of a pool: how well the best few icons of it are distinguished, by how many they are.
 
-For every number of icons the best choice is looked for as in `choose`, and judged with people who know it alone.
+For every number of icons the best choice is looked for as in `choose`, and judged with people who know it alone. What
+95 % of people reach with it is, as in a goal, about people and the uncertainty of the model together.
 """
 
 from __future__ import annotations
@@ -13,17 +14,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
-from ..identification.confusion import confuse
-from ..identification.measures import information_bits, proportion_correct
+from ..identification.laboratory import DRAWS
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..selection.choose import SubsetChoice, pick
+from ..selection.choose import pick
+from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
 from ..selection.max_min_subset import Limits
+from ..selection.nominal import end_of, sense
 from ..selection.request import ChoiceError, Selection, UsableIcons, usable_icons
+from ..selection.search_request import SearchRequest, soft_finding
 from ..selection.subset_identification import Objective, SubsetIdentification
 from .batches import RATE_HZ, Execution, Job, collect_batches
+from .frontier_point import FrontierPoint, PointJudge
 from .rank import TAIL_S
 
 if TYPE_CHECKING:
@@ -31,46 +34,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon, IconSet
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
 Progress = Callable[[int, int], None]
-
-
-@dataclass(frozen=True, slots=True)
-class FrontierPoint:
-    """The best choice of one size.
-
-    Attributes
-    ----------
-    icons
-        Names of the chosen.
-    proportion_correct, low
-        Mean over people, and what 95 % of them reach, 0–1.
-    information_bits
-        Information, bits.
-    d_prime
-        Median d′ of the worst pair.
-    total_s, total_J
-        Time and energy of all of them; NaN on a thermode, which states no energy.
-    optimal
-        Whether no other choice of the size is better by the objective.
-    """
-
-    icons: tuple[str, ...]
-    proportion_correct: float
-    low: float
-    information_bits: float
-    d_prime: float
-    total_s: float
-    total_J: float
-    optimal: bool
-
-    def __repr__(self) -> str:
-        return (
-            f"FrontierPoint({len(self.icons)} icons: {100 * self.proportion_correct:.0f} % correct, {self.total_s:g} s)"
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +57,10 @@ class Frontier:
         Icons that could not be chosen, and why.
     points
         The choices.
+    draws
+        Draws of the posterior behind `low_with_model`; 0 for none.
+    goal
+        The goal; None without one.
 
     See Also
     --------
@@ -104,6 +76,8 @@ class Frontier:
     pool: int
     excluded: tuple[tuple[str, str], ...]
     points: tuple[FrontierPoint, ...]
+    draws: int = 0
+    goal: Goal | None = None
 
     def rows(self) -> list[dict[str, Any]]:
         """One plain row for each size."""
@@ -118,6 +92,9 @@ class Frontier:
                 "total_J": point.total_J,
                 "proven_best": point.optimal,
                 "names": " ".join(point.icons),
+                "proportion_correct_95_percent_of_people_and_model": point.low_with_model,
+                "amber": " ".join(point.amber),
+                "meets_goal": None if point.goal is None else point.goal.met,
             }
             for point in self.points
         ]
@@ -155,6 +132,8 @@ def frontier(
     tracking: str | None = None,
     norm: str = USUAL_NORM,
     most_s: float | None = None,
+    goal: Goal | str | None = None,
+    parameters: int = DRAWS,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> Frontier:
@@ -174,6 +153,11 @@ def frontier(
         As in `rank`.
     most_s
         Most time of all chosen icons together, s; None: any.
+    goal
+        What is wanted: icons are left out that miss its `safety`, or for the nominal person its `detected` or `onset`,
+        its `time` and `energy` are kept, and every choice is judged by it.
+    parameters
+        Draws from the posterior for what 95 % of people reach (0: none), as in `rank`.
     observer
         An observer or its file, as in `rank`.
     progress
@@ -188,12 +172,14 @@ def frontier(
     ------
     ChoiceError
         Where not even two icons can be chosen.
+    GoalError
+        For a goal for a share of people without draws.
 
     Examples
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> found = frontier(read_cue("six-icons"), Rig.load("thenar"), people=4, most=3)
+    >>> found = frontier(read_cue("six-icons"), Rig.load("thenar"), people=4, most=3, parameters=0)
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
@@ -202,10 +188,21 @@ def frontier(
     members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if most < 2:
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
+    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
+    draws = 0 if model.posterior is None else parameters
+    if parameters < 0 or parameters == 1:
+        raise ValueError(f"what 95 % of people reach needs at least two draws, or 0 for none, not {parameters}")
+    if wanted is not None and wanted.single_people and not draws:
+        raise GoalError(NEEDS_DRAWS)
+    request = SearchRequest(most_s, None, wanted)
+    time, energy = request.totals
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations, default=0.0) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    pool = usable_icons(Selection(2, objective, most_s=most_s), members, traces, rig)
+    pool = usable_icons(Selection(2, objective, most_s=time, most_J=energy), members, traces, rig)
+    if wanted is not None:
+        pool = _fit_for(request, members, pool, rig, model)
+    amber = {members[k].name for k in pool.places if soft_finding(traces[k])}
     able = [members[k] for k in pool.places]
     job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen, observer=model.for_jobs())
     largest = min(most, len(able))
@@ -218,36 +215,47 @@ def frontier(
         if progress is not None:
             progress(done, steps)
 
-    d_prime, crowd = collect_batches(job, Execution(), step).d_prime, model.people(people, seed)
-    namings = SubsetIdentification.of(d_prime, crowd.lapse, pool.durations_s, seed)
-    limits = Limits.none(len(able)) if most_s is None else Limits(pool.durations_s[None], (most_s,))
+    all_, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
+    judge = PointJudge(all_, crowd, pool, [icon.name for icon in able], amber, chosen, model, draws, seed, wanted)
+    namings = SubsetIdentification.of(all_.d_prime, crowd.lapse, pool.durations_s, seed)
+    totals = [(pool.durations_s, time), (pool.energies_J, energy)]
+    kept = [(costs, limit) for costs, limit in totals if limit is not None]
+    limits = Limits.none(len(able))
+    if kept:
+        limits = Limits(np.stack([costs for costs, _ in kept]), tuple(limit for _, limit in kept))
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
-        picked = pick(np.median(d_prime, axis=0), namings, count, objective, (), limits, seed)
+        picked = pick(all_.middle, namings, count, objective, (), limits, seed)
+        if picked is not None:
+            points.append(judge.point(picked))
         step()
         if picked is None:
             break
-        points.append(_point(picked, [icon.name for icon in able], pool, d_prime, crowd.lapse, seed))
+    changes = tuple(rig.changes)
     return Frontier(
-        rig.name, tuple(rig.changes), people, seed, chosen, objective, len(able), pool.excluded, tuple(points)
+        rig.name, changes, people, seed, chosen, objective, len(able), pool.excluded, tuple(points), draws, wanted
     )
 
 
-def _point(
-    picked: SubsetChoice, names: Sequence[str], pool: UsableIcons, d_prime: Array, lapse: Array, seed: int
-) -> FrontierPoint:
-    places = list(picked.chosen)
-    own = d_prime[:, places][:, :, places]
-    named = confuse(own, lapse=lapse, seed=seed).probability
-    each = proportion_correct(named)
-    first, second = np.triu_indices(len(places), 1)
-    return FrontierPoint(
-        icons=tuple(names[k] for k in places),
-        proportion_correct=float(each.mean()),
-        low=float(np.quantile(each, 0.05)),
-        information_bits=float(information_bits(named).mean()),
-        d_prime=float(np.median(own, axis=0)[first, second].min()),
-        total_s=math.fsum(pool.durations_s[places]),
-        total_J=math.fsum(pool.energies_J[places]),
-        optimal=picked.optimal,
+def _fit_for(
+    request: SearchRequest, members: Sequence[Icon], pool: UsableIcons, rig: Rig, model: ObserverModel
+) -> UsableIcons:
+    """The pool without icons that miss what a goal asks of single icons; the same as in a search."""
+    from thermicon.circuit import duration_s
+
+    able = [members[k] for k in pool.places]
+    felt = sense(able, rig, end_of([duration_s(icon, rig) for icon in able]), model.nominal)
+    reasons = request.objections(felt, model.nominal, rig)
+    left = [place for place, reason in enumerate(reasons) if reason is None]
+    missed = [(icon.name, reason) for icon, reason in zip(able, reasons, strict=True) if reason is not None]
+    if len(left) < 2:
+        raise ChoiceError(
+            f"fewer than two of {len(members)} icons are left by the goal, the first of the others: "
+            f"{missed[0][0]} {missed[0][1]}"
+        )
+    return UsableIcons(
+        tuple(pool.places[k] for k in left),
+        pool.durations_s[left],
+        pool.energies_J[left],
+        (*pool.excluded, *missed),
     )

@@ -14,14 +14,9 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..selection.goal import QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
+from ..selection.goal import NEEDS_DRAWS, QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
 
 TOLERANCE = 1e-9
-NEEDS_DRAWS = (
-    "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --parameters out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
-    "that has draws"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +36,9 @@ class SetOutcome:
     worst_pair
         Names of the pair that is confused most; None for one icon.
     amber, red
-        Names of the icons that pass a soft limit, and of those that pass a hard one or are not reached.
+        Names of the icons that pass a soft limit of safety, and of those that pass a hard one.
+    unreached
+        Names of the icons that the rig does not reach: no matter of safety, which judges what the rig plays of them.
     persons
         Values of `correct`, `detected` (of the icon that is detected least) and `bits` for single people (n,), of all
         draws together; empty without draws.
@@ -59,6 +56,12 @@ class SetOutcome:
     amber: tuple[str, ...]
     red: tuple[str, ...]
     persons: dict[str, Array]
+    unreached: tuple[str, ...] = ()
+
+    @property
+    def unplayable(self) -> tuple[str, ...]:
+        """Names of the icons that are not safe or not reached."""
+        return tuple(name for name in self.names if name in self.red or name in self.unreached)
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +96,13 @@ class GoalResult:
         The goal.
     parts
         Its parts in their order.
+    unreached
+        Names of the icons that the rig does not reach: they are judged as the rig would play them.
     """
 
     goal: Goal
     parts: tuple[GoalPartResult, ...]
+    unreached: tuple[str, ...] = ()
 
     @property
     def met(self) -> bool:
@@ -115,6 +121,7 @@ class GoalResult:
             "met": self.met,
             "parts": [each.to_dict() for each in self.parts],
             "binding": list(self.binding),
+            "not_reached": list(self.unreached),
         }
 
     def __repr__(self) -> str:
@@ -125,7 +132,7 @@ def judge_goal(goal: Goal, outcome: SetOutcome) -> GoalResult:
     """Judge every part of a goal; one for a share of people needs an outcome of draws, or it is a `GoalError`."""
     if goal.single_people and not outcome.persons:
         raise GoalError(NEEDS_DRAWS)
-    return GoalResult(goal, tuple(_judged(part, outcome) for part in goal.parts))
+    return GoalResult(goal, tuple(_judged(part, outcome) for part in goal.parts), outcome.unreached)
 
 
 def _judged(part: GoalPart, outcome: SetOutcome) -> GoalPartResult:
@@ -148,7 +155,7 @@ def _value(part: GoalPart, outcome: SetOutcome) -> float | None:
         "onset": lambda: float(outcome.onset_s.max()),
         "time": lambda: math.fsum(outcome.durations_s),
         "energy": lambda: math.fsum(outcome.energies_J),
-        "count": lambda: float(len(outcome.names) - len(outcome.red)),
+        "count": lambda: float(len(outcome.names) - len(outcome.unplayable)),
         SAFETY: lambda: 2.0 if outcome.red else 1.0 if outcome.amber else 0.0,
     }[part.quantity]()
 
@@ -159,7 +166,7 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
         names = (*outcome.red, *outcome.amber)
         return f"{_listed(names)} {'is' if len(names) == 1 else 'are'} not green"
     if part.quantity == "count":
-        return f"{_listed(outcome.red)} cannot be played" if outcome.red else "the set has fewer icons"
+        return f"{_listed(outcome.unplayable)} cannot be played" if outcome.unplayable else "the set has fewer icons"
     if part.quantity in ("correct", "bits", "d_prime"):
         pair = outcome.worst_pair
         return "there is one icon only" if pair is None else f"{pair[0]} and {pair[1]} are confused most"

@@ -33,9 +33,10 @@ def outcome_of_set(
         durations_s=np.array(durations),
         energies_J=np.array(energies),
         worst_pair=worst,
-        amber=tuple(icon.name for icon in made.icons if icon.playable and icon.cautions),
-        red=tuple(icon.name for icon in made.icons if not icon.playable),
+        amber=tuple(icon.name for icon in made.icons if icon.safe and icon.cautions),
+        red=tuple(icon.name for icon in made.icons if not icon.safe),
         persons={} if elsewhere is None else elsewhere.persons,
+        unreached=tuple(icon.name for icon in made.icons if not icon.reachable),
     )
 
 

@@ -25,14 +25,14 @@ from ..observer.observer import Norm, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..selection.choose import Choice, choose
-from ..selection.goal import Goal, GoalError
+from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
 from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, energy_J, objection
 from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
 from .assumptions import assumptions_of
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
-from .goal_result import NEEDS_DRAWS, judge_goal
+from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
 from .ranking import Ranking
 

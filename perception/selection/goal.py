@@ -78,6 +78,11 @@ EXAMPLES: Mapping[str, str] = {
     "onset": "onset <= 1.5 s",
     "count": "count 6",
 }
+NEEDS_DRAWS = (
+    "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
+    "posterior: leave --parameters out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
+    "that has draws"
+)
 SAFETY = "safety"
 VERDICTS = ("green", "amber")
 """Green: no finding at all; amber: no hard limit is passed."""

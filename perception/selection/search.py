@@ -2,7 +2,8 @@
 
 The best set among the listed members of the families is surrounded by slightly different icons; the best set of that
 pool is found as in `choose`, surrounded again, and so on, in shrinking steps: first for the nominal person, then for a
-few people. The result is evaluated for all people, together with the starting set.
+few people. The sets that are held at the end (the start, the best for the nominal person, the best for a few people)
+are evaluated for all people; the one that comes nearest to the goal, or has the best objective, is the result.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
+from ..identification.laboratory import DRAWS
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from .appraise import Appraisal, appraise
+from .appraise import Appraisal
 from .candidates import Candidate, sample_candidates
 from .evaluators import NominalEvaluator, PopulationEvaluator
+from .finalists import FinalJudge
 from .found_icons import at_ends, found_set, listed_only, names_of
 from .goal import Goal
 from .max_min_subset import Limits, max_min_subset, nearest_pair
@@ -46,7 +49,7 @@ ALIKE = -1.0
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """The best set and the starting set, each appraised by all people, and the number of evaluations.
+    """The best set and the starting set, each appraised by all people, and how they were found.
 
     Attributes
     ----------
@@ -68,6 +71,10 @@ class SearchResult:
         Parameters of found members that lie at an end of their range, in words.
     listed
         Parameters with a unit that only take listed values, in words.
+    finalists
+        Number of different sets that were held at the end.
+    chosen_by
+        What the result was chosen by among them, in words.
 
     See Also
     --------
@@ -84,6 +91,8 @@ class SearchResult:
     refined: int
     at_ends: tuple[str, ...] = ()
     listed: tuple[str, ...] = ()
+    finalists: int = 1
+    chosen_by: str = ""
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
@@ -105,6 +114,7 @@ def search(
     most_s: float | None = None,
     most_J: float | None = None,
     goal: Goal | str | None = None,
+    parameters: int = DRAWS,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> SearchResult:
@@ -137,7 +147,10 @@ def search(
         Most time in s and energy in J of all icons together; None: any.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
-        `safety`, or for the nominal person its `detected` or `onset`. `rank` tells whether the result meets it.
+        `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, that which comes
+        nearest to its other parts is the result. `rank` tells whether the result meets it.
+    parameters
+        Draws from the posterior, as in `rank`: for a goal for a share of people.
     observer
         An observer or its file, as in `rank`; None: the shipped one.
     progress
@@ -152,6 +165,8 @@ def search(
     ------
     ChoiceError
         For a file without families, for fewer than two icons, or where no set can be played.
+    GoalError
+        For a goal for a share of people, without draws to judge it by.
     ValueError
         For an unknown norm.
 
@@ -176,6 +191,7 @@ def search(
         NominalEvaluator(rig, objective, named, seed, model, request),
         PopulationEvaluator(rig, objective, named, seed, model, tracking, request),
     )
+    judge = FinalJudge(rig, objective, named, model, model.people(people, seed), seed, tracking, parameters, wanted)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -187,20 +203,17 @@ def search(
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
     best = run.improve(few.better(start, held), few, max(1, rounds // PER_ROUND), REFINING, rng, REFINED, tell)
-    crowd = model.people(people, seed)
-    finalists = [[gene.icon for gene in genes] for genes in (start, best)]
-    before, after = (
-        appraise(one, rig, people=crowd, seed=seed, tracking=tracking, norm=named, observer=model.nominal)
-        for one in finalists
-    )
-    if after.value(objective) < before.value(objective):
-        best, after = start, before
+    finalists = _different([start, best, held])
+    scores = [judge.appraisal([gene.icon for gene in genes]) for genes in finalists]
+    merits = [judge.merit([gene.icon for gene in genes], score) for genes, score in zip(finalists, scores, strict=True)]
+    place = max(range(len(finalists)), key=lambda k: merits[k])
+    best, after = finalists[place], scores[place]
     names = dict(zip((gene.icon.name for gene in best), names_of(best), strict=True))
     a, b = after.worst_pair
     return SearchResult(
         found=found_set(icons, best, seed),
-        start=tuple(finalists[0]),
-        before=before,
+        start=tuple(gene.icon for gene in start),
+        before=scores[0],
         after=replace(after, worst_pair=(names[a], names[b])),
         objective=objective,
         seed=seed,
@@ -208,7 +221,14 @@ def search(
         refined=run.tried - screened,
         at_ends=at_ends(best),
         listed=listed_only(best),
+        finalists=len(finalists),
+        chosen_by=judge.words or objective,
     )
+
+
+def _different(sets: Sequence[list[Candidate]]) -> list[list[Candidate]]:
+    """Each set once, by its icons."""
+    return list({tuple(gene.icon.name for gene in genes): genes for genes in sets}.values())
 
 
 class _Run:

@@ -83,7 +83,8 @@ class SearchRequest:
         for place, reason in enumerate(plain):
             why = reason
             if why is None and self.goal.of(SAFETY) == 0.0:
-                why = _amber(felt.traces[place])
+                soft = soft_finding(felt.traces[place])
+                why = None if soft is None else f"is amber: {soft}"
             if why is None and found is not None:
                 share, felt_s = float(found.probability[place]), float(found.onset_s[place])
                 if detected is not None and share < detected:
@@ -94,11 +95,11 @@ class SearchRequest:
         return tuple(made)
 
 
-def _amber(trace: Trace) -> str | None:
+def soft_finding(trace: Trace) -> str | None:
+    """The first soft limit of safety that an icon passes, in words; None for none."""
     from thermicon.circuit import judge_safety
 
-    soft = [str(finding) for finding in judge_safety(trace).findings if finding.severity != "hard"]
-    return f"is amber: {soft[0]}" if soft else None
+    return next((str(each) for each in judge_safety(trace).findings if each.severity != "hard"), None)
 
 
 def split_icons(

@@ -6,6 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
@@ -19,14 +21,22 @@ OF_SITE = ("skin", "contact", "blood")
 """Tables of the rig file that come with a site; module, driver, heat sink and room stay."""
 ALL = "all icons"
 """Name of the row of the whole set, which no icon can have."""
-MEASURES: Mapping[str, tuple[str, str, str]] = {
+MEASURES: Mapping[str, tuple[str, ...]] = {
     "correct": ("correct", "correct_low", "correct_high"),
+    "correct_95": ("correct_95",),
     "detected": ("detected", "detected_low", "detected_high"),
     "onset": ("onset_s", "onset_low_s", "onset_high_s"),
     "d_prime": ("d_prime", "d_prime_low", "d_prime_high"),
     "bits": ("bits", "bits_low", "bits_high"),
 }
-"""What can be measured, and its columns: the value and its 95 % interval for a new laboratory."""
+"""What can be measured, and its columns: the value and its 95 % interval for a new laboratory.
+
+`correct_95` is what 95 % of people reach, people and model together, as in a goal: it has no interval besides.
+"""
+OF_THE_SET = ("correct_95", "bits")
+"""Measures that single icons do not have."""
+REACHED = 0.05
+"""The quantile of `correct_95`, over people of all draws."""
 
 
 def sites() -> tuple[str, ...]:
@@ -109,8 +119,9 @@ def measured_rows(
     Returns
     -------
     dict
-        Columns of `MEASURES` by row. Proportion correct and bits of the set have intervals; d′ is that of the nearest
-        other icon, of the set that of the nearest pair.
+        Columns of `MEASURES` by row; bits and `correct_95`, which needs draws, are of the set alone. Proportion
+        correct and bits of the set have intervals; d′ is that of the nearest other icon, of the set that of the nearest
+        pair.
     """
     from ..observer.observer_model import ObserverModel
     from ..ranking.rank import rank
@@ -131,6 +142,7 @@ def _of_set(found: Ranking) -> dict[str, Any]:
         row["bits"] = found.information_bits
     if lab is not None:
         row["correct_low"], row["correct_high"] = lab.proportion_correct
+        row["correct_95"] = float(np.quantile(lab.persons["correct"], REACHED))
         if len(found.icons) > 1:
             row["bits_low"], row["bits_high"] = lab.information_bits
     return row

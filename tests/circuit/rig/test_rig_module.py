@@ -240,3 +240,11 @@ def test_a_file_that_names_no_module_or_one_twice(tmp_path: Path) -> None:
         "module.resistance_ohm is missing; add it, in Ω",
         "module.thermal_resistance_K_per_W is missing; add it, in K/W",
     ]
+
+
+def test_more_contact_than_the_face_of_a_module_that_stays_is_warned_of(tmp_path: Path) -> None:
+    THENAR.with_(module={"name": "TEC1-12706"}, contact={"area_cm2": 16.0}).save(tmp_path / "hand.toml")
+    own = Rig.load(tmp_path / "hand.toml")
+    larger = own.with_(**{"contact.area_cm2": 18.0})
+    assert any("contact.area_cm2 = 18 cm² is more than its face of 16 cm²" in text for text in larger.warnings)
+    assert not any("more than its face" in text for text in own.warnings)

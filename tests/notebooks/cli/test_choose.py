@@ -155,12 +155,16 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
     assert "a new laboratory (95 %)" in words
     assert "✗ correct >= 99.9 % for 95 % of people: " in words
     assert "✓ time <= 60 s: " in words
-    assert "Not reachable on this rig by this search" in words
-    assert "objective correct" in words
+    assert "Not reached by this search" in words
+    assert "contact.area_cm2=18" in words
+    assert "what they maximised was proportion correct" in words
+    assert "held at the end" in words
     assert "correct" in report.read_text(encoding="utf-8")
     said = cli("search", families, *options[:-2], "--goal", "count 2, time <= 60 s")
     assert "Goal: met" in said.stdout
-    assert "Not reachable" not in said.stdout
+    assert "Not reached" not in said.stdout
+    said = cli("search", families, *options[:4], "--parameters", 0, "--goal", "correct >= 9 % for 95 % of people")
+    assert (said.exit_code, "needs draws of the posterior" in " ".join(said.stderr.split())) == (1, True)
 
 
 @pytest.mark.parametrize(

@@ -244,6 +244,39 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
     assert (first["detected_low"], first["detected_high"]) == ranking.new_laboratory.detected[0]
 
 
+def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: Path, tmp_path: Path) -> None:
+    from thermicon.perception import rank
+
+    said = cli(
+        "sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", tmp_path / "m.csv",
+        "--figure", tmp_path / "m.png", "--figure-data", tmp_path / "data",
+    )  # fmt: skip
+    assert said.exit_code == 0, said.stderr
+    frame = pd.read_csv(tmp_path / "m.csv")
+    goal = rank(
+        read_cue(two), Rig.load("thenar"), people=4, parameters=4, goal="correct >= 1 % for 95 % of people"
+    ).goal
+    assert goal is not None
+    whole = frame[frame["icon"] == "all icons"].set_index(AREA)["correct_95"]
+    assert whole[9.0] == pytest.approx(goal.parts[0].value, rel=1e-8)
+    assert frame[frame["icon"] != "all icons"]["correct_95"].isna().all()
+    assert f"{100 * whole[9.0]:.0f} % correct for 95 % of people at {AREA} = 9" in said.stderr
+    drawn = pd.read_csv(tmp_path / "data" / "m.csv")
+    assert set(drawn["series"]) == {"all icons"}
+    printed = cli("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK).stdout.splitlines()[2:]
+    assert [row.split()[:3] for row in printed] == [["all", "icons", "3"], ["all", "icons", "9"]]
+
+
+def test_curves_of_the_data_of_a_figure_have_names(cli: Cli, two: Path, tmp_path: Path) -> None:
+    figure = ("--figure", tmp_path / "m.png", "--figure-data", tmp_path / "data")
+    assert cli("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct", *QUICK, *figure).exit_code == 0
+    names = {"cool-step", "warm-step", "all icons", "all icons, 95 %"}
+    assert set(pd.read_csv(tmp_path / "data" / "m.csv")["series"]) == names
+    assert cli("sweep", two, "--vary", f"{AREA}=3,9", *figure).exit_code == 0
+    for table in sorted((tmp_path / "data").glob("m-*.csv")):
+        assert {name.partition(",")[0] for name in pd.read_csv(table)["series"]} == {"cool-step", "warm-step"}
+
+
 def _of(name: str) -> dict[str, Any]:
     import json
 
@@ -274,10 +307,11 @@ def test_two_keys_with_a_site_make_maps(cli: Cli, two: Path, tmp_path: Path) -> 
         (
             ("--vary", f"{AREA}=1:9:2", "--measure", "fun"),
             2,
-            "'fun' is not one of correct, detected, onset, d_prime, bits",
+            "'fun' is not one of correct, correct_95, detected, onset, d_prime, bits",
         ),
         (("--vary", f"{AREA}=1:9:2", "--measure", "bits,bits"), 2, "the same quantity is given twice"),
         (("--vary", f"{AREA}=1:9:2", "--measure", "bits", "--parameters", 1), 2, "1 draw has no interval"),
+        (("--vary", f"{AREA}=1:9:2", "--measure", "correct_95", "--parameters", 0), 2, "needs 2 draws or more"),
         (("--vary", "people.age_years=20:80:3"), 2, "changes what people perceive only; add --measure correct"),
         (("--vary", "people.age_years=8:80:3", "--measure", "bits"), 1, "an age of 8 years is not covered"),
         (("--vary", "site=thenar,nose"), 1, "site=nose: there is no such site; there are fingertip, forearm"),

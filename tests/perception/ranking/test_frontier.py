@@ -2,14 +2,17 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.icons import load_library
+from thermicon.icons import load_library, parse
 from thermicon.perception import ChoiceError, Frontier, frontier, rank
+from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.request import Selection
 
 
 @pytest.fixture(scope="module")
 def found() -> Frontier:
-    return frontier(load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, objective="worst", most=5)
+    return frontier(
+        load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, objective="worst", most=5, parameters=0
+    )
 
 
 def test_every_size_has_its_best_choice(found: Frontier) -> None:
@@ -52,6 +55,7 @@ def test_total_time_ends_the_curve() -> None:
         Rig.load("thenar"),
         people=4,
         most_s=17.0,
+        parameters=0,
         progress=lambda done, total: steps.append((done, total)),
     )
     assert [len(point.icons) for point in short.points] == [2]
@@ -59,3 +63,54 @@ def test_total_time_ends_the_curve() -> None:
     assert steps[0][0] == 1
     with pytest.raises(ChoiceError, match="a choice of 1 has no pair"):
         frontier(load_library("six-icons"), Rig.load("thenar"), most=1)
+
+
+def test_what_95_percent_reach_is_the_number_of_a_goal() -> None:
+    six, rig = load_library("six-icons"), Rig.load("thenar")
+    goal = "correct >= 85 % for 95 % of people, time <= 30 s"
+    seen = frontier(six, rig, people=8, parameters=8, objective="worst", goal=goal)
+    assert [len(point.icons) for point in seen.points] == [2, 3]
+    assert all(point.total_s <= 30.0 for point in seen.points)
+    asked = Selection(3, "worst", most_s=30.0)
+    ranking = rank(six, rig, people=8, parameters=8, choosing=asked, goal=goal)
+    point = seen.points[1]
+    assert ranking.goal is not None
+    assert ranking.chosen is not None
+    assert set(point.icons) == set(ranking.chosen.icons)
+    assert point.low_with_model == pytest.approx(ranking.goal.parts[0].value, abs=0.01)
+    assert point.goal is not None
+    assert point.goal.parts[0].value == point.low_with_model == point.reached
+    row = seen.rows()[1]
+    assert row["proportion_correct_95_percent_of_people_and_model"] == point.low_with_model
+    assert row["meets_goal"] is point.goal.met
+
+
+def test_a_goal_leaves_icons_out_and_says_why() -> None:
+    icons = parse(
+        "cue 1; icon faint { cool by 0.1 K at 1 K/s }; icon dip { cool by 3 K at 2 K/s };"
+        "icon glow { warm by 3 K at 2 K/s }"
+    )
+    seen = frontier(icons, Rig.load("thenar"), people=4, parameters=0, goal="detected >= 90 %")
+    assert [name for name, _ in seen.excluded] == ["faint"]
+    assert "of trials only" in seen.excluded[0][1]
+    with pytest.raises(ChoiceError, match="fewer than two of 3 icons are left by the goal, the first of the others: "):
+        frontier(icons, Rig.load("thenar"), people=4, parameters=0, goal="onset <= 0.01 s")
+    with pytest.raises(GoalError, match="needs draws"):
+        frontier(icons, Rig.load("thenar"), people=4, parameters=0, goal="correct >= 9 % for 95 % of people")
+    with pytest.raises(ValueError, match="at least two draws"):
+        frontier(icons, Rig.load("thenar"), people=4, parameters=1)
+
+
+def test_amber_icons_are_named_or_left_out() -> None:
+    icons = parse(
+        "cue 1; icon deep { cool by 10.5 K at 3 K/s; return at 3 K/s }; icon dip { cool by 3 K at 2 K/s };"
+        "icon glow { warm by 3 K at 2 K/s }"
+    )
+    rig = Rig.load("thenar").with_(**{"driver.current_limit_A": 4.0})
+    named = frontier(icons, rig, people=2, parameters=0)
+    assert named.points[-1].amber == ("deep",)
+    assert named.rows()[-1]["amber"] == "deep"
+    green = frontier(icons, rig, people=2, parameters=0, goal="safety green")
+    assert green.excluded[0][0] == "deep"
+    assert green.excluded[0][1].startswith("is amber: ")
+    assert green.points[-1].amber == ()

@@ -60,6 +60,23 @@ def test_safety_is_the_worst_of_the_icons() -> None:
     assert judge_goal(Goal.parse("count 3"), red).binding == ("wave cannot be played",)
 
 
+def test_an_icon_that_is_not_reached_is_no_matter_of_safety() -> None:
+    missed = dataclasses.replace(OUTCOME, unreached=("wave",))
+    result = judge_goal(Goal.parse("safety green, count 3"), missed)
+    assert [part.met for part in result.parts] == [True, False]
+    assert result.binding == ("wave cannot be played",)
+    assert result.to_dict()["not_reached"] == ["wave"]
+
+
+def test_a_weak_rig_makes_icons_unreached_not_red() -> None:
+    weak = Rig.load("thenar").with_(**{"driver.current_limit_A": 0.5})
+    ranking = rank(load_library("six-icons"), weak, people=2, parameters=0, goal="safety green")
+    assert ranking.goal is not None
+    assert all(icon.safe for icon in ranking.icons)
+    assert ranking.goal.met
+    assert ranking.goal.unreached == tuple(icon.name for icon in ranking.icons if not icon.reachable) != ()
+
+
 def test_an_icon_that_is_not_felt_has_no_onset() -> None:
     silent = dataclasses.replace(OUTCOME, onset_s=np.array([0.9, np.nan, 1.1]))
     result = judge_goal(Goal.parse("onset <= 5 s"), silent)

@@ -1,11 +1,15 @@
+from collections.abc import Sequence
+
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, judge_safety, simulate
-from thermicon.icons import IconSet, load_library, parse
-from thermicon.perception import ChoiceError, SearchResult, search
-from thermicon.perception.selection.appraise import appraise
+from thermicon.icons import Icon, IconSet, load_library, parse
+from thermicon.perception import ChoiceError, SearchResult, rank, search
+from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
+from thermicon.perception.selection.finalists import FinalJudge
+from thermicon.perception.selection.goal import GoalError
 
 SMALL = (
     "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"
@@ -140,3 +144,33 @@ def test_only_icons_that_must_stay_do(small: IconSet, rig: Rig) -> None:
         search(small, rig, count=3, must=["plane"])
     with pytest.raises(ChoiceError, match="give --choose K as well"):
         search(small, rig, must=["plain"])
+
+
+def test_of_the_sets_held_at_the_end_the_goal_chooses(
+    small: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    merits: dict[tuple[str, ...], tuple[float, ...]] = {}
+    true_merit = FinalJudge.merit
+
+    def merit(judge: FinalJudge, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
+        held = true_merit(judge, icons, scores)
+        merits[tuple(icon.name for icon in icons)] = held
+        return held
+
+    monkeypatch.setattr(FinalJudge, "merit", merit)
+    goal = "correct >= 99 % for 95 % of people"
+    asked = {"count": 4, "objective": "correct", "evaluations": 150, "people": 12, "seed": 3}
+    result = search(small, rig, goal=goal, parameters=8, **asked)  # type: ignore[arg-type]
+    assert result.finalists == len(merits) > 1
+    assert result.chosen_by == "correct for 95 % of people"
+    ranking = rank(result.found, rig, people=12, seed=3, parameters=8, goal=goal)
+    assert ranking.goal is not None
+    best = max(merits.values())
+    # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
+    assert ranking.goal.parts[0].value == pytest.approx(best[1], abs=0.02)
+    assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
+
+
+def test_a_goal_for_a_share_of_people_needs_draws_before_the_search_begins(small: IconSet, rig: Rig) -> None:
+    with pytest.raises(GoalError, match="needs draws of the posterior"):
+        search(small, rig, goal="correct >= 99 % for 95 % of people", parameters=0)

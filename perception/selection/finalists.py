@@ -1,0 +1,117 @@
+"""Sets that a search holds at its end, judged by the goal itself: what a goal for a share of people asks of each.
+
+A search maximises a mean, which many pools of icons can be scored by. What 95 % of people reach takes draws of the
+posterior, as in `rank`, so that only the last few sets are judged by it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.laboratory import Nominal, new_laboratory
+from ..identification.laboratory_draws import EVERY, PEOPLE
+from ..identification.population import PROBES, ReceptorTemperatures
+from ..observer.observer import Norm
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People
+from .appraise import RATE_HZ, TAIL_S, Appraisal, appraise
+from .goal import NEEDS_DRAWS, Goal, GoalError, GoalPart
+from .subset_identification import Objective
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
+
+JUDGED = ("correct", "bits", "d_prime")
+"""Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
+
+
+@dataclass(frozen=True, slots=True)
+class FinalJudge:
+    """How the last sets of a search are judged: by the parts of a goal about what people perceive, then an objective.
+
+    Raises `GoalError` for a goal for a share of people without draws of the posterior.
+    """
+
+    rig: Rig
+    objective: Objective
+    norm: Norm
+    model: ObserverModel
+    crowd: People
+    seed: int
+    tracking: str | None
+    draws: int
+    goal: Goal | None = None
+
+    def __post_init__(self) -> None:
+        if self.goal is not None and self.goal.single_people and (self.draws < 2 or self.model.posterior is None):
+            raise GoalError(NEEDS_DRAWS)
+
+    @property
+    def parts(self) -> tuple[GoalPart, ...]:
+        """Parts of the goal that sets are judged by, those for a share of people first."""
+        held = () if self.goal is None else self.goal.parts
+        some = [part for part in held if part.quantity in JUDGED or part.people is not None]
+        return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
+
+    @property
+    def words(self) -> str | None:
+        """What sets are judged by besides the objective, in words; None for nothing."""
+        named = [
+            part.quantity + ("" if part.people is None else f" for {100.0 * part.people:g} % of people")
+            for part in self.parts
+        ]
+        return " and ".join(named) or None
+
+    def appraisal(self, icons: Sequence[Icon]) -> Appraisal:
+        """What all people make of a set."""
+        return appraise(
+            icons, self.rig, people=self.crowd, seed=self.seed, tracking=self.tracking, norm=self.norm,
+            observer=self.model.nominal,
+        )  # fmt: skip
+
+    def merit(self, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
+        """What the better set has more of: nearness to the goal, then values of its parts, then of the objective."""
+        persons = self._persons(icons, scores) if any(part.people is not None for part in self.parts) else {}
+        values = [_value(part, scores, persons) for part in self.parts]
+        missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(self.parts, values, strict=True)]
+        return (-max(missing, default=0.0), *values, scores.value(self.objective))
+
+    def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
+        """Values of single people of all draws, laid about what all people reach, as in `rank`."""
+        from thermicon.circuit import duration_s, simulate_many
+
+        durations = [duration_s(icon, self.rig) for icon in icons]
+        end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+        few = self.crowd.part(0, min(PEOPLE, len(self.crowd)))
+        batch = simulate_many(
+            icons, few.rigs(self.rig), nominal=self.rig, end_s=end, rate_Hz=RATE_HZ, tracking=self.tracking,
+            probes=PROBES,
+        )  # fmt: skip
+        played = ReceptorTemperatures(
+            batch.cold_C, batch.warm_C, batch.time_s, self.rig.site, self.rig.contact.area_m2
+        ).thinned(len(few), EVERY)
+        n = len(icons)
+        # Single people are laid about correct and bits alone; the rest of the prediction is not used.
+        predicted = Nominal(
+            scores.proportion_correct, scores.information_bits, np.zeros(n), np.zeros((n, n)), np.zeros(n)
+        )
+        return new_laboratory(
+            played, self.crowd, predicted, self.norm, model=self.model, draws=self.draws, seed=self.seed
+        ).persons
+
+
+def _value(part: GoalPart, scores: Appraisal, persons: dict[str, Array]) -> float:
+    if part.people is not None:
+        return float(np.quantile(persons[part.quantity], 1.0 - part.people))
+    return {
+        "correct": scores.proportion_correct,
+        "bits": scores.information_bits,
+        "d_prime": scores.d_prime,
+    }[part.quantity]
