@@ -164,25 +164,22 @@ class Rig:
         path
             A file whose name ends in `.toml`.
         name
-            Name of the saved rig; None: the rig's own. Give a changed copy of a shipped rig a name of its own, since
-            what is exported for it bears that name.
+            Name of the saved rig, which exports bear; None: the rig's own.
 
         Raises
         ------
         RigError
-            For another ending, a path that cannot be written, and a rig that no rig file may describe, such as a
-            corner of the uncertainty beyond the limits of the file.
+            For another ending, a path that cannot be written, and a rig that no rig file may describe.
 
         """
         where = Path(path)
         if where.suffix != ".toml":
             raise RigError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         saved = self if name is None else self.with_(name=name)
-        text = saved.toml
-        if _build(parse_toml(text, str(where)), str(where)) != saved:
+        if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
-            where.write_text(text, encoding="utf-8")
+            where.write_text(saved.toml, encoding="utf-8")
         except OSError as problem:
             raise RigError(f"{where}: cannot be written ({problem.strerror or problem})") from None
 

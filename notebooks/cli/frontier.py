@@ -14,7 +14,17 @@ from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWid
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals
 from ..text.messages import check_changes, check_draws, load_observer, load_rig, progress_bar, usage
-from ..text.options import Changes, Files, NormName, ObserverFile, RigName, Tracking, check_norm_option, check_tracking
+from ..text.options import (
+    Changes,
+    Draws,
+    Files,
+    NormName,
+    ObserverFile,
+    RigName,
+    Tracking,
+    check_norm_option,
+    check_tracking,
+)
 from ..text.tables import show, table
 
 if TYPE_CHECKING:
@@ -35,14 +45,7 @@ def frontier_command(
     norm: NormName = "episodes",
     most_time: MostTime = None,
     goal: GoalText = None,
-    parameters: Annotated[
-        int | None,
-        typer.Option(
-            "--parameters",
-            metavar="N",
-            help="Draws of the posterior for 95 % of people; 0 for none.  [default: 128, or all there are]",
-        ),
-    ] = None,
+    parameters: Draws = None,
     observer: ObserverFile = None,
     output: Annotated[
         Path | None,

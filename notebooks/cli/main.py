@@ -32,6 +32,7 @@ from ..text.options import (
     Cluster,
     Context,
     CueFiles,
+    Draws,
     Files,
     Gap,
     IconName,
@@ -233,15 +234,7 @@ def rank_command(
         str,
         typer.Option("--by", metavar="|".join(RANKED_BY), help="Score with the model, or with rules of thumb alone."),
     ] = "model",
-    parameters: Annotated[
-        int | None,
-        typer.Option(
-            "--parameters",
-            metavar="N",
-            help="Draws of the posterior for the intervals of a new laboratory; 0 for none.  [default: 128, or all "
-            "there are]",
-        ),
-    ] = None,
+    parameters: Draws = None,
     tracking: Tracking = None,
     norm: NormName = "episodes",
     trials: Annotated[

@@ -20,7 +20,17 @@ from ..figures.figure_look import (
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
 from ..text.messages import check_changes, check_draws, load_observer, load_rig, note, progress_bar, usage
-from ..text.options import Changes, NormName, ObserverFile, OneFile, ReportPage, RigName, Tracking, check_tracking
+from ..text.options import (
+    Changes,
+    Draws,
+    NormName,
+    ObserverFile,
+    OneFile,
+    ReportPage,
+    RigName,
+    Tracking,
+    check_tracking,
+)
 from .ranking import check_figures, check_report
 from .search_result import FoundSet, Ranked
 
@@ -62,14 +72,7 @@ def search_command(
     must: Must = None,
     most_time: MostTime = None,
     most_energy: MostEnergy = None,
-    parameters: Annotated[
-        int | None,
-        typer.Option(
-            "--parameters",
-            metavar="N",
-            help="Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
-        ),
-    ] = None,
+    parameters: Draws = None,
     output: Annotated[
         Path | None,
         typer.Option(

@@ -35,6 +35,14 @@ Cluster = Annotated[
     str | None,
     typer.Option("--cluster", metavar="ADDRESS", help="Compute on a dask cluster: the address of its scheduler."),
 ]
+Draws = Annotated[
+    int | None,
+    typer.Option(
+        "--parameters",
+        metavar="N",
+        help="Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
+    ),
+]
 ObserverFile = Annotated[
     Path | None,
     typer.Option(

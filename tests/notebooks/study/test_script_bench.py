@@ -1,0 +1,134 @@
+"""The display of a study's script: it plays without blocking, guards and stops, on stand-ins for the hardware."""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+
+def bench_of(quick: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
+    """The module of the study's folder that plays and waits."""
+    monkeypatch.syspath_prepend(str(quick))
+    monkeypatch.delitem(sys.modules, "study_bench", raising=False)
+    import importlib
+
+    return importlib.import_module("study_bench")
+
+
+class RealTime(types.ModuleType):
+    """A stand-in for nidaqmx that takes as long as the samples do, by the clock on the wall."""
+
+    def __init__(self) -> None:
+        super().__init__("nidaqmx")
+        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
+        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
+        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=lambda *_, **__: None)
+        self.out: list[Any] = []
+        self.ends = 0.0
+
+    def Task(self) -> RealTime:
+        return self
+
+    def __enter__(self) -> RealTime:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        return None
+
+    def write(self, volts: Any, **_: object) -> None:
+        self.out.append(volts)
+        if isinstance(volts, list):
+            self.ends = time.monotonic() + 3.0
+
+    def is_task_done(self) -> bool:
+        return time.monotonic() >= self.ends
+
+    def stop(self) -> None:
+        self.out.append("stopped")
+
+
+@pytest.fixture
+def display(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
+    device = RealTime()
+    monkeypatch.setitem(sys.modules, "nidaqmx", device)
+    monkeypatch.setitem(sys.modules, "nidaqmx.constants", device)
+    made = bench_of(quick, monkeypatch).Display("ni", channel="Dev7/ao1")
+    made.player.REST_S = 0.0
+    made.device = device
+    return made
+
+
+def test_a_play_does_not_block_and_abort_switches_off(display: Any, quick: Path) -> None:
+    """In real time, with threads."""
+    assert display.player.CHANNEL == "Dev7/ao1"
+    begun = time.monotonic()
+    display.play(str(quick / "dip.csv"))
+    assert time.monotonic() - begun < 0.5, "the call returned while the icon plays"
+    while not any(isinstance(each, list) for each in display.device.out):
+        assert time.monotonic() - begun < 2.0
+        time.sleep(0.01)
+    assert display.busy
+    display.abort()
+    assert time.monotonic() - begun < 2.0
+    assert display.device.out[-1] == 0.0
+    with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
+        _ = display.busy
+
+
+def test_the_guard_stops_a_display_that_is_too_warm(display: Any, quick: Path) -> None:
+    """The cut-off of the exported player acts in a study too."""
+    readings = iter([32.0 + 0.001 * k for k in range(10)] + [60.0 + 0.001 * k for k in range(1000)])
+    display.measured_C = lambda: next(readings)
+    display.player.TEST_POLARITY = False
+    display.play(str(quick / "dip.csv"))
+    begun = time.monotonic()
+    with pytest.raises(RuntimeError, match=r"the display is at 60\.\d\d degrees C, outside"):
+        while time.monotonic() < begun + 3.0 and display.busy:
+            time.sleep(0.01)
+    assert display.device.out[-1] == 0.0
+    assert threading.active_count() >= 1
+
+
+def test_a_pause_that_is_too_short_is_refused_by_the_player(display: Any, quick: Path) -> None:
+    display.player._known["ended"] = time.monotonic()
+    display.player.PAUSE_S = 5.0
+    display.play(str(quick / "dip.csv"))
+    display._thread.join()
+    with pytest.raises(RuntimeError, match=r"the pause of 5 s between plays is not over"):
+        _ = display.busy
+
+
+def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> None:
+    first = float(rows_of(quick / "dip.csv")[0]["command_V"])
+    display.player.REST_S = 0.05
+    display.rest(str(quick / "dip.csv"))
+    display._thread.join()
+    assert display.device.out == [first]
+    assert display.player._known["rested"]
+
+
+@pytest.mark.parametrize("plays", ["tcs2", "send"])
+def test_other_devices_have_their_functions(plays: str, quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = bench_of(quick, monkeypatch)
+    if plays == "send":
+        with pytest.raises(
+            SystemExit, match=r"needs --bench FILE\.py with the functions send\(display_C\) and off\(\)"
+        ):
+            bench.Display("send")
+        off: list[str] = []
+        own = types.SimpleNamespace(send=lambda _: None, off=lambda: off.append("off"))
+        bench.Display("send", own).abort()
+        assert off == ["off"]
+    else:
+        sent: list[bytes] = []
+        display = bench.Display.__new__(bench.Display)
+        display.player, display.plays, display._thread = types.SimpleNamespace(abort=lambda: None), "tcs2", None
+        display.port = types.SimpleNamespace(write=sent.append)
+        display.abort()
+        assert sent == [b"A"]
