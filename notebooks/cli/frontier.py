@@ -19,7 +19,7 @@ from ..text.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.perception import Frontier
-    from thermicon.perception.ranking.frontier import FrontierPoint
+    from thermicon.perception.ranking.frontier_point import FrontierPoint
 
 
 def frontier_command(
