@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import textwrap
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,38 @@ WIDTH = 118
 
 def rig_summary(rig: Rig) -> str:
     """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text."""
+    rows = [
+        *_rows(rig),
+        *(("warning", text) for text in rig.warnings),
+        *(("note", text) for text in rig.notes),
+    ]
+    head = f"{rig.name}: {rig.title}" if rig.title else rig.name
+    return "\n".join([head, *(line for label, text in rows for line in _wrapped(label, text))])
+
+
+def rig_for_methods(rig: Rig) -> str:
+    """Return what a methods section says of a rig: the summary with its driver, without warnings and notes.
+
+    A title is left out where the module has a name, since it may describe the module that was there before.
+    """
+    rows = _rows(rig)
+    if rig.pump is not None:
+        driver = rig.driver
+        rows.append(
+            (
+                "driver",
+                f"{driver.current_min_A:g} … ".replace("-", "−")
+                + f"{driver.current_max_A:g} A, {driver.voltage_limit_V:g} V at most, "
+                f"updated at {driver.update_Hz:g} Hz",
+            )
+        )
+    named = "name" in json.loads(rig.document).get("module", {})
+    head = f"{rig.name}: {rig.title}" if rig.title and not named else rig.name
+    return "\n".join([head, *(line for label, text in rows for line in _wrapped(label, text.rstrip(".")))])
+
+
+def _rows(rig: Rig) -> list[tuple[str, str]]:
+    """Site, skin or load, and module or thermode, with their labels."""
     flux = -rig.resting_flux_W_per_m2
     how = "from the heat balance" if rig.skin.deep_C is None else "given"
     skin = [
@@ -29,15 +62,11 @@ def rig_summary(rig: Rig) -> str:
     if (load := rig.bench_load) is not None:
         words = f"{load.capacity_J_per_K:.3g} J/K, {load.conductance_W_per_K:.3g} W/K to a room of {rig.deep_C:g} °C"
         skin = [("load", f"{with_article(load.site)} in place of skin: {words}; nothing is judged for people")]
-    rows = [
+    return [
         ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
         *skin,
         ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
-        *(("warning", text) for text in rig.warnings),
-        *(("note", text) for text in rig.notes),
     ]
-    head = f"{rig.name}: {rig.title}" if rig.title else rig.name
-    return "\n".join([head, *(line for label, text in rows for line in _wrapped(label, text))])
 
 
 def _thermode(thermode: Thermode) -> str:

@@ -26,6 +26,8 @@ from .source import Edit, Finding, Source
 Body = tuple[Statement, ...]
 MOST_CORNERS_A_FILE = 200_000
 
+REFUSES = "a total refuses the file and leaves no member out: change the range, or the total"
+
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
@@ -287,7 +289,8 @@ class _Assembler:
         statement = problem.statement
         if statement is not None:
             statement = statement_at(template, path_of(failed.statements, statement))
-        return replace(problem, statement=statement, what=f"{problem.what} (with {which}{many})", cures=())
+        help = f"{problem.help}; {REFUSES}" if problem.code == "E222" else problem.help
+        return replace(problem, statement=statement, what=f"{problem.what} (with {which}{many})", help=help, cures=())
 
     def unsound(self, draft: IconDraft) -> bool:
         """Tell whether a draft cannot be made, although nothing was found to be wrong with what it says itself."""

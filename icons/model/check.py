@@ -23,7 +23,7 @@ _STEEPNESS: dict[Shape, float] = {"sine": 2 * math.pi, "triangle": 4.0, "sawtoot
 class Problem:
     """One problem: the statement (None for the icon), which part of it, and what is wrong.
 
-    ``cures`` holds pairs of a part and the text to put in its place.
+    ``cures`` holds pairs of a part and the text to put in its place, ``off_s`` by how much a total is not kept.
     """
 
     statement: Statement | None
@@ -32,6 +32,7 @@ class Problem:
     what: str
     help: str = ""
     cures: tuple[tuple[str, str], ...] = ()
+    off_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,7 +216,7 @@ class _Walker:
                     few = f"it is {float(abs(off)):.6g} s too {'short' if off < 0 else 'long'}"
                     text = f"{decimal_text(float(f'{float(duration):.9g}'))} s"
                     help = f"a total is checked, nothing is filled up or cut: {few}"
-                    self.blame(part, "E222", "time", what, help, ("time", text))
+                    self.found.append(Problem(part, "E222", "time", what, help, (("time", text),), float(abs(off))))
 
     def blind(self, part: Leaf) -> Fraction | None:
         # Behind a statement that could not be read only an absolute target tells where the icon is.

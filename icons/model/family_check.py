@@ -80,7 +80,10 @@ def check_family(members: "Expander", context: Context, start: float | None = No
         course = survey(statements, context.control, rest, played)
         if course.problems:
             failing += 1
-            first = first or FailedMember(members.name(places), statements, course.problems[0], 1)
+            problem = course.problems[0]
+            # Of members that do not keep a total, that farthest from it is named.
+            if first is None or (first.problem.code == problem.code == "E222" and problem.off_s > first.problem.off_s):
+                first = FailedMember(members.name(places), statements, problem, 1)
             if failing == MOST_FAILING:
                 break
         elif first is None:

@@ -35,7 +35,7 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     icons
         The set.
     rig_about
-        Description of the rig, from ``Rig.about``; None: no rig is described.
+        Description of the rig, such as ``Rig.about``; None: no rig is described.
 
     Returns
     -------
@@ -132,8 +132,10 @@ class _Course(Wording):
             case Play():
                 return f"the course of {part.icon.name}"
             case Repeat():
-                count = self.holes.get((path, "count"), f"{part.count:,}")
-                return f"{count} times ({self.body(part.body, path)})"
+                count = self.holes.get((path, "count"))
+                if count is not None:
+                    return f"{count} × ({self.body(part.body, path)})"
+                return f"{part.count:,} times ({self.body(part.body, path)})"
             case Total() | Broken():
                 return ""
 

@@ -83,6 +83,7 @@ def cite_command(
 
 def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:
     """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
+    from thermicon.circuit.rig.rig_summary import rig_for_methods
     from thermicon.icons import bibtex, methods
 
     icons = read_set([file])
@@ -91,7 +92,7 @@ def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:
         return
     if rig is not None:
         warn_of_site(file, icons, rig)
-    typer.echo(methods(icons, None if rig is None else rig.about()))
+    typer.echo(methods(icons, None if rig is None else rig_for_methods(rig)))
 
 
 def explain_command(

@@ -71,8 +71,11 @@ def show_ranking(result: dict[str, Any], order: Sequence[str], title: str, cures
 
 
 def _disagreements(result: dict[str, Any]) -> list[str]:
-    """Disagreements of rules and model, after an empty line; nothing where they agree."""
+    """Disagreements of rules and model, of the chosen where some are, after an empty line; nothing where they agree."""
     found = result["set"]["rules_disagree"]
+    if result["chosen"]:
+        chosen = {*result["chosen"]["icons"]}
+        found = [each for each in found if {each[key] for key in ("icon", "a", "b") if key in each} <= chosen]
     return ["", *disagreement_lines(found)] if found else []
 
 

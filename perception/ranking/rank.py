@@ -153,6 +153,8 @@ def rank(
         draws = 0
     elif draws > len(model.posterior):
         raise ValueError(f"{draws} draws of the parameters were asked for; {model.name} has {len(model.posterior)}")
+    if wanted is not None and choosing is not None:
+        wanted.check_count(choosing.count)
     if wanted is not None and wanted.single_people and not draws:
         raise GoalError(NEEDS_DRAWS)
     execution = Execution(workers, cluster, keep)

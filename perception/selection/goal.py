@@ -182,6 +182,21 @@ class Goal:
             return None
         return max(limits) if quantity in QUANTITIES and QUANTITIES[quantity].comparison == ">=" else min(limits)
 
+    def check_count(self, count: int | None) -> None:
+        """Raise a GoalError where fewer icons are chosen than the goal asks for.
+
+        >>> Goal.parse("count 9").check_count(6)
+        Traceback (most recent call last):
+        ...
+        thermicon.perception.selection.goal.GoalError: goal: it asks for 9 icons or more, and 6 are to be chosen...
+        """
+        least = self.of("count")
+        if count is not None and least is not None and count < least:
+            raise GoalError(
+                f"goal: it asks for {least:g} icons or more, and {count} are to be chosen: choose {least:g}, or write "
+                f"count {count}"
+            )
+
     @property
     def single_people(self) -> bool:
         """Whether a part is about a share of people, which takes draws of the posterior to judge."""

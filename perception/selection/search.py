@@ -182,6 +182,8 @@ def search(
     if objective not in OBJECTIVES:
         raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
+    if wanted is not None:
+        wanted.check_count(count)
     if count is None and wanted is not None and wanted.of("count") is not None:
         count = int(wanted.of("count") or 0)
     fixed, optional, free = split_icons(icons, count, must)

@@ -280,6 +280,8 @@ FAMILIES = [
     Mistake(family("a in 1..40 step 1 K)"), "E219", 3, 13, "leads to 61 °C (with a=29, one of 12 such members of 40)"),
     Mistake(family("a in [30, 34] °C)", "warm to a at 1 K/s"), "E201", 3, 11, "30 °C is below the 32 °C"),
     Mistake(family("t in [1, 2] s)", "hold for t; total 2 s"), "E222", 3, 21, "with t=2"),
+    Mistake(family("t in [1, 5, 4] s)", "hold for t; total at most 2 s"), "E222", 3, 29, "with t=5, one of"),
+    Mistake(family("t in [3, 5, 4] s)", "hold for t; total 2 s"), "E222", 3, 21, "leaves no member out"),
     Mistake(family("a in [1, 2] K)") + "\nicon y { play x }", "E230", 6, 15, "family of 2", "icon y { play x_a=1 }"),
     Mistake(family("a in [1, 2] K)") + "\nicon y { play x_a=3 }", "E230", 6, 15, "this is not one of them"),
     Mistake(family("a in [1, 2] K)") + "\n" + STEP.replace("x", "x_a=1"), "E211", 6, 6, "a member of family x"),

@@ -170,7 +170,7 @@ def test_methods_of_a_family_and_of_a_current() -> None:
     text = f"icon r{over} {{ repeat n {{ change by size at rate; return at rate }} }}"
     said = methods(made(text))
     assert (
-        "r, a family of ten icons over size (−3 and 3 K), rate (1 to 3 °C/s in steps of 0.5 °C/s) and n (1): n times "
+        "r, a family of ten icons over size (−3 and 3 K), rate (1 to 3 °C/s in steps of 0.5 °C/s) and n (1): n × "
         in said
     )
     assert "(a change by size at rate and a return to baseline at rate) (2 to 6 s)" in said

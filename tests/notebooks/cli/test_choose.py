@@ -41,6 +41,19 @@ def ranked(cli: Cli, tmp_path: Path) -> Callable[..., dict[str, Any]]:
     return run
 
 
+def test_a_choice_is_told_of_its_own_disagreements_and_of_a_goal_for_more(
+    cli: Cli, ranked: Callable[..., dict[str, Any]]
+) -> None:
+    found = ranked("--choose", 3)
+    chosen = set(found["chosen"]["icons"])
+    others = [each["text"] for each in found["set"]["rules_disagree"] if not {each.get("a"), each.get("b")} <= chosen]
+    assert others
+    words = " ".join(found["stdout"].split())
+    assert not any(text in words for text in others)
+    said = cli("rank", "six-icons", *FEW, "--choose", 3, "--goal", "count 4")
+    assert (said.exit_code, "it asks for 4 icons or more, and 3 are to be chosen" in said.stderr) == (1, True)
+
+
 @pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
 def test_the_json_says_what_was_chosen(ranked: Callable[..., dict[str, Any]], objective: str) -> None:
     found = ranked("--choose", 3, "--objective", objective, "--must", "double-dip")
@@ -170,6 +183,7 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
 @pytest.mark.parametrize(
     ("options", "code", "told"),
     [
+        (("--choose", 2, "--goal", "count 3"), 1, "it asks for 3 icons or more, and 2 are to be chosen"),
         (("--goal", "speed >= 5"), 1, "there is no quantity 'speed'"),
         (("--most-time", 0), 2, "0 s is not above 0"),
         (("--parameters", 1), 2, "1 draw has no interval"),

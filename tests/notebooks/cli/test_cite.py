@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from thermicon.circuit import Rig
+
 Cli = Callable[..., Any]
 
 
@@ -42,3 +44,14 @@ def test_a_file_that_is_wrong(cli: Cli, two: Path) -> None:
     said = cli("cite", two)
     assert (said.exit_code, said.stdout) == (1, "")
     assert "E102 missing unit" in said.stderr
+
+
+def test_a_rig_in_a_paragraph_has_its_driver_and_no_warnings(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "hand.toml"
+    Rig.load("fingertip").with_(module={"name": "TEC1-12706"}, driver={"current_limit_A": 2.0}).save(path)
+    said = cli("cite", "cooling-step-skin", "--rig", path)
+    assert "; driver −2 … 2 A, 15 V at most, updated at 100 Hz. The icons" in said.stdout
+    assert "follows: fingertip; site fingertip" in said.stdout
+    assert "30 mm module" not in said.stdout
+    assert "warning" not in said.stdout
+    assert "above the 8.5 … 31.2 °C that its two data sheets stand for" in said.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import sys
 import threading
 import time
@@ -105,7 +106,8 @@ def test_a_pause_that_is_too_short_is_refused_by_the_player(display: Any, quick:
 
 
 def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> None:
-    first = float(rows_of(quick / "dip.csv")[0]["command_V"])
+    with (quick / "dip.csv").open(newline="", encoding="utf-8") as file:
+        first = float(next(csv.DictReader(file))["command_V"])
     display.player.REST_S = 0.05
     display.rest(str(quick / "dip.csv"))
     display._thread.join()
