@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number
 
 from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
+from .left_out import milli
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,6 +20,7 @@ MEASURED_COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "
 """Measured points on the grey and black curves of a trace."""
 
 COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
+POINTS = "#b9bec4"
 MOST_POINTS = 4000
 """More points than a page has dots to the inch show nothing more."""
 
@@ -36,14 +38,19 @@ def plot_residuals(fit: RigFit, ax: Axes | None = None, column: str | None = Non
     return tidy(ax, shown[0].time_s, f"measured − fitted ({units})")
 
 
-def fit_figure(fit: RigFit) -> Figure:
-    """Return the figure of a fit: for every measured column, measured and fitted above, residuals below."""
-    from matplotlib.figure import Figure
+def fit_figure(fit: RigFit, across: int = 2) -> Figure:
+    """Return the figure of a fit: for every measured column, measured and fitted above, residuals below.
 
-    panels = fit.channels
-    figure = Figure(figsize=(1.0 + 4.4 * min(2, len(panels)), 3.9 * -(-len(panels) // 2)), layout="constrained")
-    across = min(2, len(panels))
+    `across` columns stand beside one another at most.
+    """
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
+
+    panels, files = fit.channels, {each.file for each in fit.channels}
+    across = min(across, len(panels))
     down = -(-len(panels) // across)
+    high = 3.9 if across > 1 or down == 1 else 3.0
+    figure = Figure(figsize=(1.0 + 4.4 * across, high * down), layout="constrained")
     grid = figure.subplots(2 * down, across, squeeze=False, height_ratios=[2.2, 1.0] * down)
     for place in range(down * across):
         row, side = divmod(place, across)
@@ -52,25 +59,31 @@ def fit_figure(fit: RigFit) -> Figure:
             above.remove()
             below.remove()
             continue
-        _pair(above, below, panels[place])
+        _pair(above, below, panels[place], named=len(files) > 1)
+    if len(files) == 1:
+        figure.suptitle(f"{fit.rig.name} fitted to {panels[0].file}", fontsize=11)
+    points = Line2D([], [], color=POINTS, marker=".", ls="", ms=7.0, label="measured")
+    figure.legend(
+        handles=[points, Line2D([], [], color="#333333", lw=1.3, label="fitted")],
+        loc="outside lower center", ncols=2, frameon=False, fontsize=9,
+    )  # fmt: skip
     return figure
 
 
-def _pair(above: Axes, below: Axes, each: ChannelFit) -> None:
+def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
     color = COLORS.get(each.column, PROBE)
     few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
-    above.plot(each.time_s[few], each.measured[few], ".", ms=2.5, color="#b9bec4", label="measured")
+    above.plot(each.time_s[few], each.measured[few], ".", ms=2.5, color=POINTS, label="measured")
     above.plot(each.time_s, each.fitted, color=color, lw=1.3, label="fitted")
     below.axhline(0.0, color="#999999", lw=0.8)
     below.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=color)
     most = max(4.5 * each.rms, 1e-4)
     below.set_ylim(-most, most)
     words = each.column.rpartition("_")[0].replace("_", " ")
-    above.set_title(f"{words}, {each.file}", fontsize=10)
+    above.set_title(f"{words}, {each.file}" if named else words, fontsize=10)
     above.set_ylabel("°C" if each.unit == "K" else "V", fontsize=9)
     below.set_ylabel(f"residual ({each.unit})", fontsize=9)
     below.set_xlabel("time (s)", fontsize=9)
-    above.legend(frameon=False, fontsize="small", markerscale=3)
     above.sharex(below)
     above.tick_params(labelbottom=False, labelsize=8)
     below.tick_params(labelsize=8)
@@ -82,11 +95,7 @@ def _pair(above: Axes, below: Axes, each: ChannelFit) -> None:
 
 def _label(each: ChannelFit) -> str:
     words = each.column.rpartition("_")[0].replace("_", " ")
-    return f"{words}\nrms {_small(each.rms, each.unit)}\nlargest {_small(each.largest, each.unit)}"
-
-
-def _small(value: float, unit: str) -> str:
-    return f"{1e3 * value:.3g} m{unit}".replace("-", "−")
+    return f"{words}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
 
 
 def draw_measured(beside: Overlay, ax: Axes) -> None:

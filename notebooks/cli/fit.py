@@ -150,7 +150,7 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
     if request.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
 
-        write_figure(fit_figure(fitted), request.figure, request.look)
+        write_figure(fit_figure(fitted, 1 if request.look.narrow else 2), request.figure, request.look)
     show_fit(fitted, rig)
     for path in (request.output, request.figure):
         if path is not None:

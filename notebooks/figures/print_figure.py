@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from ..files.outputs import complete_or_absent
 from ..text.messages import note
 from .dark_colours import turn_dark
-from .figure_data import letter, panels_of, write_figure_data
+from .figure_data import COLORBAR, letter, panels_of, write_figure_data
 from .figure_look import NARROW_MM, SCREEN, Look
 
 if TYPE_CHECKING:
@@ -31,8 +31,8 @@ HEIGHT_POWER = 0.6
 """Panels lose less height than width, since their labels do not shrink as much as they do."""
 THINNER = 0.75
 IN_BRACKETS = re.compile(r"\s*\([^()]*\)$")
-WIDEST_LABEL = 0.85
-"""Share of the figure's width that a label of the abscissa may take before it is broken."""
+WIDEST_LABEL, WIDEST_BAR_LABEL = 0.85, 0.7
+"""Share of the figure's width that a label of the abscissa, or those of all colour bars, may take in one line."""
 LONGEST_KEY = 30
 """Letters of a line in the key below the panels."""
 EMBEDDED: Mapping[str, Any] = {
@@ -161,14 +161,16 @@ def _break_labels(figure: Figure) -> None:
 
     held: Any = figure
     renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    bars = [ax.xaxis.label for ax in figure.axes if ax.get_label() == COLORBAR and ax.get_xlabel()]
     below = [held._supxlabel] if held._supxlabel is not None else []
     for text in [*below, *(ax.xaxis.label for ax in figure.axes)]:
-        most = WIDEST_LABEL * float(figure.bbox.width)
+        share = WIDEST_BAR_LABEL / len(bars) if text in bars else WIDEST_LABEL
+        most = share * float(figure.bbox.width)
         lines: list[str] = []
         for line in text.get_text().split("\n"):
             text.set_text(line)
             wide = float(text.get_window_extent(renderer).width)
-            lines += textwrap.wrap(line, max(10, int(len(line) * most / wide))) if wide > most else [line]
+            lines += textwrap.wrap(line, max(8, int(len(line) * most / wide))) if wide > most else [line]
         text.set_text("\n".join(lines))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..files.outputs import FIGURE_SUFFIXES
 from ..text.messages import note
 from .figure_look import SCREEN, Look
-from .print_figure import write_figure
+from .print_figure import MM_PER_INCH, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
+
+
+MAP_HEIGHT = 0.85
+"""Height of a narrow map to its width."""
 
 
 def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
@@ -48,7 +52,7 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
         return
     folder, kind = place, look.kind
     folder.mkdir(exist_ok=True)
-    drawn = set_axes(ranking, words=not look.narrow)
+    drawn = set_axes(ranking, words=not look.narrow, width_mm=look.width_mm if look.narrow else None)
     for name, axes in drawn.items():
         figure: Any = axes.figure
         write_figure(figure, folder / f"{name}.{kind}", look)
@@ -89,12 +93,14 @@ def distinct(names: Sequence[str]) -> list[str]:
     return found
 
 
-def set_axes(ranking: Ranking, words: bool = True) -> dict[str, Axes]:
+def set_axes(ranking: Ranking, words: bool = True, width_mm: float | None = None) -> dict[str, Axes]:
     """The pictures of a ranking by the names of their files, each on a figure of its own.
 
     By rules there is only the ranking: the others show the model's numbers. Without words the ranking has no columns of
-    text.
+    text. The map, whose names find their places in its own size, is drawn in a width where one is given.
     """
+    from matplotlib.figure import Figure
+
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
 
@@ -103,7 +109,10 @@ def set_axes(ranking: Ranking, words: bool = True) -> dict[str, Axes]:
         return made
     made |= {"distance": plot_distance(ranking), "confusion": plot_confusion(ranking)}
     if len(ranking.icons) > 1:
-        made["map"] = plot_map(map_of(ranking))
+        size = None if width_mm is None else (width_mm / MM_PER_INCH, MAP_HEIGHT * width_mm / MM_PER_INCH)
+        made["map"] = plot_map(
+            map_of(ranking), None if size is None else Figure(figsize=size, layout="constrained").add_subplot()
+        )
         if ranking.people > 1 and ranking.spread is not None:
             made["places"] = plot_places(ranking)
     return made

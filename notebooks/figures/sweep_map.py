@@ -37,6 +37,7 @@ def sweep_map(
     reached; combinations that could not be played are grey.
     """
     from matplotlib.figure import Figure
+    from matplotlib.ticker import MaxNLocator
 
     names = [str(name) for name in frame["icon"].unique()][:MOST_ROWS]
     figure = Figure(figsize=(1.1 + 2.6 * len(quantities), 1.2 + 2.1 * len(names)), layout="constrained")
@@ -48,7 +49,10 @@ def sweep_map(
         shades = blue_to_orange() if colours == BLUE_ORANGE else colours
         for row, name in enumerate(names):
             image = _map(axes[row, column], frame[frame["icon"] == name], (key, second, quantity), shades, (low, high))
-        figure.colorbar(image, ax=list(axes[:, column]), location="top", label=label, shrink=0.9)
+        bar = figure.colorbar(
+            image, ax=list(axes[:, column]), location="top", label=label, shrink=0.9, ticks=MaxNLocator(2)
+        )
+        bar.ax.tick_params(labelsize=7)
     for row, name in enumerate(names):
         axes[row, 0].set_ylabel(name, fontsize=9)
     figure.supxlabel(key_label(key), fontsize=10)

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 
 import pandas as pd
 import pytest
 from matplotlib.collections import PathCollection
 
-from thermicon.circuit import Rig, simulate
+from thermicon.circuit import Rig, fit, simulate
+from thermicon.circuit.fitting.fit_figure import fit_figure
+from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure
 from thermicon.notebooks.figures import sweep_figure as sweepfigure
+from thermicon.notebooks.figures.figure_data import COLORBAR
 from thermicon.notebooks.figures.figure_look import Look
 from thermicon.notebooks.figures.measure_figure import measure_figure
 from thermicon.notebooks.figures.overview import COOL, WARM
 from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.set_figures import write_figures
+from thermicon.notebooks.figures.sweep_map import sweep_map
 from thermicon.notebooks.figures.trace_overview import end_when_settled
 from thermicon.perception import Percept, perceive, rank
 
@@ -125,3 +130,27 @@ def test_a_sweep_marks_what_was_not_reached_and_shows_the_range_of_shares() -> N
     points = [held.get_offsets().tolist() for held in ax.collections if isinstance(held, PathCollection)]
     assert points == [[[0.5, 81.0]]]
     assert figure.get_supxlabel() == "driver current limit (A)"
+
+
+def test_labels_of_colour_bars_do_not_cover_one_another_in_a_column() -> None:
+    values = [(a, b) for a in (1.0, 9.0) for b in (0.5, 1.5)]
+    frame = pd.DataFrame(
+        [{"icon": "dip", "contact.area_cm2": a, "driver.current_limit_A": b, "reached": True, "largest_miss_K": 0.0,
+          "energy_J": a, "cold_receptor_peak_change_K": -b, "warm_receptor_peak_change_K": -b} for a, b in values]
+    )  # fmt: skip
+    figure = sweep_map(frame, "contact.area_cm2", "driver.current_limit_A")
+    restyle(figure, Look("paper", 85.0))
+    figure.draw_without_rendering()
+    boxes = [ax.xaxis.label.get_window_extent() for ax in figure.axes if ax.get_label() == COLORBAR]
+    assert len(boxes) == 4
+    assert all(left.x1 < right.x0 for left, right in itertools.pairwise(boxes))
+
+
+def test_a_fit_in_a_column_has_its_panels_below_one_another_and_one_key() -> None:
+    rig = Rig.load("thenar").with_(**{"driver.update_Hz": 20})
+    log = synthetic_log(rig, seed=1, rate_Hz=20.0)
+    figure = fit_figure(fit(log, rig, free=["contact.resistance_m2K_per_W"]), across=1)
+    assert [ax.get_title() for ax in figure.axes[::2]] == ["display", "voltage"]
+    assert figure.get_suptitle() == "thenar fitted to synthetic.csv"
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["measured", "fitted"]
+    assert len({round(ax.get_position().x0, 2) for ax in figure.axes}) == 1
