@@ -39,7 +39,7 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes.set_xlabel(f"number of icons, the best of {found.pool} by {found.objective}\n(above the points: total time)")
     axes.set_ylabel("correct (%)")
     axes.set_title("How many icons are distinguishable", loc="left")
-    axes.legend(frameon=False, loc="best")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
     return axes
 
 
@@ -47,6 +47,6 @@ def _axes() -> Axes:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    figure = Figure(figsize=(8.2, 4.2), layout="constrained")
     FigureCanvasAgg(figure)
     return figure.add_subplot()
