@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 LABELS = {
     "correct": "correct (%)",
-    "correct_95": "correct for 95 % of people (%)",
+    "correct_95": "correct (%),\n95 % of people reach",
     "detected": "detected (%)",
     "onset_s": "onset (s)",
     "d_prime": "d′ of the nearest icon",
