@@ -19,6 +19,7 @@ import pytest
 from thermicon.circuit import Device, Rig, device_names, prepare, rig_names
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import Icon, load_library, parse
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "refusals.md"
@@ -67,7 +68,7 @@ def case_of(icon: Icon, rig: Rig, device: Device, column: str, cue: str, forms: 
     plain = next(name for name in format_names() if device.driven_by in load_format(name).takes)
     try:
         ready = prepare(icon, rig, device, load_format(plain))
-    except DeviceError as problem:
+    except (DeviceError, RigError) as problem:
         return Case(rig.name, device.name, column, cue, "cannot play", str(problem))
     if ready.refusals:
         first = ready.refusals[0]
