@@ -165,10 +165,8 @@ def search(
     ------
     ChoiceError
         For a file without families, for fewer than two icons, or where no set can be played.
-    GoalError
-        For a goal for a share of people, without draws to judge it by.
     ValueError
-        For an unknown norm.
+        For an unknown norm, and for a goal for a share of people without draws to judge it by.
 
     Examples
     --------
