@@ -81,7 +81,7 @@ Text = Annotated[str, AfterValidator(one_line)]
 
 LIMITS: dict[str, tuple[float, float]] = {
     "output range": (-1000.0, 1000.0),  # V or A: far beyond what moves heat through a module on skin
-    "resolution": (1, 32),  # converters end at 32 bits (delta-sigma)
+    "resolution": (2, 32),  # symmetric codes need two bits; converters end at 32 (delta-sigma)
     "update rate": (1e-3, 1e12),  # the fastest arbitrary waveform generators make some 2.6e11 samples a second
     "buffer length": (1, 1e12),
     "carrier frequency": (1e-2, 1e7),  # switching converters end at some MHz

@@ -84,7 +84,7 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
         (('"data sheet"', '" "'), r"record\.1 \(resolution\): the record has no source: add source"),
         (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a finite number without quotes or unit"),
         (("value = 12", "bits = 12"), r"record\.1\.bits: unknown key; known: "),
-        (("value = 12", "value = 0"), r"record\.1 \(resolution\): value = 0 bit: must be 1 to 32 bit"),
+        (("value = 12", "value = 1"), r"record\.1 \(resolution\): value = 1 bit: must be 2 to 32 bit"),
         (('unit = "Hz"', 'unit = "kHz"'), r"record\.2 \(update rate\): unit = 'kHz': must be Hz"),
         (('"update rate"', '"updat rate"'), r"record\.2 \(updat rate\): no such quantity; did you mean update rate"),
         (('"update rate"', '"slew rate"'), r"a device driven by amperes needs a record of its update rate, in Hz"),

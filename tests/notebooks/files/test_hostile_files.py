@@ -120,7 +120,7 @@ def test_a_setting_that_cannot_be(cli: Cli, setting: str, words: str) -> None:
 
 
 BOUNDS = [
-    ({"bits": 2**31}, r"value = 2\.14748e\+09 bit: must be 1 to 32 bit"),
+    ({"bits": 2**31}, r"value = 2\.14748e\+09 bit: must be 2 to 32 bit"),
     ({"bits": 12.5}, "must be a whole number of bits"),
     ({"low": 5e-324}, r"low = 4\.94066e−324 Hz: must be 0\.001 to 1e\+12 Hz"),
     ({"high": 1e308}, r"high = 1e\+308 Hz: must be"),
