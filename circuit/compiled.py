@@ -83,7 +83,7 @@ class _KernelCache(FunctionCache):
 
 @cache
 def _ready(target_context: Any) -> None:
-    """Load numba's own tables once per process; numba loads them again for every function."""
+    """Load numba's own tables, which numba by itself loads again for every function, once per process."""
     _no_search_for_blas()
     target_context.refresh()
 

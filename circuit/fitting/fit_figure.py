@@ -39,7 +39,7 @@ def plot_residuals(fit: RigFit, ax: Axes | None = None, column: str | None = Non
 
 
 def fit_figure(fit: RigFit, across: int = 2) -> Figure:
-    """Return the figure of a fit: for every measured column, measured and fitted above, residuals below.
+    """Return a figure with two panels per measured column: measured and fitted values, and below them residuals.
 
     `across` columns stand beside one another at most.
     """

@@ -1,7 +1,7 @@
 """The frontier of a pool: how well the best few icons of it are distinguished, by how many they are.
 
-For every number of icons the best choice is looked for as in `choose`, and judged with people who know it alone. What
-95 % of people reach with it is, as in a goal, about people and the uncertainty of the model together.
+For each number of icons the best choice is found as in `choose`, and judged by people who know only these icons. What
+95 % of people reach depends, as in a goal, on people and on the uncertainty of the model.
 """
 
 from __future__ import annotations
@@ -215,9 +215,9 @@ def frontier(
         if progress is not None:
             progress(done, steps)
 
-    all_, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
-    judge = PointJudge(all_, crowd, pool, [icon.name for icon in able], amber, chosen, model, draws, seed, wanted)
-    namings = SubsetIdentification.of(all_.d_prime, crowd.lapse, pool.durations_s, seed)
+    pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
+    judge = PointJudge(pooled, crowd, pool, [icon.name for icon in able], amber, chosen, model, draws, seed, wanted)
+    namings = SubsetIdentification.of(pooled.d_prime, crowd.lapse, pool.durations_s, seed)
     totals = [(pool.durations_s, time), (pool.energies_J, energy)]
     kept = [(costs, limit) for costs, limit in totals if limit is not None]
     limits = Limits.none(len(able))
@@ -225,7 +225,7 @@ def frontier(
         limits = Limits(np.stack([costs for costs, _ in kept]), tuple(limit for _, limit in kept))
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
-        picked = pick(all_.middle, namings, count, objective, (), limits, seed)
+        picked = pick(pooled.middle, namings, count, objective, (), limits, seed)
         if picked is not None:
             points.append(judge.point(picked))
         step()

@@ -78,7 +78,7 @@ class FrontierPoint:
 class PointJudge:
     """Scores of a choice by people who know it alone."""
 
-    all_: PooledResult
+    pooled: PooledResult
     crowd: People
     pool: UsableIcons
     names: Sequence[str]
@@ -91,20 +91,20 @@ class PointJudge:
 
     def point(self, picked: SubsetChoice) -> FrontierPoint:
         """The choice with its scores, and the goal judged for it."""
-        places, all_, pool = list(picked.chosen), self.all_, self.pool
-        own = all_.d_prime[:, places][:, :, places]
+        places, pooled, pool = list(picked.chosen), self.pooled, self.pool
+        own = pooled.d_prime[:, places][:, :, places]
         named = confuse(own, lapse=self.crowd.lapse, seed=self.seed).probability
         each, middle = proportion_correct(named), np.median(own, axis=0)
         first, second = np.triu_indices(len(places), 1)
         nearest = int(middle[first, second].argmin())
         names = tuple(self.names[k] for k in places)
         correct, bits = float(each.mean()), float(information_bits(named).mean())
-        detected, onset_s = all_.detected[places], all_.detection.onset_s[places]
+        detected, onset_s = pooled.detected[places], pooled.detection.onset_s[places]
         persons: dict[str, Array] = {}
         if self.draws:
             predicted = Nominal(correct, bits, detected, middle, onset_s)
             persons = new_laboratory(
-                all_.thin.of(places), self.crowd, predicted, self.norm, model=self.model, draws=self.draws,
+                pooled.thin.of(places), self.crowd, predicted, self.norm, model=self.model, draws=self.draws,
                 seed=self.seed,
             ).persons  # fmt: skip
         amber = tuple(name for name in names if name in self.amber)
