@@ -8,6 +8,7 @@ the rig's module is judged both ways: the display exactly at its set-points, and
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -40,6 +41,14 @@ AT_ONCE, LAGGED, HELD = "followed at once", "followed with its lag", "every set-
 
 RIPPLES_BELOW_HZ = 100.0
 """A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
+
+SETTLING_S = 10.0
+"""How long a module is followed after the last set-point, to which it returns at its own rate."""
+
+RATE = "rate of skin temperature"
+
+LONGEST_BETWEEN_S = 15.0
+"""Pause before the second play of a module at most: by then its display is at the baseline, and only skin is not."""
 
 SETTLED_LAGS = 12.0
 """After this many lags a display is within 1e-5 of its last step."""
@@ -119,7 +128,8 @@ def _controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> 
     verdicts = gate_shown(shows, rig, stuck_C=stuck, pause_s=pause_s, rates=False, module=True)
     judged, under = [], Under.of(rig)
     for delivery, verdict in zip(deliveries, verdicts, strict=True):
-        checks, faulty, unpowered_C = _followed(delivery)
+        assert verdict.repeated is not None
+        checks, faulty, unpowered_C = _followed(delivery, verdict.repeated.pause_s)
         judged.append(
             replace(
                 verdict,
@@ -147,9 +157,11 @@ def _rest_s(under: Under, delivery: DeliveredDrive, unpowered_C: tuple[float, fl
     return max(known) if len(known) == len(times) else None
 
 
-def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty, tuple[float, float]]:
+def _followed(delivery: DeliveredDrive, between_s: float) -> tuple[tuple[Check, ...], Faulty, tuple[float, float]]:
     """Every rule for the rig's module that follows the set-points, in each corner; its single faults as given; and
     between which temperatures in °C the display stands without power.
+
+    Rates also in a second play `between_s` after the first; temperatures of repeated plays are bounded elsewhere.
     """
     samples, rig = samples_of(delivery), delivery.rig
     corners = tuple(replace(corner, gain_relative=0.0) for corner in corners_of(rig))  # the loop corrects the gain
@@ -159,18 +171,30 @@ def _followed(delivery: DeliveredDrive) -> tuple[tuple[Check, ...], Faulty, tupl
         check_sink(rig, nodes)
     values, _ = ensemble.hold(0.0, off, np.array([0.0, 1.0]))
     unpowered = values[WATCHED.index("display_C"), :, -1]
-    drives: dict[int, Drive] = {}
+    drives: dict[int, tuple[Drive, Drive, Drive]] = {}
+    settled = _then(samples, SETTLING_S)
+    twice = _then(_then(samples, min(between_s, LONGEST_BETWEEN_S), samples), SETTLING_S)
     for lane, corner in enumerate(corners):
         with suppress(RigError):  # a corner whose module cannot hold the baseline shows less than is asked of it
             drive = follow_samples(corner.rig, samples)
             check_sink(rig, state_under_current(network_of(corner.rig), float(drive.current_A[0])))
-            drives[lane] = drive
-    drive = drives[0]
-    lanes = LaneDrives(drive.time_s, np.array([each.current_A for each in drives.values()]))
-    checks = checks_of_lanes(ensemble.only(list(drives)), lanes, rig.limits)
+            drives[lane] = drive, follow_samples(corner.rig, settled), follow_samples(corner.rig, twice)
+    drive, lanes = drives[0][0], ensemble.only(list(drives))
+    alone, arrived, again = (
+        checks_of_lanes(lanes, LaneDrives(each[0].time_s, np.array([one.current_A for one in each])), rig.limits)
+        for each in zip(*drives.values(), strict=True)
+    )
+    again = tuple(new if new.quantity == RATE else old for old, new in zip(alone, again, strict=True))
+    checks = worst_of([alone, arrived, again])
     nominal, rest_A = ensemble.only([0]), float(drive.current_A[0])
     faulty = Faulty(nominal, drive, rest_A, nominal.at_rest(rest_A), rig.limits)
     return checks, faulty, (float(unpowered.min()), float(unpowered.max()))
+
+
+def _then(samples: Samples, hold_s: float, after: Samples | None = None) -> Samples:
+    """Samples whose last one is held for `hold_s` more, and what comes after."""
+    held = np.full(math.ceil(hold_s * samples.rate_Hz), samples.codes[-1])
+    return replace(samples, codes=np.concatenate([samples.codes, held, *([] if after is None else [after.codes])]))
 
 
 def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], rest_s: float | None) -> Demands:

@@ -176,16 +176,22 @@ def tally_once(
     played = Tally(limits, under.corners, f", {course.way}")
     played.add(course.rows_s, values, rates=rates)
     tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
-    add_endings(under, course, ended, tallies)
+    add_endings(under, course, ended, tallies, rates=rates)
     return [played, *tallies], ended
 
 
 def add_endings(
-    under: Under, course: DisplayCourse, ended: Sequence[Array], tallies: Sequence[Tally], sums: bool = True
+    under: Under,
+    course: DisplayCourse,
+    ended: Sequence[Array],
+    tallies: Sequence[Tally],
+    *,
+    sums: bool = True,
+    rates: bool = True,
 ) -> None:
-    """Add what follows a play to the tally of each ending."""
+    """Add what follows a play to the tally of each ending; without `rates` where a jump is an idealisation."""
     last, end = float(course.display_C[-1]), course.end_s
-    tallies[0].add(end + ENDING_ROWS_S, under.hold(last, ended, ENDING_ROWS_S), sums=sums)
+    tallies[0].add(end + ENDING_ROWS_S, under.hold(last, ended, ENDING_ROWS_S), sums=sums, rates=rates)
     tallies[1].add(end + ENDING_ROWS_S[1:], under.let_go(ended, ENDING_ROWS_S[1:]), rates=False, sums=sums, drift=True)
     tallies[1].add(end + LATE_S, under.let_go(ended, LATE_S), rates=False, sums=sums, drift=True)
 

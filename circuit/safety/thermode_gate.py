@@ -132,9 +132,10 @@ def _again(
     for ways in drives:
         judged = []
         for course in ways:
-            judged.append(_cycle_checks(under, course, limits, pause_s, under.cycle(course, pause_s), skin, "", rates))
+            cycle = under.cycle(course, pause_s)
+            judged.append(_cycle_checks(under, course, limits, pause_s, cycle, skin, "", (rates, rates)))
             judged += [
-                _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", False)
+                _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", (False, rates))
                 for word, states in bounds.items()
             ]
         all_checks.append(worst_of(checks for group in judged for checks in group))
@@ -149,17 +150,18 @@ def _cycle_checks(
     states: Sequence[Array],
     begun_C: Array,
     what: str,
-    rates: bool,
+    rates: tuple[bool, bool],
 ) -> list[tuple[Check, ...]]:
+    """Every rule for one play among many and for its endings; `rates`: whether they are judged in each of the two."""
     again = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     values, ended = under.play(course, states)
     tally = Tally(limits, under.corners, again, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
-    tally.add(course.rows_s, values, rates=rates)
+    tally.add(course.rows_s, values, rates=rates[0])
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
     endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in ENDINGS]
-    add_endings(under, course, ended, endings, sums=False)
+    add_endings(under, course, ended, endings, sums=False, rates=rates[1])
     return [tally.checks(), *(ending.checks() for ending in endings)]
 
 
