@@ -51,10 +51,15 @@ def kernel(**options: Any) -> Callable[[Kernel], Any]:
 
     def decorate(function: Kernel) -> Any:
         dispatcher = numba.njit(**options)(function)
-        dispatcher._cache = _KernelCache(function, repr(sorted(options.items(), key=str)))
+        dispatcher._cache = _KernelCache(function, _in_order(options))
         return dispatcher
 
     return decorate
+
+
+def _in_order(options: dict[str, Any]) -> str:
+    """Options as text that is the same in every process: the order of a set of words is not."""
+    return repr([(name, sorted(held) if isinstance(held, set) else held) for name, held in sorted(options.items())])
 
 
 class _KernelCache(FunctionCache):

@@ -34,6 +34,7 @@ from .batch_store import BatchStore
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
 
 RATE_HZ = 100.0
@@ -147,6 +148,11 @@ def run(job: Job, number: int) -> BatchResult:
         tracking=job.tracking,
         probes=PROBES,
     )
+    return judge_people(job, crowd, batch, model, start)
+
+
+def judge_people(job: Job, crowd: People, batch: Batch, model: ObserverModel, start: int) -> BatchResult:
+    """Judge the people of a batch, of whom `start` come before, by what their receptors went through."""
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
     observer = model.nominal
     felt = respond(played, crowd, observer, NORMS, times=True)
@@ -163,7 +169,7 @@ def run(job: Job, number: int) -> BatchResult:
     ]
     named = confusion.probability
     first, second = np.triu_indices(len(job.icons), 1)
-    first_people = played.thinned(max(0, min(stop, PEOPLE) - start), EVERY)
+    first_people = played.thinned(max(0, min(start + len(crowd), PEOPLE) - start), EVERY)
     return BatchResult(
         detected=felt.detected.probability,
         cold_share=felt.detected.cold_share,

@@ -32,6 +32,7 @@ from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
 from .assumptions import assumptions_of
 from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
+from .first_run import begin
 from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
 from .ranking import Ranking
@@ -159,6 +160,8 @@ def rank(
         raise GoalError(NEEDS_DRAWS)
     execution = Execution(workers, cluster, keep)
     nominal, crowd = model.nominal, model.people(people, seed)
+    if workers is None or workers > 1:
+        begin()
     durations = [duration_s(icon, rig) for icon in members]
     end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))

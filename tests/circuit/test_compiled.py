@@ -218,3 +218,20 @@ def test_a_private_file_is_whole_or_absent(tmp_path: Path) -> None:
     assert read_private(tmp_path / "b") is None
     assert read_private(tmp_path) is None
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
+
+
+def test_options_have_the_same_text_in_every_process() -> None:
+    script = (
+        "from thermicon.circuit.compiled import _in_order; print(_in_order({'fastmath': {'nsz', 'arcp', 'contract'}}))"
+    )
+    texts = {
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "PYTHONHASHSEED": str(seed)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in (1, 2, 3)
+    }
+    assert texts == {"[('fastmath', ['arcp', 'contract', 'nsz'])]\n"}
