@@ -50,16 +50,26 @@ def installed_folders() -> list[str]:
     import json
     from importlib.metadata import distributions
     from urllib.parse import urlparse
-    from urllib.request import url2pathname
 
     folders = []
     for distribution in distributions(name="thermicon"):
         origin = json.loads(distribution.read_text("direct_url.json") or "{}")
         if origin.get("dir_info", {}).get("editable"):
-            folders.append(os.path.join(url2pathname(urlparse(origin["url"]).path), "notebooks"))  # noqa: PTH118
+            folders.append(os.path.join(_path_in(urlparse(origin["url"]).path), "notebooks"))  # noqa: PTH118
         elif os.path.isdir(folder := str(distribution.locate_file("thermicon/notebooks"))):  # noqa: PTH112
             folders.append(folder)
     return folders
+
+
+def _path_in(url_path: str) -> str:
+    """What `urllib.request.url2pathname` says; elsewhere than on Windows without its import, a tenth of a start."""
+    if sys.platform == "win32":
+        from urllib.request import url2pathname
+
+        return url2pathname(url_path)
+    from urllib.parse import unquote
+
+    return unquote(url_path)
 
 
 def warn_if_hidden() -> None:

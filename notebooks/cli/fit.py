@@ -21,7 +21,6 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..figures.print_figure import write_figure
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_rig, note, usage
 from ..text.options import Changes, RigName
@@ -149,6 +148,8 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
             draft.write_text(fitted.rig_text(request.name or request.output.stem[:LONGEST_NAME]), encoding="utf-8")
     if request.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
+
+        from ..figures.print_figure import write_figure
 
         write_figure(fit_figure(fitted, 1 if request.look.narrow else 2), request.figure, request.look)
     show_fit(fitted, rig)

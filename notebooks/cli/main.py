@@ -39,6 +39,7 @@ from ..text.options import (
     Keep,
     NormName,
     ObserverFile,
+    Recompute,
     ReportPage,
     RigName,
     Tracking,
@@ -267,6 +268,7 @@ def rank_command(
     workers: Workers = None,
     cluster: Cluster = None,
     keep: Keep = None,
+    recompute: Recompute = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -320,6 +322,7 @@ def rank_command(
         workers=workers,
         cluster=cluster,
         keep=keep,
+        recompute=recompute,
     )
     rank_files(files, load_rig(rig, changes or []), request, json, figure, report, look)
 

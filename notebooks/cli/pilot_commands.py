@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
-from ..figures.print_figure import write_figure
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
 from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import (
@@ -160,6 +159,8 @@ def _write(
         drawn_figure = (
             observed_figure(found, stacked=look.narrow) if isinstance(found, Observed) else measured_figure(found)
         )
+        from ..figures.print_figure import write_figure
+
         write_figure(drawn_figure, figure, look)
         note(f"wrote {figure}")
     if keep is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,6 +52,7 @@ class Request:
     ``rig`` is the rig as it was asked for, a name or a file; ``observer`` a file in place of the shipped observer.
     ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
     number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
+    ``recompute`` computes also what was computed before.
     """
 
     people: int = 200
@@ -72,6 +73,7 @@ class Request:
     workers: int | None = None
     cluster: str | None = None
     keep: Path | None = None
+    recompute: bool = False
 
 
 def rank_files(
@@ -89,6 +91,8 @@ def rank_files(
     from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.goal import Goal
 
+    from ..files.kept_rankings import recall, remember
+
     check_norm_option(request.norm)
     if json_out is not None:
         check_output(json_out, (), "JSON")
@@ -105,29 +109,45 @@ def rank_files(
     wanted = None if request.goal is None else Goal.parse(request.goal)
     model = load_observer(request.observer, rig)
     draws = check_draws(model, request.parameters, "--parameters", DRAWS)
-    what = f"{icons}\0{rig.document}\0{request}"
-    with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, what) as keep:
-        ranking = rank(
-            icons,
-            rig,
-            people=request.people,
-            seed=request.seed,
-            trials=request.trials,
-            tracking=request.tracking,
-            norm=request.norm,
-            by=request.by,
-            parameters=draws,
-            choosing=request.choosing,
-            goal=wanted,
-            edits=request.edits if request.by == "model" else "none",
-            task=Task(request.context, request.gap, request.bias),
-            observer=model,
-            warnings=tuple(warnings),
-            workers=request.workers,
-            cluster=request.cluster,
-            keep=keep,
-            progress=progress,
-        )
+    asked = "\0".join(
+        [
+            str(icons),
+            rig.document,
+            repr(rig.changes),
+            repr(model),
+            repr(model.age_years),
+            model.digest,
+            repr(draws),
+            *warnings,
+        ]
+    )
+    asked += f"\0{replace(request, workers=None, cluster=None, keep=None, recompute=False)}"
+    anew = request.recompute or request.keep is not None or request.cluster is not None
+    ranking = None if anew else recall(asked)
+    if ranking is None:
+        with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, asked) as keep:
+            ranking = rank(
+                icons,
+                rig,
+                people=request.people,
+                seed=request.seed,
+                trials=request.trials,
+                tracking=request.tracking,
+                norm=request.norm,
+                by=request.by,
+                parameters=draws,
+                choosing=request.choosing,
+                goal=wanted,
+                edits=request.edits if request.by == "model" else "none",
+                task=Task(request.context, request.gap, request.bias),
+                observer=model,
+                warnings=tuple(warnings),
+                workers=request.workers,
+                cluster=request.cluster,
+                keep=keep,
+                progress=progress,
+            )
+        remember(asked, ranking)
     if json_out is not None and json_out != STDOUT:
         with complete_or_absent(json_out) as draft:
             draft.write_text(ranking.to_json() + "\n", encoding="utf-8")

@@ -21,7 +21,6 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..figures.print_figure import write_figure
 from ..text.messages import check_changes, load_rig, note, usage
 from ..text.options import Changes, OneFile, RigName
 
@@ -163,6 +162,7 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
         with complete_or_absent(request.order_out) as draft:
             draft.write_text(order_text(plan), encoding="utf-8")
     if request.figure is not None:
+        from ..figures.print_figure import write_figure
         from ..figures.session_figure import session_figure
 
         write_figure(session_figure(session), request.figure, request.look)

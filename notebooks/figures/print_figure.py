@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..files.outputs import complete_or_absent
 from ..text.messages import note
-from .dark_colours import turn_dark
 from .figure_data import COLORBAR, letter, panels_of, write_figure_data
 from .figure_look import NARROW_MM, SCREEN, Look
 
@@ -87,6 +86,8 @@ def restyle(figure: Figure, look: Look) -> None:
     if width_mm is not None:
         _resize(figure, width_mm, natural_mm)
     if look.style == "dark":
+        from .dark_colours import turn_dark
+
         turn_dark(figure)
 
 

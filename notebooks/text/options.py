@@ -70,6 +70,15 @@ Keep = Annotated[
         help="Folder for finished parts, so that an interrupted run continues.  [default: the user's cache]",
     ),
 ]
+Recompute = Annotated[
+    bool,
+    typer.Option(
+        "--recompute",
+        envvar="THERMICON_RECOMPUTE",
+        show_envvar=False,
+        help="Compute again what was computed before and is kept in the user's cache.",
+    ),
+]
 Context = Annotated[
     float,
     typer.Option(

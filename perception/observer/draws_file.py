@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import hashlib
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from io import StringIO
 from pathlib import Path
@@ -199,19 +200,31 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")
     names = tuple(rows[0])
     _check_names(path.name, header, names)
-    draws = np.empty((len(rows) - 1, len(names)))
-    for number, row in enumerate(rows[1:]):
-        where = f"{path.name}, line {len(head) + 2 + number}"
-        if len(row) != len(names):
-            raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
-        for place, text in enumerate(row):
-            draws[number, place] = _number(text, f"{where}, {names[place]}")
-            if names[place] in MEMORY_NAMES and (why := objection_to(names[place], float(draws[number, place]))):
-                raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
+    draws = _numbers(path.name, names, rows[1:], len(head) + 2)
     remembered = [name in MEMORY_NAMES for name in names]
     constants = tuple(name for name in names if name not in MEMORY_NAMES)
     memory = tuple(name for name in names if name in MEMORY_NAMES)
     return header, (constants, draws[:, np.logical_not(remembered)]), (memory, draws[:, remembered])
+
+
+def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int) -> Array:
+    """The rows as numbers (rows, names), all at once; cell by cell only where one of them is wrong."""
+    memory = [place for place, name in enumerate(names) if name in MEMORY_NAMES]
+    with suppress(ValueError):
+        draws = np.array(rows, dtype=np.float64)
+        objections = (objection_to(names[place], float(value)) for place in memory for value in draws[:, place])
+        if draws.shape == (len(rows), len(names)) and np.isfinite(draws).all() and not any(objections):
+            return draws
+    draws = np.empty((len(rows), len(names)))
+    for number, row in enumerate(rows):
+        where = f"{file}, line {first_line + number}"
+        if len(row) != len(names):
+            raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
+        for place, text in enumerate(row):
+            draws[number, place] = _number(text, f"{where}, {names[place]}")
+            if place in memory and (why := objection_to(names[place], float(draws[number, place]))):
+                raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
+    return draws
 
 
 def _header(name: str, head: Sequence[str]) -> DrawsHeader:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 Cli = Callable[..., Any]
-HEAVY = {"numba", "pandas", "matplotlib", "scipy", "IPython", "ipywidgets", "rich", "tqdm"}
+HEAVY = {"numba", "numpy", "pandas", "matplotlib", "scipy", "IPython", "ipywidgets", "rich", "tqdm"}
 
 
 def test_one_line_a_file(cli: Cli, two: Path) -> None:
@@ -65,8 +65,10 @@ def test_a_rest_that_the_language_does_not_know(cli: Cli, tmp_path: Path) -> Non
     assert "70" in said.stderr
 
 
-@pytest.mark.parametrize("more", [(), ("--rig", "thenar")], ids=["alone", "with a rig"])
-def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...]) -> None:
+@pytest.mark.parametrize(
+    ("more", "needed"), [((), set()), (("--rig", "thenar"), {"numpy"})], ids=["alone", "with a rig"]
+)
+def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...], needed: set[str]) -> None:
     program = (
         "import sys\nfrom thermicon.notebooks.cli.main import app\n"
         "try:\n    app(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code\n"
@@ -75,4 +77,4 @@ def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...]) -> None:
     run = subprocess.run(
         [sys.executable, "-c", program, "check", str(two), *more], capture_output=True, encoding="utf-8", check=True
     )
-    assert not HEAVY & set(run.stdout.split())
+    assert HEAVY & set(run.stdout.split()) == needed
