@@ -31,6 +31,7 @@ from .peers import (
     scipy_run,
 )
 from .result import Curve, Entry, Section
+from .roofline import roofline_section
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -59,6 +60,7 @@ def circuit_sections(rig: Rig, short: bool) -> tuple[Section, ...]:
     return (
         Section("One cue", about, tuple(one)),
         Section(f"A batch of {LANES}", "The same with another area and another current in every lane.", tuple(many)),
+        roofline_section(entries[0].timing, batch.timing, nodes, round(END_S * ROWS_Hz)),
         Section("Inverse and people", f"{LANES} lanes, and six-icons on {PEOPLE} people.", tuple(_others(rig))),
     )
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 TITLE, GROWTH, DPI = "Speed", "growth", 110
 COLUMNS = ("what", "elapsed", "least to most", "runs", "processor", "times", "against")
-UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"))
+UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 CURVES = ("#2166ac", "#e08214", "#111111", "#6b6b6b")
 
 

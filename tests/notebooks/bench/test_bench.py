@@ -15,6 +15,7 @@ from thermicon.notebooks.bench.measure import Timing, command_timed, timed
 from thermicon.notebooks.bench.page import duration, growth_figure, page
 from thermicon.notebooks.bench.peers import CORNERS, END_S, scipy_run
 from thermicon.notebooks.bench.result import BenchResult, Curve, Entry, Section
+from thermicon.notebooks.bench.roofline import roofline_section
 from thermicon.notebooks.cli.main import app
 from thermicon.notebooks.pages.blocks import as_markdown
 
@@ -30,6 +31,17 @@ def test_a_timing_has_medians_and_shares() -> None:
     assert THREE.over(2).seconds == (0.05, 0.15, 0.1)
     with pytest.raises(ValueError, match="an elapsed and a processor time of each run"):
         Timing((), ())
+
+
+def test_what_the_machine_allows_is_less_than_what_is_measured() -> None:
+    call, batch = Timing((1e-3,), (1e-3,)), Timing((4e-4,), (4e-4,))
+    section = roofline_section(call, batch, nodes=51, steps=3000)
+    waits, least_call, _, passes, least_lane, _ = (entry.timing.processor_s for entry in section.entries)
+    assert least_call == pytest.approx(51 * 3000 * waits)
+    assert least_lane == pytest.approx(2 * 51 * 3000 * passes)
+    assert 1e-10 < waits < 2e-8, "four cycles of a processor"
+    assert passes < 1e-8
+    assert section.entries[2].times == pytest.approx(1e-3 / least_call)
 
 
 def test_a_function_is_warm_before_it_is_timed_and_not_run_beyond_its_budget() -> None:
@@ -62,7 +74,7 @@ def test_growth_is_the_exponent_of_the_last_two_sizes() -> None:
     assert CURVE.growth == pytest.approx(-1.0)
 
 
-@pytest.mark.parametrize(("seconds", "text"), [(2.5, "2.50 s"), (0.0456, "45.6 ms"), (1e-7, "0.10 µs")])
+@pytest.mark.parametrize(("seconds", "text"), [(2.5, "2.50 s"), (0.0456, "45.6 ms"), (1e-7, "100 ns")])
 def test_durations_have_a_unit_that_suits_them(seconds: float, text: str) -> None:
     assert duration(seconds) == text
 
