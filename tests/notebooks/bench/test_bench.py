@@ -74,7 +74,7 @@ def test_growth_is_the_exponent_of_the_last_two_sizes() -> None:
     assert CURVE.growth == pytest.approx(-1.0)
 
 
-@pytest.mark.parametrize(("seconds", "text"), [(2.5, "2.50 s"), (0.0456, "45.6 ms"), (1e-7, "100 ns")])
+@pytest.mark.parametrize(("seconds", "text"), [(2.5, "2.50 s"), (0.0456, "45.6 ms"), (2.5e-7, "250 ns")])
 def test_durations_have_a_unit_that_suits_them(seconds: float, text: str) -> None:
     assert duration(seconds) == text
 
