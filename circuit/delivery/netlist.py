@@ -11,16 +11,15 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from itertools import pairwise
 
+from ..arrays import Array
 from ..inputs import InputError
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.drive import Drive
-from ..solver.landing import refuse_landing
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
-
-EDGE_S = 1e-6
-"""Width of the flank that replaces a jump of a held current; less where rows are closer than four of these."""
+from .netlist_drive import EDGE_S, points
+from .netlist_landing import check_landing, contact_lines, lead_currents, lead_s, led_points
 
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
@@ -40,6 +39,7 @@ def netlist(
     drive: Drive,
     *,
     rest_A: float | None = None,
+    lead_A: Array | None = None,
     title: str = "drive",
     rows_Hz: float = 100.0,
     out_file: str | None = None,
@@ -54,6 +54,9 @@ def netlist(
     rest_A
         Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
         later. None: the drive's first current.
+    lead_A
+        Where a hand lands (`contact.lands_s`), the currents in A before it does and for each update until the drive
+        begins (`Design.lead_A`). The netlist's clock begins at the landing. None: `rest_A`, or the first current.
     title
         First line of the netlist.
     rows_Hz
@@ -71,7 +74,10 @@ def netlist(
     Raises
     ------
     RigError
-        For a thermode, for a hand that lands, and where there is no steady state to start from.
+        For a thermode, where there is no steady state to start from, and for a hand that lands on a rig whose passive
+        heat sink starts at a temperature of its own.
+    ValueError
+        For a number of `lead_A` that the rig's lead does not have.
 
     Examples
     --------
@@ -79,13 +85,16 @@ def netlist(
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
     """
-    refuse_landing(rig, "a netlist starts in a steady state")
+    check_landing(rig)
     net = network_of(rig)
     names, skin = _skin(rig, net)
-    end, step = float(drive.time_s[-1]), 1.0 / rows_Hz
+    end, step = lead_s(rig) + float(drive.time_s[-1]), 1.0 / rows_Hz
+    corners = points(drive, rest_A)
+    if rig.contact.lands_s is not None:
+        corners = led_points(rig, drive, lead_currents(rig, drive, rest_A, lead_A))
     lines = [
         *_header(rig, names, title),
-        *_electrical(rig, drive, rest_A),
+        *_electrical(rig, corners),
         *_module(rig),
         *_sink(rig, net, float(drive.current_A[0]) if rest_A is None else rest_A),
         *skin,
@@ -143,15 +152,21 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     if rig.probes:
         left_out = ", ".join(probe.name for probe in rig.probes)
         yield from _comment(f"Not in this file: the rig's own probes with their lags ({left_out}).")
-    yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
+    if rig.contact.lands_s is None:
+        yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
+    else:
+        yield from _comment(
+            "The operating point is a display in air under the current at 0 s, and bare skin at rest. A hand lands at "
+            f"0 s; the cue begins at {lead_s(rig)!r} s."
+        )
     yield from _comment("LTspice stores fewer points than it computes; .options plotwinsize=0 makes it keep them all.")
 
 
-def _electrical(rig: Rig, drive: Drive, rest_A: float | None) -> Iterator[str]:
+def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
     gain, module = rig.driver.transconductance_A_per_V, rig.module
     yield from _section("driver: a voltage-controlled current source")
     yield "Vcommand command 0 PWL("
-    yield from (f"+ {time!r} {current / gain!r}" for time, current in points(drive, rest_A))
+    yield from (f"+ {time!r} {current / gain!r}" for time, current in corners)
     yield "+ )"
     yield f"Gdriver 0 plus command 0 {gain!r}"
     yield from _section("the module's electrical port")
@@ -217,11 +232,13 @@ def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
     names = ["hot", "cold", *(f"s{i + 1}" for i in range(count)), "deep"]
     resistance = [1 / float(conductance) for conductance in net.conductance_W_per_K]
     contact = rig.contact.resistance_m2K_per_W / rig.contact.area_m2
-    lines = list(_section("contact"))
-    lines.append(f"Rcontact cold skin {contact!r}")
-    if resistance[0] - contact < 1e-9 * resistance[0]:
-        names[2] = "skin"  # the first lump lies in the face
+    lines, in_face = list(_section("contact")), resistance[0] - contact < 1e-9 * resistance[0]
+    names[2] = "skin" if in_face else names[2]  # the first lump may lie in the face
+    if rig.contact.lands_s is None:
+        lines.append(f"Rcontact cold skin {contact!r}")
     else:
+        lines += contact_lines(rig, contact, names[2])
+    if not in_face:
         lines.append(f"Rface skin {names[2]} {resistance[0] - contact!r}")
     lines += _section("skin" if rig.bench_load is None else rig.bench_load.site)
     ends, layer = _layer_ends_m(rig), -1
@@ -253,25 +270,6 @@ def _probes(net: Network, names: list[str]) -> Iterator[str]:
         start = int(net.probe_start[row])
         terms = [f"{float(weight)!r}*V({names[start + k]})" for k, weight in enumerate(net.probe_weight[row]) if weight]
         yield f"B{probe} {probe} 0 V={'+'.join(terms).replace('+-', '-')}"
-
-
-def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
-    """Corners of a drive's current: (time s, A), a flank of 1 µs for each jump."""
-    times, currents = drive.time_s.tolist(), drive.current_A.tolist()
-    start: list[tuple[float, float]] = [(0.0, currents[0])]
-    if rest_A is not None and rest_A != currents[0]:
-        edge = min(EDGE_S, times[1] / 4)
-        slope = 0.0 if drive.held else (currents[1] - currents[0]) / times[1]
-        start = [(0.0, float(rest_A)), (edge, currents[0] + slope * edge)]
-    if not drive.held:
-        return [*start, *zip(times[1:], currents[1:], strict=True)]
-    points, before = start, currents[0]
-    for k in range(1, len(times) - 1):
-        if currents[k] != before:
-            half = min(EDGE_S / 2, (times[k] - times[k - 1]) / 4, (times[k + 1] - times[k]) / 4)
-            points += [(times[k] - half, before), (times[k] + half, currents[k])]
-            before = currents[k]
-    return [*points, (times[-1], before)]
 
 
 def _section(what: str) -> Iterator[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..inputs import LIKE_MILLISECONDS
 from ..rig.module import ZERO_C_IN_K
 
 COLDEST_C, HOTTEST_C = -40.0, 150.0
@@ -48,10 +49,7 @@ def _time_fault(time: Array) -> str | None:
     if step <= SLOWEST_S:
         return None
     if step * 1e-3 >= 1e-4 and float(time[-1] - time[0]) > 60.0 and step <= SLOWEST_S * MILLI:
-        return (
-            f"time_s goes in steps of {step:g} over {time[-1] - time[0]:g}: these look like milliseconds; divide the "
-            f"column by 1000, so that it is in s"
-        )
+        return f"time_s goes in steps of {step:g} over {time[-1] - time[0]:g}: {LIKE_MILLISECONDS}"
     return f"time_s goes in steps of {step:g} s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
 
 

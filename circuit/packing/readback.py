@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..delivery.netlist import EDGE_S
+from ..delivery.netlist_drive import EDGE_S
 
 WAV_FULL = 32768
 

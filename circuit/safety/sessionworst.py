@@ -3,16 +3,20 @@
 As one play at the gate: rows no farther apart than 10 ms or the driver's updates, so that no rate is averaged away, in
 stretches, so that memory does not grow with the session. A session is a given sequence, so it is not judged
 for repetition; an export covers single faults of the hardware.
+
+A break, in which the hand is off and then lands again, brings skin and module back towards rest. With a given current
+every temperature and every rate is affine in the state that a play begins from, so that a block after a break lies
+between the block within one run without breaks and the block from rest: both are judged.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from .checks import Check, worst_of
+from .checks import Check, colour_of, findings_of, worst_of
 from .endings import ENDINGS, follow_endings, judge_the_end
 from .ensemble import Ensemble
 from .repeated import recovery_s, skin_C
@@ -34,27 +38,50 @@ class WorstCase:
     scenarios: int
     recovery_s: float | None
 
+    @property
+    def findings(self) -> tuple[Check, ...]:
+        """The limits that are exceeded, the hard ones first."""
+        return findings_of(self.checks)
+
+    @property
+    def verdict(self) -> str:
+        """Green, amber or red."""
+        return colour_of(self.findings)
+
 
 def worst_case_of(played: SessionDrive, rig: Rig, limits: Limits, progress: Progress | None = None) -> WorstCase:
     """Check a session against every rule in all corners; `progress` is called with the seconds played and the total.
 
     Raises RigError where the rig as given has no steady state to start from.
     """
+    return worst_case_of_blocks((played,), rig, limits, progress)
+
+
+def worst_case_of_blocks(
+    blocks: Sequence[SessionDrive], rig: Rig, limits: Limits, progress: Progress | None = None
+) -> WorstCase:
+    """Check blocks, each from rest and with what may follow it, as `worst_case_of`; doses add up over all of them.
+
+    Times run on from block to block, breaks left out; `recovery_s` is that after the last block.
+    """
     from threadpoolctl import threadpool_limits
 
+    total_s = sum(float(played.drive.time_s[-1]) for played in blocks)
     with threadpool_limits(limits=1, user_api="blas"):  # small matrices: threads would only wait for each other
-        ensemble, drive = Ensemble.of(rig), played.drive
-        start = state = ensemble.at_rest(played.rest_A)
-        end_s = float(drive.time_s[-1])
-        whole = Tally(limits, ensemble.corners)
-        for (rows, values), then in ensemble.play(drive, state):
-            whole.add(rows, values)
-            state = then
-            if progress is not None:
-                progress(round(float(rows[-1])), round(end_s))
-        endings = {ending: whole.fork(f"then {ending}") for ending in ENDINGS}
-        follow_endings(ensemble, state, float(drive.current_A[-1]), end_s, endings)
-        later = judge_the_end(ensemble, limits, end_s, skin_C(ensemble, start))
-        checks = worst_of([each.checks() for each in (whole, *endings.values(), later)])
+        ensemble, before_s = Ensemble.of(rig), 0.0
+        whole, tallies = Tally(limits, ensemble.corners), list[Tally]()
+        for played in blocks:
+            start = state = ensemble.at_rest(played.rest_A)
+            for (rows, values), then in ensemble.play(played.drive, state):
+                whole.add(before_s + rows, values)
+                state = then
+                if progress is not None:
+                    progress(round(before_s + float(rows[-1])), round(total_s))
+            before_s += float(played.drive.time_s[-1])
+            endings = {ending: whole.fork(f"then {ending}") for ending in ENDINGS}
+            follow_endings(ensemble, state, float(played.drive.current_A[-1]), before_s, endings)
+            tallies += endings.values()
+        tallies.append(judge_the_end(ensemble, limits, before_s, skin_C(ensemble, start)))
+        checks = worst_of([each.checks() for each in (whole, *tallies)])
         recovery = recovery_s(ensemble, played.rest_A, start, state)
     return WorstCase(checks, len(ensemble.corners) * len(ENDINGS), recovery)

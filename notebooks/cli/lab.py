@@ -22,8 +22,8 @@ from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from ..files.cue_document import open_document
 from ..files.outputs import check_folder, stopped_cleanly, write_together
-from ..files.start_folder import FILE, RIG, VARIABLE
-from ..text.messages import fail, interrupted, load_rig, note, usage
+from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
+from ..text.messages import fail, interrupted, load_observer, load_rig, note, usage
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
@@ -74,6 +74,15 @@ def lab_command(
     rig: Annotated[
         str | None, typer.Option("--rig", metavar="RIG", help="With --page: rig of the page, by name or path.")
     ] = None,
+    observer: Annotated[
+        Path | None,
+        typer.Option(
+            "--observer",
+            metavar="FILE",
+            readable=False,
+            help="With --page: predict with another observer, such as the lab.csv of observed --keep.",
+        ),
+    ] = None,
     files_only: Annotated[
         bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
     ] = False,
@@ -99,6 +108,8 @@ def lab_command(
     if rig is not None and not page:
         raise usage("is for --page; in a notebook, write Workbench(rig=...)", "--rig")
     file = folder if page and folder.suffix.lower() == CUE else None
+    if observer is not None and not page:
+        raise usage("is for --page; in a notebook, write Workbench(observer=...)", "--observer")
     if allow_root and (page or files_only):
         raise usage("is for JupyterLab; nothing else refuses to run as root", "--allow-root")
     if file is None and folder.suffix.lower() in FILES:
@@ -108,7 +119,7 @@ def lab_command(
         extra = "thermicon[page]" if page else "jupyterlab"
         fail(f"{'--page' if page else 'lab'} needs {program}, which is not installed: pip install '{extra}'")
     if page:
-        shown = page_environment(file or folder, file, rig)
+        shown = page_environment(file or folder, file, rig, observer)
     if file is not None:
         serve_file(file, shown, no_browser, port)
         return
@@ -118,17 +129,20 @@ def lab_command(
         serve([*command, *(["--allow-root"] if allow_root else [])], program, shown if page else {})
 
 
-def page_environment(place: Path, file: Path | None, rig: str | None) -> dict[str, str]:
-    """What the kernels of a page are told: its folder, the cue file and the rig that it shows.
+def page_environment(place: Path, file: Path | None, rig: str | None, observer: Path | None = None) -> dict[str, str]:
+    """What the kernels of a page are told: its folder, the cue file, the rig and the observer that it shows.
 
-    Raises OutputError for a file, RigError for a rig that cannot be read.
+    Raises OutputError for a file, RigError for a rig, RecordError for an observer that cannot be read.
     """
     told = {VARIABLE: str((place if file is None else place.parent).resolve())}
     if file is not None:
         open_document(file)
         told[FILE] = str(file.resolve())
+    used = load_rig(rig, []) if rig is not None or observer is not None else None
+    if observer is not None:
+        load_observer(observer, used)
+        told[OBSERVER] = str(observer.resolve())
     if rig is not None:
-        load_rig(rig, [])
         told[RIG] = str(Path(rig).resolve()) if rig.endswith(".toml") else rig
     return told
 

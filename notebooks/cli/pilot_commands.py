@@ -25,11 +25,16 @@ from ..text.options import (
 )
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
     from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
+    from .ranking import Request
+
 LEAST_DRAWS, MOST_DRAWS = 20, 20_000
 MOST_LENGTH, MOST_SIZES = 1000, 12
+KEEP_IT = "With --keep lab.toml, rank, search and the workbench can predict for this laboratory."
 
 JsonOut = Annotated[
     Path | None, typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON.")
@@ -127,11 +132,37 @@ def observed_command(
     if json == STDOUT:
         typer.echo(found.to_json())
         return
-    files = [file, *(other or [])]
+    files, last = [file, *(other or [])], [KEEP_IT]
+    if drawn is not None:
+        from .ranking import Request
+
+        last = _rank_lines(file, icons, where, Request(tracking=tracking, norm=norm, observer=drawn, rig=rig))
     if isinstance(found, Observed):
-        show_observed(found, files)
+        show_observed(found, files, last)
     else:
-        show_measured(found, files)
+        show_measured(found, files, last)
+
+
+def _rank_lines(file: str, icons: IconSet, rig: Rig, request: Request) -> list[str]:
+    """The command that ranks the set with the laboratory that was kept, and the per cent correct that it shows."""
+    from thermicon.perception import rank
+
+    from ..text.observed_text import rank_lines
+    from .ranking import command_text
+
+    with progress_bar("ranking") as progress:
+        ranking = rank(
+            icons,
+            rig,
+            people=request.people,
+            seed=request.seed,
+            tracking=request.tracking,
+            norm=request.norm,
+            parameters=0,
+            observer=request.observer,
+            progress=progress,
+        )
+    return rank_lines(command_text([file], rig, request, paths=True), ranking.proportion_correct, ranking.people)
 
 
 def check_numbers(draws: int, seed: int, norm: str) -> None:

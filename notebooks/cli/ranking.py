@@ -208,22 +208,24 @@ def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
     return {name: found.sentence for name, found in near.items() if found is not None}
 
 
-def command_text(files: Sequence[str], rig: Rig, request: Request) -> str:
+def command_text(files: Sequence[str], rig: Rig, request: Request, *, paths: bool = False) -> str:
     """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
+
+    Files are named without their folders, or, with ``paths``, as they were given.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.notebooks.cli.ranking import Request
     >>> command_text(["/home/a/two icons.cue"], Rig.load("thenar"), Request(people=20))
     "thermicon rank 'two icons.cue' --people 20"
     """
-    words = ["thermicon", "rank", *(Path(name).name for name in files)]
+    words = ["thermicon", "rank", *(name if paths else Path(name).name for name in files)]
     defaults, values = Request(), {name: getattr(request, name) for name in PLAIN_OPTIONS}
     # A rig from a file is named as a file, which its own name is not.
-    name = rig.name if request.rig is None else Path(request.rig).name
+    name = rig.name if request.rig is None else request.rig if paths else Path(request.rig).name
     words += [] if name == "thenar" else ["--rig", name]
     words += [word for change in rig.changes for word in ("--set", change)]
     for name, value in values.items():
-        shown = value.name if isinstance(value, Path) else str(value)
+        shown = value.name if isinstance(value, Path) and not paths else str(value)
         words += [] if value == getattr(defaults, name) else [f"--{name}", shown]
     if (asked := request.choosing) is not None:
         words += ["--choose", str(asked.count), "--objective", asked.objective]

@@ -110,8 +110,10 @@ def report_lines(plan: Plan) -> list[str]:
             f"            of {len(judged.drift_K)} orders, those with the coldest and the warmest skin, the largest "
             "dose and the largest drift are run in all corners of uncertainty; the others on the rig as given alone"
         )
-    if judged.sessions and study.trials is not None and study.trials.blocks > 1:
-        lines.append("            without their breaks, in which skin only comes nearer to rest")
+    if judged.after_breaks:
+        colours = dict.fromkeys(blocks.verdict for blocks in judged.after_breaks.values())
+        blocks_from_rest = "each block from rest, as after a long break"
+        lines.append(f"            without their breaks; {blocks_from_rest}: {' and '.join(colours)}")
     return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
 
 

@@ -90,6 +90,7 @@ def subcircuit_file(rig: Rig, output: Path) -> None:
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path, record: str | None) -> None:
     """Write the circuit of a rig that plays an icon; with ``record``, ngspice writes all probes into that file."""
     from thermicon.circuit import netlist, simulate
+    from thermicon.circuit.delivery.netlist_landing import lead_s
     from thermicon.circuit.solver.inverse import design
 
     from .simulate import headline
@@ -102,13 +103,15 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
-    text = netlist(rig, plan.drive, rest_A=plan.rest_A, title=title, out_file=record)
+    text = netlist(rig, plan.drive, rest_A=plan.rest_A, lead_A=plan.lead_A, title=title, out_file=record)
     if output == STDOUT:
         typer.echo(text, nl=False)
     else:
         with complete_or_absent(output) as draft:
             draft.write_text(text, encoding="ascii", newline="\n")
     note(headline(trace))
+    if rig.contact.lands_s is not None:
+        note(f"the netlist's clock begins when the hand lands; the cue begins at {lead_s(rig):g} s")
     if output != STDOUT:
         note(f"wrote {output}; {_how_to_run(output, record)}")
 

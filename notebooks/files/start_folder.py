@@ -11,8 +11,9 @@ VARIABLE = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
 
 
-FILE, RIG = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG"
-"""Set for the kernels of ``thermicon lab --page FILE --rig RIG``: what a workbench shows that is asked for nothing."""
+FILE, RIG, OBSERVER = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG", "THERMICON_PAGE_OBSERVER"
+"""Set for the kernels of ``thermicon lab --page FILE --rig RIG --observer FILE``: what a workbench of no arguments is
+made with."""
 
 
 def started_with() -> str | None:
@@ -27,6 +28,11 @@ def started_rig() -> str:
     'thenar'
     """
     return os.environ.get(RIG) or "thenar"
+
+
+def started_observer() -> str | None:
+    """Return the observer file that the page was started with; None: the shipped observer."""
+    return os.environ.get(OBSERVER) or None
 
 
 def below_start(folder: Path) -> Path:

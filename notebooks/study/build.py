@@ -120,8 +120,8 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
     check_session_time(plays, mean_s, gap.gap_s)
     with bar("sessions") as progress:
-        sessions, drift_K = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
-    return Plan(materials, Judged(ready, gap, sessions, drift_K), landing, courses)
+        judged = judge_sessions(_judged_courses(materials, courses), icons, rig, held, gap.gap_s, progress)
+    return Plan(materials, Judged(ready, gap, *judged), landing, courses)
 
 
 def plays_of(study: Study, icons: int) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ..files.exporting import PreparedExport, prepare_icons
@@ -13,6 +13,7 @@ from .timing import Gap
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig, Session
+    from thermicon.circuit.safety.sessionworst import WorstCase
     from thermicon.icons import Icon
 
     from .keys import Study
@@ -36,21 +37,28 @@ class Judged:
     """Drives that may be written, the gap between them, and the sessions judged in the worst case, by participant.
 
     `drift_K` has the largest baseline drift of every participant on the rig as given; empty without a module.
+    `after_breaks` are the blocks of the same participants, each from rest; empty without breaks.
     """
 
     ready: PreparedExport
     gap: Gap
     sessions: Mapping[str, Session]
     drift_K: Mapping[str, float]
+    after_breaks: Mapping[str, WorstCase] = field(default_factory=dict)
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Soft limits that a session exceeds, each with whose session it is."""
-        return tuple(
+        """Soft limits that a session exceeds, each with whose session it is; those after breaks where they are new."""
+        lines = [
             f"session of participant {label}: {text}"
             for label, session in self.sessions.items()
             for text in session.cautions
-        )
+        ]
+        for label, blocks in self.after_breaks.items():
+            known = {(finding.quantity, finding.upper) for finding in self.sessions[label].findings}
+            new = [each for each in blocks.findings if (each.quantity, each.upper) not in known]
+            lines += [f"blocks of participant {label}, each from rest: {finding}" for finding in new]
+        return tuple(lines)
 
 
 def judge_drives(
@@ -102,26 +110,34 @@ def _about_study(reason: str) -> str:
 
 def judge_sessions(
     courses: Sequence[Course], icons: Sequence[Icon], rig: Rig, held: bool, gap_s: float, step: Progress | None = None
-) -> tuple[dict[str, Session], dict[str, float]]:
-    """Judge whole sessions in the worst case, and return them with every participant's drift of the baseline.
+) -> tuple[dict[str, Session], dict[str, float], dict[str, WorstCase]]:
+    """Judge whole sessions in the worst case; return them, every participant's drift of the baseline, and the blocks.
 
     Every order is run on the rig as given. In all corners run those of up to four participants, or the orders with the
     coldest and the warmest skin, the most dose and the most drift. `held`: the device corrects its display. Practice
-    is part of a session; breaks, in which skin only comes nearer to rest, are not. Raises Refused where one is red.
-    Empty for a rig without a module.
+    is part of a session. Where there are breaks, each order is run twice: without them, and with every block from rest,
+    which a break brings skin and module back to. Raises Refused where one is red. Empty for a rig without a module.
     """
     from thermicon.circuit import SessionPlan, play_session
+    from thermicon.circuit.safety.sessiondrive import drive_of
+    from thermicon.circuit.safety.sessionworst import worst_case_of_blocks
 
     if rig.thermode is not None:
-        return {}, {}
-    tracking = "display" if held else "replay"
+        return {}, {}, {}
+    tracking, known = "display" if held else "replay", {icon.name: icon for icon in icons}
     extremes: dict[str, tuple[float, ...]] = {}
     for course in courses:
-        extremes[course.label] = _nominal(course.order, icons, rig, gap_s, tracking)
+        whole = _nominal(course.order, icons, rig, gap_s, tracking)
+        parts = [_nominal(order, icons, rig, gap_s, tracking) for order in course.sittings] if course.breaks else []
+        extremes[course.label] = _farthest(whole, parts)
     chosen = [course for course in courses if course.label in _extreme(extremes)]
     sessions: dict[str, Session] = {}
+    after_breaks: dict[str, WorstCase] = {}
     for done, course in enumerate(chosen):
         sessions[course.label] = play_session(icons, SessionPlan(course.order, gap_s), rig, tracking=tracking)
+        if course.breaks:
+            blocks = [drive_of(SessionPlan(order, gap_s), known, rig, tracking) for order in course.sittings]
+            after_breaks[course.label] = worst_case_of_blocks(blocks, rig, rig.limits)
         if step is not None:
             step(done + 1, len(chosen))
     red = [
@@ -129,9 +145,24 @@ def judge_sessions(
         for label, session in sessions.items()
         if session.verdict == "red"
     ]
+    red += [
+        f"blocks of participant {label}, each from rest: NOT SAFE: {worst.findings[0]}"
+        for label, worst in after_breaks.items()
+        if worst.verdict == "red" and sessions[label].verdict != "red"
+    ]
     if red:
         raise Refused(red)
-    return sessions, {label: values[3] for label, values in extremes.items()}
+    return sessions, {label: values[3] for label, values in extremes.items()}, after_breaks
+
+
+def _farthest(
+    whole: tuple[float, float, float, float], parts: Sequence[tuple[float, ...]]
+) -> tuple[float, float, float, float]:
+    """Coldest and warmest skin and most dose of a run and of its blocks from rest; the drift is that of the run."""
+    if not parts:
+        return whole
+    coldest, warmest, dose, _ = zip(*parts, strict=True)
+    return min(whole[0], *coldest), max(whole[1], *warmest), max(whole[2], sum(dose)), whole[3]
 
 
 def _nominal(

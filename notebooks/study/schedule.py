@@ -45,6 +45,21 @@ class Course:
         """Numbers of the blocks in order, 0 for practice."""
         return tuple(dict.fromkeys(trial.block for trial in self.trials))
 
+    @property
+    def breaks(self) -> int:
+        """Number of breaks: one before every block but the first."""
+        return len(set(self.blocks) - {0, 1})
+
+    @property
+    def sittings(self) -> tuple[tuple[str, ...], ...]:
+        """Orders of play between breaks: practice goes over into the first block, every other block is one.
+
+        >>> Course("A", (Trial(1, 0, 0, "a"), Trial(2, 1, 1, "b"), Trial(3, 2, 2, "a"))).sittings
+        (('a', 'b'), ('a',))
+        """
+        numbers = dict.fromkeys(max(trial.block, 1) for trial in self.trials)
+        return tuple(tuple(trial.icon for trial in self.trials if max(trial.block, 1) == number) for number in numbers)
+
 
 def seed_of(study_hash: str) -> int:
     """The seed of all orders of a study, from its hash; 52 bits, which every reader of JSON keeps.

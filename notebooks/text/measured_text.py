@@ -19,8 +19,8 @@ LEAST_VALUES = 6
 """Values below which a test of fit judges nobody."""
 
 
-def show_measured(found: MeasuredPilot, files: Sequence[str]) -> None:
-    """Print what was measured, how it fits, and what the predictions of all sets become."""
+def show_measured(found: MeasuredPilot, files: Sequence[str], last: Sequence[str] = ()) -> None:
+    """Print what was measured, how it fits, what the predictions of all sets become, and some last lines."""
     title = found.predictions[0].before.title
     show(
         *([title, ""] if title else []),
@@ -31,6 +31,7 @@ def show_measured(found: MeasuredPilot, files: Sequence[str]) -> None:
         sets_table(found, files),
         "",
         *draws_sentences(found),
+        *(["", *last] if last else []),
     )
 
 

@@ -27,8 +27,8 @@ LEAST_LABORATORIES = 100
 """Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 
 
-def show_observed(found: Observed, files: Sequence[str]) -> None:
-    """Print what was observed, how it fits, and what the predictions of all sets become."""
+def show_observed(found: Observed, files: Sequence[str], last: Sequence[str] = ()) -> None:
+    """Print what was observed, how it fits, what the predictions of all sets become, and some last lines."""
     title = found.predictions[0].before.title
     show(
         *([title, ""] if title else []),
@@ -41,6 +41,7 @@ def show_observed(found: Observed, files: Sequence[str]) -> None:
         sets_table(found, files),
         "",
         *draws_sentences(found),
+        *(["", *last] if last else []),
     )
 
 
@@ -224,6 +225,19 @@ def constant_lines(found: Observed | MeasuredPilot) -> list[str]:
         unit = f" {each.unit}" if each.unit else ""
         lines.append(f"  - {each.name}: {_three(each.before)} → {_three(each.after)}{unit}")
     return lines
+
+
+def rank_lines(command: str, correct: float, people: int) -> list[str]:
+    """What ``rank`` shows of a laboratory that was kept, and the command that does.
+
+    >>> rank_lines("thermicon rank six-icons --observer lab.csv", 0.874, 200)[0]
+    'rank shows 87 % correct for this laboratory: 200 other people at the first of the kept draws.'
+    """
+    return [
+        f"rank shows {percent(correct)} correct for this laboratory: {people} other people at the first of the kept "
+        "draws.",
+        f"  {command}",
+    ]
 
 
 def _three(ends: tuple[float, float, float]) -> str:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Observer
+    from thermicon.perception.observer.observer_model import ObserverModel
 
 Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
@@ -38,6 +39,7 @@ class DesignModel:
     """Text, icon, knobs and history of one workbench, and the scene that they make.
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
+    ``model`` is the observer that predicts; None: the shipped one.
 
     >>> from thermicon.circuit import Rig
     >>> made = DesignModel("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
@@ -47,11 +49,12 @@ class DesignModel:
     'cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }'
     """
 
-    def __init__(self, text: str, rig: Rig, icon: str | None = None) -> None:
+    def __init__(self, text: str, rig: Rig, icon: str | None = None, model: ObserverModel | None = None) -> None:
         self.nominal = rig
+        self.model = model
         self.values: dict[str, float | str] = {}
         self.measured: Measured | None = None
-        self._applied = apply(rig, {})
+        self._applied = apply(rig, {}, self._young)
         self._drag: _Drag | None = None
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
         self.history = History(Edited(text, self.scene.icon))
@@ -72,6 +75,11 @@ class DesignModel:
     def observer(self) -> Observer:
         """The nominal person, of the age that is set."""
         return self._applied.observer
+
+    @property
+    def _young(self) -> Observer | None:
+        """The nominal person of the observer that predicts; None: the shipped one."""
+        return None if self.model is None else self.model.nominal
 
     def on_change(self, tell: Callable[[], None]) -> None:
         """Call a function after each message that changed text or rig."""
@@ -245,7 +253,7 @@ class DesignModel:
     def _set(self, values: Mapping[str, float | str]) -> None:
         own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
         self.values = {key: value for key, value in values.items() if own.get(key) != value}
-        self._applied = apply(self.nominal, self.values)
+        self._applied = apply(self.nominal, self.values, self._young)
         self._draw()
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:

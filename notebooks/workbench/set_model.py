@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
     from thermicon.perception import Edit, NoEdit, PairScore, PerceptualMap, Ranking
+    from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
@@ -30,7 +31,10 @@ MOST_RANKED = 60
 
 @dataclass(frozen=True, slots=True)
 class RankedSet:
-    """A ranking, the text and rig that it is of, its map, the order of its heat maps, and what it took (ms)."""
+    """A ranking, the text and rig that it is of, its map, the order of its heat maps, and what it took (ms).
+
+    ``observer`` is what it is predicted with; None: the shipped one.
+    """
 
     text: str
     rig: Rig
@@ -39,6 +43,7 @@ class RankedSet:
     map: PerceptualMap | None
     order: tuple[int, ...]
     ms: float
+    observer: ObserverModel | None = None
 
     @property
     def labels(self) -> list[str]:
@@ -69,10 +74,12 @@ def rank_set(
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
     goal: Goal | None = None,
+    observer: ObserverModel | None = None,
 ) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
 
-    A ``goal`` about a share of people is judged with draws of the parameters only.
+    A ``goal`` about a share of people is judged with draws of the parameters only; of these, all are used where the
+    ``observer`` has fewer than ``parameters``.
 
     >>> from thermicon.circuit import Rig
     >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s; return at 2 K/s }; icon glow { pulse warm by 3 K for 2 s }"
@@ -86,13 +93,23 @@ def rank_set(
     reading = read_text(text)
     if (why := why_not(reading)) is not None or reading.icons is None:
         raise ValueError(why)
-    judged = goal if goal is None or parameters or not goal.single_people else None
+    draws = parameters if observer is None else observer.most_draws(parameters)
+    draws = 0 if draws == 1 else draws  # an interval needs two
+    judged = goal if goal is None or draws or not goal.single_people else None
     made = rank(
-        reading.icons, rig, people=people, parameters=parameters, choosing=choosing, goal=judged, progress=progress
+        reading.icons,
+        rig,
+        people=people,
+        parameters=draws,
+        choosing=choosing,
+        goal=judged,
+        progress=progress,
+        observer=observer,
     )
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
-    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, 1e3 * (time.perf_counter() - began))
+    ms = 1e3 * (time.perf_counter() - began)
+    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms, observer)
 
 
 def why_not(reading: Reading) -> str | None:
@@ -170,9 +187,11 @@ PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("w
 def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
     """The cheapest edit that parts a pair, confirmed by the people of the ranking."""
     from thermicon.perception import cheapest_edit
+    from thermicon.perception.observer.observer_model import ObserverModel
 
-    known = made.ranking.d_prime
-    return cheapest_edit(made.icons, made.rig, a, b, people=made.ranking.people, seed=made.ranking.seed, before=known)
+    known, model = made.ranking.d_prime, ObserverModel.of(made.observer)
+    people = model.people(made.ranking.people, made.ranking.seed)
+    return cheapest_edit(made.icons, made.rig, a, b, people=people, before=known, observer=model.nominal)
 
 
 def _traces(made: RankedSet, name: str) -> CanvasFrame:
@@ -181,4 +200,5 @@ def _traces(made: RankedSet, name: str) -> CanvasFrame:
     from ..timeline.scene import draw
 
     icon = next(icon for icon in made.icons if icon.name == name)
-    return traces_of(draw(icon, made.rig, Observer.load(), read_text(made.text)))
+    nominal = Observer.load() if made.observer is None else made.observer.nominal
+    return traces_of(draw(icon, made.rig, nominal, read_text(made.text)))

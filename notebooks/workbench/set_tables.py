@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
 from ..pages.blocks import fragment
-from ..text.choices import choice_lines
+from ..text.choices import choice_lines, laboratory
 from ..text.rank_notes import outside_lines, trouble_lines
 from ..text.rank_text import caveat, rival
 from ..timeline.terms import SIMULATED, terms_of
@@ -57,19 +57,19 @@ def notes_html(result: dict[str, Any]) -> str:
 
 
 def scores_html(ranking: Ranking) -> str:
-    """Proportion correct and bits with both intervals, between people and for a new laboratory."""
+    """Proportion correct and bits with both intervals, between people and for the laboratory that is predicted."""
     if len(ranking.icons) == 1:
         return fragment("notes", [ALONE])
-    draws = ranking.new_laboratory
+    draws, where = ranking.new_laboratory, _where(ranking)
     low, high = ranking.proportion_correct_interval
     correct = [f"95 % of people: {percent_span(low, high)}"]
     least, most = ranking.information_bits_interval
     bits = [f"95 % of people: {least:.2f}–{most:.2f}"]
     if draws is not None:
-        correct.append(f"a new laboratory: {percent_span(*draws.proportion_correct)}")
-        bits.append(f"a new laboratory: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
+        correct.append(f"{where}: {percent_span(*draws.proportion_correct)}")
+        bits.append(f"{where}: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
     if ranking.chosen is not None:
-        correct.append("a new laboratory: see the chosen icons")
+        correct.append(f"{where}: see the chosen icons")
     shown: tuple[tuple[str, list[str]], ...] = (
         (f"{percent(ranking.proportion_correct)} correct", correct),
         (f"{ranking.information_bits:.2f} bits", bits),
@@ -84,8 +84,9 @@ def caveat_html(result: dict[str, Any]) -> str:
     past = sum(not icon["safe"] for icon in result["icons"])
     limits = f"{past} past a hard limit" if past else "no icon past a hard limit"
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
+    by = "" if result["observer"] == "shipped" else f" Predicted with the observer of {result['observer']}."
     words = fragment("terms", terms_of("d′", "bits", "detected", "felt", "onset", "proportion correct", SIMULATED))
-    return fragment("block", f"{meaning} {caveat(result)} {simulated}", "th-soft") + words
+    return fragment("block", f"{meaning} {caveat(result)}{by} {simulated}", "th-soft") + words
 
 
 def pair_html(pair: PairScore) -> str:
@@ -115,5 +116,9 @@ def chosen_html(ranking: Ranking) -> str:
     """Which icons were chosen, and how certain that choice is."""
     if ranking.chosen is None:
         return ""
-    first, *rest = choice_lines(ranking.chosen.to_dict())
+    first, *rest = choice_lines(ranking.chosen.to_dict(), _where(ranking))
     return fragment("chosen", first, [line.removeprefix("  - ") for line in rest])
+
+
+def _where(ranking: Ranking) -> str:
+    return laboratory(ranking.observer, ranking.own_laboratory)

@@ -184,7 +184,7 @@ class SetView(LiveView[SetRequest]):
         text, rig, choosing, goal = request
         if quick:
             reference = None if self.made is None else self.made.map
-            first = rank_set(text, rig, *QUICK, None, reference, job.go_on, goal)
+            first = rank_set(text, rig, *QUICK, None, reference, job.go_on, goal, self.design.model)
             job.on_page(lambda: self._show(first, request, False))
         reference = None if self.made is None else self.made.map
         reported = [0]
@@ -198,7 +198,7 @@ class SetView(LiveView[SetRequest]):
                 status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
                 job.on_page(lambda: self._say(status))
 
-        well = rank_set(text, rig, *WELL, choosing, reference, progress, goal)
+        well = rank_set(text, rig, *WELL, choosing, reference, progress, goal, self.design.model)
         job.on_page(lambda: self._show(well, request, True))
 
     def _failed(self, message: str) -> None:

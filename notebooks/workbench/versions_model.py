@@ -17,6 +17,7 @@ from ..timeline.terms import terms_of
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Observer, Ranking
+    from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.goal import Goal
 
     from .set_model import RankedSet
@@ -37,7 +38,7 @@ PANELS = (
 class Version:
     """A state of the workbench: text, the icon that is shown, the rig as chosen, and the knobs set on it.
 
-    ``rig`` has the knobs set, and ``observer`` their age.
+    ``rig`` has the knobs set, and ``observer`` their age; ``model`` is what predicts, None: the shipped observer.
     """
 
     text: str
@@ -46,6 +47,7 @@ class Version:
     rig: Rig
     observer: Observer = field(compare=False)
     values: Mapping[str, float | str] = field(default_factory=dict)
+    model: ObserverModel | None = field(default=None, compare=False)
 
     @property
     def rig_words(self) -> str:
@@ -84,7 +86,9 @@ def rank_versions(
     for each, key in zip((a, b), keys, strict=True):
         try:
             if key not in known:
-                known[key] = rank_set(each.text, each.rig, PEOPLE, draws, progress=progress, goal=goal)
+                known[key] = rank_set(
+                    each.text, each.rig, PEOPLE, draws, progress=progress, goal=goal, observer=each.model
+                )
         except ValueError as wrong:
             rankings.append(None)
             reasons.append(str(wrong))

@@ -66,7 +66,8 @@ class VersionsView(LiveView[Request]):
     def now(self) -> Version:
         """What is in the editor."""
         design = self.design
-        return Version(design.text, design.scene.icon, design.nominal, design.rig, design.observer, dict(design.values))
+        values, model = dict(design.values), design.model
+        return Version(design.text, design.scene.icon, design.nominal, design.rig, design.observer, values, model)
 
     def keep_now(self) -> None:
         """Keep what is in the editor as version A."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
 
 from ..files.cue_document import open_document
-from ..files.start_folder import started_rig, started_with
+from ..files.start_folder import started_observer, started_rig, started_with
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
 from .project import Project
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Rig, Trace
     from thermicon.perception import Percept, Ranking
+    from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.goal import Goal
 
     from ..timeline.scene import Scene
@@ -52,6 +53,9 @@ class Workbench:
         What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
     measured
         Path of a measured log that is laid over the curves of the design view, aligned with the icon.
+    observer
+        Observer file that predicts in place of the shipped one, as ``rank --observer`` takes it: the draws that
+        ``observed --keep lab.csv`` wrote, or one observer's records (.toml).
 
     Raises
     ------
@@ -59,6 +63,8 @@ class Workbench:
         For a file or a name that does not exist.
     RigError
         For a rig that does not exist, or cannot be.
+    RecordError
+        For an observer file that cannot be read, or is of another version.
     ValueError
         For an icon that the set does not have, a goal that cannot be read (`GoalError`), and a log that cannot be
         used (`LogError`).
@@ -80,13 +86,14 @@ class Workbench:
         folder: str | Path = "drives",
         goal: Goal | str | None = None,
         measured: str | Path | None = None,
+        observer: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
 
         source = text if text is not None else started_with()
         chosen = rig if rig is not None else started_rig()
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
-        self._design = DesignModel(text_of(source), loaded, icon)
+        self._design = DesignModel(text_of(source), loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         if measured is not None:
             self._design.take_log(read_measured(Path(measured)))
@@ -171,7 +178,10 @@ class Workbench:
             raise ValueError(f"{many}: narrow the family")
         asked = (self.text, self.rig, people)
         if self._ranked is None or self._ranked[0] != asked:
-            self._ranked = (asked, rank(self.icons, self.rig, people=people, edits="worst"))
+            self._ranked = (
+                asked,
+                rank(self.icons, self.rig, people=people, edits="worst", observer=self._design.model),
+            )
         return self._ranked[1]
 
     def figure(self, view: View = "design") -> Figure:
@@ -295,6 +305,16 @@ def _goal_text(goal: Goal | str | None) -> str:
     if goal is None:
         return ""
     return Goal.parse(goal).text if isinstance(goal, str) else goal.text
+
+
+def _observer_of(file: str | Path | None) -> ObserverModel | None:
+    """The observer of a file, or of that with which the page was started; None: the shipped one."""
+    chosen = started_observer() if file is None else file
+    if chosen is None:
+        return None
+    from thermicon.perception.observer.observer_model import ObserverModel
+
+    return ObserverModel.load(chosen)
 
 
 def file_of(source: object) -> Path | None:

@@ -7,12 +7,13 @@ import hashlib
 import io
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, read_text
+from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, read_text
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
@@ -24,6 +25,8 @@ WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
 LONGEST_LABEL, LONGEST_TIME_S = 100, 3600.0
 MARKS = (",", ";", "\t")
+LEAST_TIMES, SLOW_S, SLOWEST_S = 3, 60.0, 600.0
+"""Times by which a unit is judged; medians above which whole numbers from 100 on, or any, can only be milliseconds."""
 
 
 class TrialsError(InputError):
@@ -59,7 +62,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     ------
     TrialsError
         For a file that cannot be read, is too large or has no rows, for missing columns, for a trial that stands twice,
-        and for names that are not in the set.
+        for names that are not in the set, and for times that are plainly milliseconds.
 
     Examples
     --------
@@ -72,6 +75,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     """
     file = Path(path)
     cells = read_cells(file, COLUMNS, (TIME,), EXAMPLE, WHAT)
+    _check_unit_of_times(file, cells)
     names, known = tuple(icons), set(icons)
     places = {name: place for place, name in enumerate(names)}
     participants: dict[str, int] = {}
@@ -100,6 +104,38 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         for number in range(len(participants))
     )
     return Trials(names, tuple(participants), counts, medians, file.name, digest_of(file))
+
+
+def _check_unit_of_times(path: Path, cells: Cells) -> None:
+    """Refuse answers of a participant, or of all together, whose times can only be milliseconds."""
+    times: dict[str, list[float]] = {}
+    for row in cells.rows:
+        with suppress(ValueError):
+            if math.isfinite(value := float(row.get(TIME, ""))):
+                times.setdefault(row["participant"], []).append(value)
+    together = [value for each in times.values() for value in each]
+    slow = [name for name, each in times.items() if is_milliseconds(each)]
+    others = [name for name, each in times.items() if len(each) >= LEAST_TIMES and name not in slow]
+    if slow and others:
+        more = f" and {len(slow) - 1} more" if len(slow) > 1 else ""
+        middle, whose = float(np.median(times[slow[0]])), f" of participant {quoted(slow[0])}{more}"
+    elif slow or is_milliseconds(together):
+        middle, whose = float(np.median(together)), ""
+    else:
+        return
+    raise TrialsError(f"{path}: {TIME}{whose} has a median of {middle:g}: {LIKE_MILLISECONDS}")
+
+
+def is_milliseconds(times: Sequence[float]) -> bool:
+    """Whether times of answers are plainly not in s: whole numbers from 100 on with a median over a minute, or over 10.
+
+    >>> is_milliseconds([1240, 980, 2315]), is_milliseconds([1.24, 0.98, 2.315]), is_milliseconds([61.5, 80, 75.2])
+    (True, False, False)
+    """
+    if len(times) < LEAST_TIMES:
+        return False
+    middle, whole = float(np.median(times)), all(time >= 100.0 and time == int(time) for time in times)
+    return middle > SLOWEST_S or (middle > SLOW_S and whole)
 
 
 def digest_of(path: Path) -> str:

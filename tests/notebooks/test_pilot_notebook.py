@@ -22,7 +22,7 @@ def test_every_cell_runs_and_shows_something(tmp_path: Path) -> None:
     assert not [output.text for output in outputs if output.get("name") == "stderr"]
     said = "".join(output.get("text", "") for output in outputs)
     assert "participant,trial,presented,responded\nP1,1," in said
-    assert "# written by thermicon calibrate from inputs " in said and "# participants: 4" in said
+    assert "# written by thermicon observed from inputs " in said and "# participants: 4" in said
     low, high, truth = (int(word.strip("%;")) for word in said.split("after: ")[1].split()[:5:2])
     assert low <= truth <= high
     assert {"trials.csv", "lab.toml", "lab.csv"} <= {path.name for path in tmp_path.iterdir()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..delivered_drive import DeliveredDrive
-from ..netlist import EDGE_S, points
+from ..netlist_drive import EDGE_S, points
 from .form import PLAYS_CURRENT, Column, Format, command_column
 
 

@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.circuit import Drive, InputError, Rig, RigError, Trace, netlist, simulate, simulate_current
-from thermicon.circuit.delivery.netlist import EDGE_S
+from thermicon.circuit.delivery.netlist_drive import EDGE_S
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import RECORDED
 from thermicon.icons import load_library, parse
@@ -253,3 +253,53 @@ def test_random_drives_on_random_rigs_agree(tool: Tool, rig: Rig, drive: Drive) 
         table = run_ngspice(netlist(rig, drive, out_file="out.txt"), tool("ngspice"), Path(folder), "out.txt")
     found = apart(trace, table, drive)
     assert found.small(), found
+
+
+LANDINGS = {
+    "display": ("display", {}, -2.0),
+    "skin": ("skin", {}, -0.5),
+    "at the start": ("display", {}, 0.0),
+    "loop": ("display", {"controller.kp_A_per_K": 0.6, "controller.ki_A_per_Ks": 0.1, "controller.lag_s": 0.1}, -1.0),
+    "legs": ("display", BODIES["legs"], -1.0),
+    "steady sink": ("display", BODIES["steady sink and legs"], -1.0),
+}
+
+
+def landed(trace: Trace, drive: Drive, text: str, lead_s: float, ngspice: str, folder: Path) -> Apart:
+    """Compare a trace of a cue with ngspice's run from the landing, on the clock of the cue."""
+    table = run_ngspice(text, ngspice, folder, "out.txt")
+    table[:, 0] -= lead_s
+    return apart(trace, table, drive)
+
+
+@pytest.mark.parametrize("case", LANDINGS)
+def test_a_hand_that_lands_agrees(case: str, tool: Tool, tmp_path: Path) -> None:
+    control, keys, lands_s = LANDINGS[case]
+    dip = "icon dip { cool by 4 °C at 3 °C/s; return at 3 °C/s }"
+    text = f"cue 1\nset s {{ control {control}; baseline 35 °C }}\n{dip}"
+    icon, rig = parse(text)["dip"], Rig.load("thenar").with_(**{**keys, "contact.lands_s": lands_s})
+    trace = simulate(icon, rig, tail_s=1.0)
+    plan = design(icon, rig, float(trace.time_s[-1]))
+    text = netlist(rig, plan.drive, rest_A=plan.rest_A, lead_A=plan.lead_A, out_file="out.txt")
+    assert f"the cue begins at {abs(lands_s)!r} s." in " ".join(text.replace("\n*", " ").split())
+    found = landed(trace, plan.drive, text, -lands_s, tool("ngspice"), tmp_path)
+    assert found.small(), found
+    resting = simulate(icon, rig.with_(**{"contact.lands_s": None}), tail_s=1.0)
+    assert np.abs(resting.warm_receptor_C - trace.warm_receptor_C).max() > 0.5
+
+
+@pytest.mark.parametrize("drive", [CORNERS, JUMPS], ids=["corners", "jumps"])
+def test_a_drive_agrees_after_a_landing_under_its_first_current(drive: Drive, tool: Tool, tmp_path: Path) -> None:
+    rig = Rig.load("thenar").with_(**{"contact.lands_s": -1.5})
+    text = netlist(rig, drive, out_file="out.txt")
+    found = landed(simulate_current(drive, rig), drive, text, 1.5, tool("ngspice"), tmp_path)
+    assert found.small(), found
+
+
+def test_a_sink_that_is_set_when_the_cue_begins_cannot_be_a_circuit_with_a_landing() -> None:
+    rig = Rig.load("thenar").with_(**{**BODIES["warm sink"], "contact.lands_s": -1.0})
+    with pytest.raises(RigError, match=r"lands_s = -1 s: .*passive heat sink.*remove heat_sink\.temperature_C"):
+        netlist(rig, CORNERS)
+    landing = Rig.load("thenar").with_(**{"contact.lands_s": -1.0})
+    with pytest.raises(ValueError, match="a lead of 1 s has 101 currents, one before it, not 3"):
+        netlist(landing, CORNERS, lead_A=np.zeros(3))

@@ -16,7 +16,6 @@ from thermicon.circuit import (
     RigError,
     design,
     gate,
-    netlist,
     play_session,
     simulate,
     simulate_current,
@@ -24,6 +23,7 @@ from thermicon.circuit import (
     steady_state,
 )
 from thermicon.circuit.delivery.deliver import deliver
+from thermicon.circuit.delivery.subcircuit import subcircuits
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.sessionplan import SessionPlan
@@ -163,7 +163,7 @@ def refusals(rig: Rig) -> dict[str, Callable[[], object]]:
         "gate of safety": lambda: gate(drive, rig),
         "a session": lambda: play_session([icon], SessionPlan((icon.name,), gap_s=1.0), rig),
         "what a device delivers": lambda: deliver(icon, rig, Device.load("dac-16")),
-        "a netlist starts": lambda: netlist(rig, drive),
+        "a subcircuit starts": lambda: subcircuits(rig),
     }
 
 

@@ -17,7 +17,9 @@ from typing import Any
 
 import pytest
 
+from tests.owndraws import few_draws
 from thermicon.notebooks.cli.main import lab
+from thermicon.notebooks.workbench.workbench import Workbench
 
 Cli = Callable[..., Any]
 FIRST = "01_first_icon.ipynb"
@@ -169,6 +171,34 @@ def test_a_page_of_one_file_knows_file_rig_and_folder(
     }
     assert str(tmp_path / "workbench.ipynb") not in command
     assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
+
+
+def test_a_page_predicts_with_the_observer_it_is_given(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served: list[dict[str, str]] = []
+    monkeypatch.setattr(lab, "find_spec", lambda _: True)
+    monkeypatch.setattr(lab, "serve", lambda command, program, told: served.append(dict(told)))
+    file = tmp_path / "alerts.cue"
+    file.write_text("cue 1; icon a { hold for 1 s }", encoding="utf-8")
+    own = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "hand-dorsum")
+    said = cli("lab", "--page", file, "--observer", own, "--no-browser")
+    assert said.exit_code == 0
+    assert "lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
+    assert served[0]["THERMICON_PAGE_OBSERVER"] == str(own)
+    assert "THERMICON_PAGE_RIG" not in served[0]
+    monkeypatch.setenv("THERMICON_PAGE_OBSERVER", str(own))
+    assert Workbench(file).ranking(2).observer == "lab.csv"
+    (bad := tmp_path / "bad.csv").write_text("a,b\n", encoding="utf-8")
+    said = cli("lab", "--page", file, "--observer", bad, "--no-browser")
+    assert said.exit_code == 1
+    assert "this is not a table of posterior draws" in said.stderr
+    assert len(served) == 1
+    said = cli("lab", tmp_path / "mine", "--observer", own)
+    assert said.exit_code == 2
+    assert "is for --page; in a notebook, write Workbench(observer=...)" in " ".join(
+        said.stderr.replace("│", " ").split()
+    )
 
 
 def test_a_page_of_a_file_or_rig_that_is_not_there_is_not_served(cli: Cli, tmp_path: Path) -> None:

@@ -28,6 +28,17 @@ def test_it_says_what_it_wrote_and_how_to_run_it(cli: Cli, two: Path, tmp_path: 
     assert not list(tmp_path.glob(".*"))
 
 
+def test_the_clock_of_a_hand_that_lands_is_named(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "cool.cir"
+    said = cli("netlist", two, "--icon", "cool-step", "--set", "contact.lands_s=-2", "-o", out)
+    assert said.exit_code == 0
+    assert "the netlist's clock begins when the hand lands; the cue begins at 2 s\n" in said.stderr
+    text = out.read_text(encoding="ascii")
+    assert "Bcontact cold skin I=V(landed)*" in text
+    assert "Rcontact" not in text
+    assert ".tran 0.01 10.0 0 " in text  # 2 s and the icon's 8 s
+
+
 def test_a_set_with_one_icon_needs_no_name_and_stdout_has_the_same_bytes(cli: Cli, tmp_path: Path) -> None:
     out = tmp_path / "step.cir"
     assert cli("netlist", "cooling-step-skin", "-o", out).exit_code == 0

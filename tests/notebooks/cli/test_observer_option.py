@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from thermicon.perception.observer.draws import LABORATORIES, PosteriorDraws
-from thermicon.perception.observer.draws_file import to_text
+from tests.owndraws import few_draws
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
@@ -62,16 +60,6 @@ def test_what_needs_draws_refuses_records_and_names_the_draws_beside_them(
     assert "lab.csv, which stands beside it" in " ".join(said.stderr.split())
     help_text = " ".join(cli(command, "--help").stdout.split())
     assert "records (.toml)" not in help_text
-
-
-def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Path:
-    shipped = PosteriorDraws.load()
-    values = shipped.draws[:count].copy()
-    if resampled:
-        values[:, shipped.names.index(LABORATORIES)] = 1e-6
-    header = replace(shipped.header, resampled=resampled, rig=rig)
-    path.write_text(to_text(header, shipped.names, values), encoding="utf-8")
-    return path
 
 
 def test_as_many_draws_are_used_as_there_are(cli: Cli, two: Path, tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import shlex
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -56,6 +58,31 @@ def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, answers: Pat
     said = [cli("observed", answers, two, *QUICK, "--seed", 4, "--json", "-").stdout for _ in range(2)]
     assert said[0] == said[1]
     assert json.loads(said[0])["seed"] == 4
+
+
+@pytest.mark.parametrize("options", [(), ("--norm", "naming", "--tracking", "display", "--set", "contact.area_cm2=6")])
+def test_what_rank_shows_of_a_kept_laboratory_is_what_it_shows(
+    cli: Cli, two: Path, answers: Path, tmp_path: Path, options: tuple[str, ...]
+) -> None:
+    lab = tmp_path / "my lab.toml"
+    said = cli("observed", answers, two, *QUICK, "--seed", 3, "--keep", lab, *options)
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    promised = re.search(r"rank shows (\d+ %) correct for this laboratory: 200 other people at the first of", words)
+    assert promised is not None
+    assert words.endswith(f"--observer '{lab.with_suffix('.csv')}'")
+    command = shlex.split("thermicon rank " + words.split("thermicon rank ")[1])
+    ranked = cli(*command[1:])
+    assert ranked.exit_code == 0, ranked.stderr
+    assert f"Set: {promised[1]} correct; 95 % of people" in ranked.stdout
+    assert "warning: my lab.csv was conditioned on" not in ranked.stderr
+    assert "your laboratory, my lab.csv" in " ".join(ranked.stdout.split())
+
+
+def test_without_keep_the_way_to_a_laboratory_is_named(cli: Cli, two: Path, answers: Path) -> None:
+    words = " ".join(cli("observed", answers, two, *QUICK).stdout.split())
+    assert words.endswith("With --keep lab.toml, rank, search and the workbench can predict for this laboratory.")
+    assert "rank shows" not in words
 
 
 def test_an_icon_that_nobody_was_presented_is_named(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -200,6 +227,7 @@ def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path:
     found = json.loads(out.read_text(encoding="utf-8"))
     assert (found["participants"], found["values"], found["errors_assumed"]) == (2, 5, 1)
     assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 20
+    assert f"thermicon rank {two} --observer {lab.with_suffix('.csv')}" in words
     assert picture.stat().st_size > 10_000
     kept = cli("observed", path, two, "--draws", 20, "--observer", lab.with_suffix(".csv"))
     assert kept.exit_code == 0, kept.stderr

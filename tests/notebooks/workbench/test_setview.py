@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.owndraws import few_draws
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.apply_edit import CannotApply, with_edit
 from thermicon.notebooks.editing.icon_edits import only
+from thermicon.notebooks.text.rank_text import number_lines
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
+from thermicon.notebooks.workbench.set_tables import caveat_html, chosen_html, scores_html
 from thermicon.notebooks.workbench.set_view import SetView
+from thermicon.notebooks.workbench.workbench import Workbench
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.ranking.rank_file import ranking_file
 from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.request import Selection
 
 TWO = """cue 1
 
@@ -298,3 +307,54 @@ def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
     member = next(iter(parse(family)))
     with pytest.raises(CannotApply, match="written by the family r"):
         with_edit(family, member, "old", "new")
+
+
+@pytest.fixture(scope="module")
+def laboratory(tmp_path_factory: pytest.TempPathFactory) -> ObserverModel:
+    """Draws of one laboratory, as ``observed --keep lab.toml`` writes them."""
+    file = tmp_path_factory.mktemp("lab") / "lab.csv"
+    return ObserverModel.load(few_draws(file, 2, "by weights from 4 laboratories", "thenar"))
+
+
+def test_scores_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverModel) -> None:
+    made = rank_set(TWO, Rig.load("thenar"), 4, 128, observer=laboratory)
+    result = ranking_file(made.ranking, mapped=False)
+    words = "your laboratory, lab.csv"
+    assert any(f"people in {words} (95 %): " in line for line in number_lines(result))
+    scores = scores_html(made.ranking)
+    assert scores.count(f"{words}: ") == 2
+    assert "new laboratory" not in scores
+    assert "Predicted with the observer of lab.csv." in caveat_html(result)
+    new = rank_set(TWO, Rig.load("thenar"), 4, 2)
+    assert scores_html(new.ranking).count("a new laboratory: ") == 2
+    assert "observer of" not in caveat_html(ranking_file(new.ranking, mapped=False))
+
+
+def test_a_choice_names_the_laboratory(laboratory: ObserverModel) -> None:
+    made = rank_set(THREE, Rig.load("thenar"), 4, 2, Selection(2, "worst"), observer=laboratory)
+    assert "your laboratory, lab.csv: see the chosen icons" in scores_html(made.ranking)
+    assert "for your laboratory, lab.csv (95 %): " in chosen_html(made.ranking)
+
+
+def test_the_laboratory_of_a_workbench_predicts_in_every_view(laboratory: ObserverModel, tmp_path: Path) -> None:
+    file = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "thenar")
+    bench = Workbench(TWO, observer=file)
+    assert bench.ranking(4).observer == "lab.csv"
+    assert bench.scene.observer == laboratory.nominal != Observer.load()
+    design = DesignModel(TWO, Rig.load("thenar"), model=laboratory)
+    assert design.observer == laboratory.nominal
+    design.turn({"age": 60.0})
+    assert design.observer.cold.threshold_drive > laboratory.nominal.cold.threshold_drive
+    view = SetView(design, lambda _: None)
+    view.shown = True
+    view.renew(0.0)
+    assert view.worker.wait()
+    assert view.editor.wait()
+    assert "your laboratory, lab.csv: " in view.said["scores"].value
+    assert view.made is not None
+    assert view.made.ranking.proportion_correct == bench.ranking(24).proportion_correct
+
+
+def test_a_single_draw_gives_no_interval(tmp_path: Path) -> None:
+    model = ObserverModel.load(few_draws(tmp_path / "lab.csv", 1, "by weights from 2 laboratories"))
+    assert rank_set(TWO, Rig.load("thenar"), 2, 128, observer=model).ranking.new_laboratory is None

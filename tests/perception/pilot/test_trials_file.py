@@ -65,6 +65,33 @@ def test_a_bad_table_is_refused_with_place_and_cure(
         read_trials(path, ICONS)
 
 
+@pytest.mark.parametrize("times", [(1240, 980, 2315), (1240.5, 980.25, 2315.75), (4200, 980, 3700), (850, 0, 990)])
+def test_times_in_milliseconds_are_recognised(tmp_path: Path, times: tuple[float, ...]) -> None:
+    rows = [f"P{k},1,dip,{'dip' if k else 'cool-step'},{time}" for k, time in enumerate(times)]
+    cure = "these look like milliseconds; divide the column by 1000, so that it is in s"
+    with pytest.raises(TrialsError, match=f"trials.csv: time_s has a median of .*: {cure}"):
+        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
+    seconds = [f"P{k},1,dip,dip,{time / 1000}" for k, time in enumerate(times)]
+    found = read_trials(written(tmp_path, *seconds, head=f"{HEAD},time_s"), ICONS)
+    assert found.time_s == tuple(time / 1000 for time in times)
+
+
+def test_one_participant_in_milliseconds_is_named(tmp_path: Path) -> None:
+    rows = [f"P1,{k},dip,dip,{1.2 + 0.1 * k}" for k in range(9)] + [f"P2,{k},dip,dip,{1200 + k}" for k in range(4)]
+    with pytest.raises(TrialsError, match=r"time_s of participant 'P2' has a median of 1201\.5: these look like mill"):
+        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
+    rows += [f"P{k},{trial},dip,dip,{1200 + trial}" for k in range(3, 6) for trial in range(9)]
+    with pytest.raises(TrialsError, match=r"time_s of participant 'P2' and 3 more has a median of 1201\.5"):
+        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
+
+
+@pytest.mark.parametrize("times", [(61.5, 80, 75), (1240, 1.5), (65, 72, 90), (1.2, 1.5, 1800)])
+def test_slow_answers_stay_seconds(tmp_path: Path, times: tuple[float, ...]) -> None:
+    rows = [f"P1,{k},dip,dip,{time}" for k, time in enumerate(times)]
+    found = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
+    assert found.time_s == (float(np.median(times)),)
+
+
 def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "trials.csv"
     with pytest.raises(TrialsError, match="no such table of trials"):
