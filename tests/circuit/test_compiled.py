@@ -232,6 +232,6 @@ def test_options_have_the_same_text_in_every_process() -> None:
             text=True,
             check=True,
         ).stdout
-        for seed in (1, 2, 3)
+        for seed in (1, 2)
     }
     assert texts == {"[('fastmath', ['arcp', 'contract', 'nsz'])]\n"}

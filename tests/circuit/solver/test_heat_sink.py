@@ -23,6 +23,7 @@ STEADY = THENAR.with_(heat_sink={**PASSIVE, "temperature_C": None})
 FAST = Drive([0, 1, 1.5, 6, 9, 12, 20], [0.1, 0.5, 1.2, -0.9, -0.8, 0.3, 0.3], held=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rig", "start_C"), [(WARM, 28.0), (STEADY, None)], ids=["warm", "steady"])
 @pytest.mark.parametrize("cells", [0, 3])
 def test_a_drive_is_the_exact_solution(rig: Rig, start_C: float | None, cells: int) -> None:

@@ -70,6 +70,7 @@ def test_nodes_do_not_change_what_is_steady() -> None:
     assert cells == pytest.approx(exact.rest(current, 40.0)[1:5], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_the_inverse_reaches_its_target_without_ringing() -> None:
     for icon in load_library("six-icons"):
         trace = simulate(icon, legs(5))
@@ -85,6 +86,7 @@ def test_rigs_of_one_batch_have_equally_many_nodes() -> None:
         simulate_many(icons, [legs(3), THENAR], nominal=THENAR, end_s=9.0)
 
 
+@pytest.mark.slow
 def test_columns_of_different_length_share_a_batch() -> None:
     icons, thin = tuple(load_library("six-icons"))[:3], {"skin.layer.muscle.thickness_mm": 4.0}
     rigs = [legs(3), legs(3).with_(**thin)]

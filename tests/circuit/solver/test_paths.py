@@ -89,6 +89,7 @@ PATHS: dict[str, Callable[[Rig, Icon], np.ndarray]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("control", ["display", "skin", "current"])
 @pytest.mark.parametrize("key", KEYS)
 def test_paths_agree_with_a_single_run_which_the_key_changes(key: str, control: str) -> None:

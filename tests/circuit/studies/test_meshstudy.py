@@ -32,6 +32,7 @@ def study(rig: str, control: str, way: str) -> MeshStudy:
     return mesh_study(Rig.load(rig), cooling_step(control), way=way)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", WAYS)
 @pytest.mark.parametrize("control", ["skin", "display"])
 @pytest.mark.parametrize("skin", OTHER_SKINS)

@@ -80,7 +80,11 @@ def test_one_icon_is_still_compared_with_the_others(cli: Cli, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(
-    "name", ["spice-pwl", "keysight-arb", "rigol-raf", "wav", "c-array", "tcs2-serial", "psychopy", "setpoint-csv"]
+    "name",
+    [
+        *("spice-pwl", "c-array", "tcs2-serial", "psychopy", "setpoint-csv"),
+        *(pytest.param(name, marks=pytest.mark.slow) for name in ("keysight-arb", "rigol-raf", "wav")),
+    ],
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
     said = cli("export", two, "--to", name, "-o", tmp_path / "out", *SURE)

@@ -111,6 +111,7 @@ def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: 
     assert "too few to say" not in words
 
 
+@pytest.mark.slow
 def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, rows = tmp_path / "t.csv", ["participant,trial,presented,responded"]
     for person in ("ann", "bob", "cem"):

@@ -137,13 +137,12 @@ def broken_run(missing: str, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("missing", ["typer", "numpy"])
-def test_it_runs_where_the_command_line_cannot_be_imported(missing: str) -> None:
-    run = broken_run(missing, "doctor", "--json")
+def test_it_runs_where_the_command_line_cannot_be_imported() -> None:
+    run = broken_run("typer", "doctor", "--json")
     assert (run.returncode, run.stderr) == (1, "")
     first, *others = json.loads(run.stdout)["findings"]
     assert (first["check"], first["state"]) == ("commands", "fault")
-    assert missing in first["text"]
+    assert "typer" in first["text"]
     findings = {each["check"]: each for each in others}
     assert findings["Python"]["state"] == "ok"
     assert findings["cache"]["state"] != "fault"

@@ -27,9 +27,17 @@ def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     return tmp_path / "cache" / "rankings"
 
 
-@pytest.fixture
-def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Numbers of people of the rankings that were computed."""
+@pytest.fixture(scope="module")
+def small() -> Ranking:
+    """A ranking of one icon."""
+    from thermicon.circuit import Rig
+    from thermicon.icons import load_library
+
+    return ranking_module.rank(load_library("cooling-step-skin"), Rig.load("thenar"), people=2, parameters=0)
+
+
+def counting(monkeypatch: pytest.MonkeyPatch, answer: Ranking | None) -> list[int]:
+    """Numbers of people of the rankings that are computed from now on, or asked for and given one answer."""
     import thermicon.perception as door
 
     people: list[int] = []
@@ -37,10 +45,22 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
     def counted(*arguments: object, **options: object) -> Ranking:
         people.append(options["people"])  # type: ignore[arg-type]
-        return compute(*arguments, **options)  # type: ignore[arg-type]
+        return compute(*arguments, **options) if answer is None else answer  # type: ignore[arg-type]
 
     monkeypatch.setattr(door, "rank", counted, raising=False)
     return people
+
+
+@pytest.fixture
+def computed(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """As `counting`, truly computed."""
+    return counting(monkeypatch, None)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch, small: Ranking) -> list[int]:
+    """As `counting`, for tests in which only the number of rankings counts."""
+    return counting(monkeypatch, small)
 
 
 def test_the_same_question_is_computed_once_and_answered_alike(
@@ -67,17 +87,17 @@ def test_the_same_question_is_computed_once_and_answered_alike(
     ],
     ids=" ".join,
 )
-def test_another_question_is_computed(cli: Cli, two: Path, computed: list[int], change: tuple[str, ...]) -> None:
+def test_another_question_is_computed(cli: Cli, two: Path, asked: list[int], change: tuple[str, ...]) -> None:
     cli("rank", two, *FEW)
     cli("rank", two, *FEW, *change)
-    assert len(computed) == 2
+    assert len(asked) == 2
 
 
-def test_a_changed_icon_is_computed(cli: Cli, two: Path, computed: list[int]) -> None:
+def test_a_changed_icon_is_computed(cli: Cli, two: Path, asked: list[int]) -> None:
     cli("rank", two, *FEW)
     two.write_text(two.read_text(encoding="utf-8").replace("warm by 4 °C", "warm by 4.5 °C"), encoding="utf-8")
     cli("rank", two, *FEW)
-    assert len(computed) == 2
+    assert len(asked) == 2
 
 
 def test_finished_parts_are_kept_where_they_were_asked_for(
@@ -91,42 +111,34 @@ def test_finished_parts_are_kept_where_they_were_asked_for(
 
 @pytest.mark.parametrize("damage", [b"", b"x" * 100, None], ids=["empty", "other", "one byte"])
 def test_a_damaged_file_is_computed_anew(
-    cli: Cli, two: Path, cache: Path, computed: list[int], damage: bytes | None
+    cli: Cli, two: Path, cache: Path, asked: list[int], damage: bytes | None
 ) -> None:
     first = cli("rank", two, *FEW)
     (kept,) = cache.iterdir()
     whole = kept.read_bytes()
     kept.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]) if damage is None else damage)
     assert cli("rank", two, *FEW).stdout == first.stdout
-    assert len(computed) == 2
+    assert len(asked) == 2
     assert kept.read_bytes() == whole
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="access lists, not modes, keep folders private there")
-def test_what_others_can_write_is_not_read(cli: Cli, two: Path, cache: Path, computed: list[int]) -> None:
+def test_what_others_can_write_is_not_read(cli: Cli, two: Path, cache: Path, asked: list[int]) -> None:
     cli("rank", two, *FEW)
     (kept,) = cache.iterdir()
     kept.chmod(0o666)
     cli("rank", two, *FEW)
     cache.chmod(0o777)
     cli("rank", two, *FEW)
-    assert len(computed) == 3
+    assert len(asked) == 3
 
 
-def test_only_the_latest_are_kept(cache: Path, monkeypatch: pytest.MonkeyPatch, rankings: list[Ranking]) -> None:
+def test_only_the_latest_are_kept(cache: Path, monkeypatch: pytest.MonkeyPatch, small: Ranking) -> None:
     monkeypatch.setattr(kept_rankings, "MOST_KEPT", 2)
     for number, name in enumerate(("a", "b", "c")):
-        remember(name, rankings[0])
+        remember(name, small)
         for path in cache.iterdir():
             os.utime(path, (number, number)) if path.stat().st_mtime > 3 else None
     assert recall("a") is None
     assert recall("b") is not None
     assert recall("c") is not None
-
-
-@pytest.fixture
-def rankings() -> list[Ranking]:
-    from thermicon.circuit import Rig
-    from thermicon.icons import load_library
-
-    return [ranking_module.rank(load_library("cooling-step-skin"), Rig.load("thenar"), people=2, parameters=0)]

@@ -65,6 +65,7 @@ def test_every_level_is_a_judged_drive(out: Path) -> None:
     assert facts["planned_s"] == pytest.approx(20.0 + 40 * float(levels[-1]["duration_s"]) + 39 * 8.0, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("threshold_K", "seed"), [(0.3, 1), (0.8, 3)])
 def test_the_threshold_is_recovered(threshold_K: float, seed: int, out: Path, tmp_path: Path) -> None:
     done = run(out, tmp_path, "--threshold", threshold_K, "--seed", seed)

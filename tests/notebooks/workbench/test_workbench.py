@@ -266,7 +266,7 @@ def test_a_notebook_with_it_is_saved_small(tmp_path: Path) -> None:
     nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
     command = [sys.executable, "-m", "nbconvert", "--execute", "--to", "notebook", "--inplace", str(path)]
     subprocess.run(command, check=True, capture_output=True, cwd=tmp_path)
-    assert path.stat().st_size < 300_000
+    assert path.stat().st_size < 800_000, "of which the text editor is a third: without it a saved page would be dead"
     outputs = nbformat.read(path, as_version=4).cells[0].outputs
     assert "application/vnd.jupyter.widget-view+json" in outputs[0]["data"]
     assert "image/png" not in outputs[0]["data"]

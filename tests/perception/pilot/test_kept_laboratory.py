@@ -50,6 +50,7 @@ def compared(found: Observed, icons: IconSet, rig: Rig, folder: Path) -> tuple[f
     return ranking.proportion_correct - middle, shared / min(high - low, most - least)
 
 
+@pytest.mark.slow
 def test_rank_says_of_a_kept_laboratory_what_observed_said(icons: IconSet, rig: Rig, tmp_path: Path) -> None:
     off, shared = compared(pilot(icons, rig, 4, 24, 120, 8), icons, rig, tmp_path)
     assert abs(off) < 0.03
@@ -67,6 +68,7 @@ def test_so_it_does_after_a_large_pilot(
     assert shared > 0.75
 
 
+@pytest.mark.slow
 def test_draws_judge_with_their_own_memory(icons: IconSet, rig: Rig, tmp_path: Path) -> None:
     model = kept(pilot(icons, rig, 2, 12, 130, 4), tmp_path)
     assert model.posterior is not None
