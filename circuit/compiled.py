@@ -28,6 +28,7 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 from thermicon.icons.userfolder import NotPrivate, compiled_folder, private_folder, read_private, write_private
@@ -74,11 +75,13 @@ class _KernelCache(FunctionCache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the compiled function for a signature; None for any fault, since compiling again is the cure."""
-        try:
-            _ready(target_context)
-            return self._load_overload(sig, target_context)
-        except Exception:
-            return None
+        overload = None
+        with suppress(Exception):
+            rtsys.initialize(target_context)
+            overload = self._load_overload(sig, target_context)
+        if overload is None:
+            _no_search_for_blas()
+        return overload
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled function; where that fails, later runs compile it again."""
@@ -87,12 +90,6 @@ class _KernelCache(FunctionCache):
 
 
 @cache
-def _ready(target_context: Any) -> None:
-    """Load numba's own tables, which numba by itself loads again for every function, once per process."""
-    _no_search_for_blas()
-    target_context.refresh()
-
-
 def _no_search_for_blas() -> None:
     """Spare numba the import of scipy.linalg, by which it learns that BLAS is there: it is, as scipy is required."""
     from numba.np import linalg
