@@ -144,11 +144,16 @@ class FoundSet:
             "",
             *self._goal(),
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
-            f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed {found.seed}). "
-            f"{self._winner()} Before and after are for {crowd} on the {rig} rig.",
+            f"people, whatever --people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
+            f"(seed {found.seed}). {self._winner()} Before and after are for {crowd} on the {rig} rig.",
             "These are predictions of a model, not measurements, and the set was optimised for that same model: "
             "expect lower scores from people.",
         )
+
+    def _last_climb(self) -> str:
+        """What the last climb went by, where a goal is for a share of people."""
+        by = self.found.climbed_by
+        return f", in the last climb {by}, with people and draws of the model together" if by else ""
 
     def _winner(self) -> str:
         """What the result was chosen by, of the sets that the search held at its end."""

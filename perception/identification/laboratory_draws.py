@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import Norm
-from ..observer.memory_constants import with_memory
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people
+from ..observer.people import People
 from ..sensation.detection import pooled
-from ..sensation.memory_parameters import memory_parameters
-from ..sensation.parameters import latin
+from .laboratories import Laboratories
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
@@ -99,22 +97,11 @@ def laboratory_draws(
         For an observer without draws.
 
     """
-    held = model.posterior
-    if held is None:
-        raise ValueError(f"{model.name} has no posterior draws, from which an interval for a new laboratory is made")
-    count = len(persons)
-    chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
-    offsets = held.new_laboratory(seed)
-    memory = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
-    shares = latin(len(memory), draws, seed)
+    laboratories, count = Laboratories.of(model, norm, draws, seed), len(persons)
     everyone = np.arange(count)
 
     def one(place: int) -> tuple[Array, ...]:
-        k = int(chosen[place])
-        moved = {p.name: p.at(float(share)) for p, share in zip(memory, shares[place], strict=True)}
-        observer = with_memory(held.observer(k), moved)
-        drawn = draw_people(count, seed, age_years=model.age_years, spreads=held.draw(k))
-        people = drawn.less_sensitive(*(-offsets[k]))
+        observer, people = laboratories.at(place, count)
         return scored(
             played(place), people, observer, norm, seed, task, everyone if invited is None else invited[place]
         )
@@ -124,10 +111,8 @@ def laboratory_draws(
         found.append(scores)
         if step is not None:
             step()
-    names = (*held.names, *held.memory_names, *(p.name for p in memory), "laboratory, cold", "laboratory, warm")
-    moved = np.array([[p.at(float(s)) for p, s in zip(memory, row, strict=True)] for row in shares]).reshape(draws, -1)
-    values = np.hstack([held.draws[chosen], held.memory[chosen], moved, offsets[chosen]])
-    return LaboratoryDraws(names, values, *(np.stack([scores[k] for scores in found]) for k in range(8)))
+    each = (np.stack([scores[k] for scores in found]) for k in range(8))
+    return LaboratoryDraws(laboratories.names, laboratories.values, *each)
 
 
 def scored(

@@ -105,6 +105,22 @@ class ObserverModel:
         """
         return 0 if self.posterior is None else min(wanted, len(self.posterior))
 
+    def draw_count(self, asked: int | None, usual: int) -> int:
+        """How many draws an interval is made of: those asked for, or the usual number, or as many as there are.
+
+        None are made where there are none. A ValueError for one draw, and for more than there are.
+
+        >>> ObserverModel.load().draw_count(None, 128), ObserverModel.load().draw_count(0, 128)
+        (128, 0)
+        """
+        if asked is not None and (asked < 0 or asked == 1):
+            raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {asked}")
+        if self.posterior is None or asked is None:
+            return self.most_draws(usual)
+        if asked > len(self.posterior):
+            raise ValueError(f"{asked} draws of the parameters were asked for; {self.name} has {len(self.posterior)}")
+        return asked
+
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""
         return draw_people(n, seed, age_years=self.age_years, spreads=self.spreads)

@@ -133,7 +133,7 @@ def frontier(
     norm: str = USUAL_NORM,
     most_s: float | None = None,
     goal: Goal | str | None = None,
-    parameters: int = DRAWS,
+    parameters: int | None = None,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> Frontier:
@@ -157,7 +157,8 @@ def frontier(
         What is wanted: icons are left out that miss its `safety`, or for the nominal person its `detected` or `onset`,
         its `time` and `energy` are kept, and every choice is judged by it.
     parameters
-        Draws from the posterior for what 95 % of people reach (0: none), as in `rank`.
+        Draws from the posterior for what 95 % of people reach, as in `rank` (None: 128, or as many as there are; 0:
+        none).
     observer
         An observer or its file, as in `rank`.
     progress
@@ -174,6 +175,8 @@ def frontier(
         Where not even two icons can be chosen.
     GoalError
         For a goal for a share of people without draws.
+    ValueError
+        For an unknown norm, a single draw, and more draws than there are.
 
     Examples
     --------
@@ -189,9 +192,7 @@ def frontier(
     if most < 2:
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
-    draws = 0 if model.posterior is None else parameters
-    if parameters < 0 or parameters == 1:
-        raise ValueError(f"what 95 % of people reach needs at least two draws, or 0 for none, not {parameters}")
+    draws = model.draw_count(parameters, DRAWS)
     if wanted is not None and wanted.single_people and not draws:
         raise GoalError(NEEDS_DRAWS)
     request = SearchRequest(most_s, None, wanted)

@@ -145,15 +145,9 @@ def rank(
         raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
     if choosing is not None:
         check_selection(choosing, [icon.name for icon in members])
-    if parameters is not None and (parameters < 0 or parameters == 1):
-        raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {parameters}")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
     model = ObserverModel.of(observer)
-    draws = 0 if by != "model" else (model.most_draws(DRAWS) if parameters is None else parameters)
-    if model.posterior is None:
-        draws = 0
-    elif draws > len(model.posterior):
-        raise ValueError(f"{draws} draws of the parameters were asked for; {model.name} has {len(model.posterior)}")
+    draws = model.draw_count(parameters, DRAWS) * (by == "model")
     if wanted is not None and choosing is not None:
         wanted.check_count(choosing.count)
     if wanted is not None and wanted.single_people and not draws:

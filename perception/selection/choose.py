@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..identification.carry_over import CarryOver, task_among
@@ -310,7 +311,7 @@ def _climbed(
     for start in [list(first), *(one for one in drawn if limits.kept(one))]:
         chosen, score = start, namings.score(start, objective)
         while True:
-            allowed = _swaps(chosen, must, limits, len(middle))
+            allowed = swaps(chosen, must, limits, len(middle))
             found = namings.swapped(chosen, objective, allowed)
             seen += int(allowed.sum())
             place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
@@ -324,7 +325,8 @@ def _climbed(
     return SubsetChoice(best, value, max(bound, value), value >= bound, seen)
 
 
-def _swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> Array:
+def swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> NDArray[np.bool_]:
+    """Which icon (chosen, n) may replace a chosen one: not one of those that must stay, and within the limits."""
     allowed = np.ones((len(chosen), n), dtype=bool)
     allowed[:, list(chosen)] = False
     for place, thing in enumerate(chosen):

@@ -98,10 +98,10 @@ class PopulationEvaluator(NominalEvaluator):
             observer=self.observer,
         )[0]
 
-    def better(self, one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
-        """The better of two sets for these people; the first where they are equal."""
+    def better(self, *sets: list[Candidate]) -> list[Candidate]:
+        """The best of some sets for these people; the first of those that are equal."""
         values = []
-        for genes in (one, other):
+        for genes in sets:
             icons = [gene.icon for gene in genes]
             d = self.pairwise_dprime(icons)
             middle = np.median(d, axis=0)[np.triu_indices(len(icons), 1)]
@@ -109,4 +109,4 @@ class PopulationEvaluator(NominalEvaluator):
             values.append(
                 float(middle.min()) if few else self.namings(d, icons).score(range(len(icons)), self.objective)
             )
-        return one if values[0] >= values[1] else other
+        return sets[max(range(len(sets)), key=lambda k: values[k])]

@@ -1,7 +1,7 @@
 """Sets that a search holds at its end, judged by the goal itself: what a goal for a share of people asks of each.
 
-A search maximises a mean, which many pools of icons can be scored by. What 95 % of people reach takes draws of the
-posterior, as in `rank`, so that only the last few sets are judged by it.
+What a share of people reaches is climbed by with a few draws of the posterior; the last few sets are judged with as
+many as in `rank`, and with all people.
 """
 
 from __future__ import annotations
@@ -61,13 +61,14 @@ class FinalJudge:
         return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
 
     @property
+    def climbed(self) -> GoalPart | None:
+        """The part for a share of people that sets are climbed by: the first about names; None without one."""
+        return next((part for part in self.parts if part.people is not None and part.quantity in JUDGED), None)
+
+    @property
     def words(self) -> str | None:
         """What sets are judged by besides the objective, in words; None for nothing."""
-        named = [
-            part.quantity + ("" if part.people is None else f" for {100.0 * part.people:g} % of people")
-            for part in self.parts
-        ]
-        return " and ".join(named) or None
+        return " and ".join(map(in_words, self.parts)) or None
 
     def appraisal(self, icons: Sequence[Icon]) -> Appraisal:
         """What all people make of a set."""
@@ -115,3 +116,12 @@ def _value(part: GoalPart, scores: Appraisal, persons: dict[str, Array]) -> floa
         "bits": scores.information_bits,
         "d_prime": scores.d_prime,
     }[part.quantity]
+
+
+def in_words(part: GoalPart) -> str:
+    """What a part is about.
+
+    >>> in_words(Goal.parse("correct >= 90 % for 95 % of people").parts[0])
+    'correct for 95 % of people'
+    """
+    return part.quantity + ("" if part.people is None else f" for {100.0 * part.people:g} % of people")

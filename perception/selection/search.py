@@ -2,8 +2,9 @@
 
 The best set among the listed members of the families is surrounded by slightly different icons; the best set of that
 pool is found as in `choose`, surrounded again, and so on, in shrinking steps: first for the nominal person, then for a
-few people. The sets that are held at the end (the start, the best for the nominal person, the best for a few people)
-are evaluated for all people; the one that comes nearest to the goal, or has the best objective, is the result.
+few people. With a goal for a share of people the start is the best listed set by what that share reaches, and a last
+climb goes by it. The sets that are held at the end (the start and the best of each climb) are evaluated for all people;
+the one that comes nearest to the goal, or has the best objective, is the result.
 """
 
 from __future__ import annotations
@@ -11,40 +12,38 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
 from ..identification.laboratory import DRAWS
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
 from .appraise import Appraisal
-from .candidates import Candidate, sample_candidates
+from .candidates import Candidate
 from .evaluators import NominalEvaluator, PopulationEvaluator
-from .finalists import FinalJudge
+from .finalists import FinalJudge, in_words
 from .found_icons import at_ends, found_set, listed_only, names_of
 from .goal import Goal
-from .max_min_subset import Limits, max_min_subset, nearest_pair
 from .request import ChoiceError
 from .search_request import SearchRequest, split_icons
-from .subset_identification import OBJECTIVES, Objective, SubsetIdentification
+from .search_run import SearchRun
+from .share_evaluator import ShareEvaluator
+from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import Family, Icon, IconSet
+    from thermicon.icons import Icon, IconSet
 
 Progress = Callable[[int, int], None]
 EVALUATIONS = 2000
-SAMPLED = 400
 BATCH = 16
 REFINING = 4
 PER_ROUND = 3
 """Each round tries 16 variants per icon on the nominal person; a third as many rounds try 4 on a few people."""
-WIDEST, REFINED, FINEST, SHRINK = 0.25, 0.05, 0.005, 0.85
-ALIKE = -1.0
-"""Stands for d′ between two members of one family, since each family gives one icon."""
+WIDEST, REFINED = 0.25, 0.05
+"""First steps of both climbs, as shares of the range of a parameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +55,7 @@ class SearchResult:
     found
         The best set.
     start
-        Icons that the search started from.
+        Icons that the search started from: for a goal for a share of people, the best listed ones by what it reaches.
     before, after
         Scores of the starting and of the best set.
     objective
@@ -75,6 +74,8 @@ class SearchResult:
         Number of different sets that were held at the end.
     chosen_by
         What the result was chosen by among them, in words.
+    climbed_by
+        What the last climb went by where the goal is for a share of people, in words; empty otherwise.
 
     See Also
     --------
@@ -93,6 +94,7 @@ class SearchResult:
     listed: tuple[str, ...] = ()
     finalists: int = 1
     chosen_by: str = ""
+    climbed_by: str = ""
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
@@ -114,7 +116,7 @@ def search(
     most_s: float | None = None,
     most_J: float | None = None,
     goal: Goal | str | None = None,
-    parameters: int = DRAWS,
+    parameters: int | None = None,
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> SearchResult:
@@ -147,10 +149,11 @@ def search(
         Most time in s and energy in J of all icons together; None: any.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
-        `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, that which comes
-        nearest to its other parts is the result. `rank` tells whether the result meets it.
+        `safety`, or for the nominal person its `detected` or `onset`. A part such as `correct >= 90 % for 95 % of
+        people` is climbed by. Of the sets held at the end, the one that comes nearest to its other parts is the
+        result. `rank` says whether the result meets it.
     parameters
-        Draws from the posterior, as in `rank`: for a goal for a share of people.
+        Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
     observer
         An observer or its file, as in `rank`; None: the shipped one.
     progress
@@ -166,7 +169,8 @@ def search(
     ChoiceError
         For a file without families, for fewer than two icons, or where no set can be played.
     ValueError
-        For an unknown norm, and for a goal for a share of people without draws to judge it by.
+        For an unknown norm, for a single draw or more than there are, and for a goal for a share of people without
+        draws to judge it by.
 
     Examples
     --------
@@ -185,13 +189,14 @@ def search(
     if count is None and wanted is not None and wanted.of("count") is not None:
         count = int(wanted.of("count") or 0)
     fixed, optional, free = split_icons(icons, count, must)
-    run, named = _Run(fixed, optional, icons.families, free, count is None), check_norm(norm)
+    run, named = SearchRun(fixed, optional, icons.families, free, count is None), check_norm(norm)
     model, request = ObserverModel.of(observer), SearchRequest(most_s, most_J, wanted)
     nominal, few = (
         NominalEvaluator(rig, objective, named, seed, model, request),
         PopulationEvaluator(rig, objective, named, seed, model, tracking, request),
     )
-    judge = FinalJudge(rig, objective, named, model, model.people(people, seed), seed, tracking, parameters, wanted)
+    draws = model.draw_count(parameters, DRAWS)
+    judge = FinalJudge(rig, objective, named, model, model.people(people, seed), seed, tracking, draws, wanted)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -200,10 +205,20 @@ def search(
 
     start = run.start(nominal, rng)
     rounds = max(0, round((evaluations - run.tried) / (BATCH * free)))
+    last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
-    best = run.improve(few.better(start, held), few, max(1, rounds // PER_ROUND), REFINING, rng, REFINED, tell)
-    finalists = _different([start, best, held])
+    if (part := judge.climbed) is None:
+        best = run.improve(few.better(start, held), few, last, REFINING, rng, REFINED, tell)
+        finalists = _different([start, best, held])
+    else:
+        shared = ShareEvaluator(rig, part, named, seed, model, draws, tracking, request)
+        few = PopulationEvaluator(rig, shared.objective, named, seed, model, tracking, request)
+        # Short searches do without: people take longer over the listed icons than over the rest.
+        widest, start = run.listed(few, shared, start, seed) if len(run.pool) <= evaluations else (start, start)
+        middle = run.improve(few.better(widest, held), few, last, REFINING, rng, REFINED, tell)
+        best = run.improve(shared.better(start, middle, held), shared, last, REFINING, rng, REFINED, tell)
+        finalists = _different([start, best, middle, widest, held])
     scores = [judge.appraisal([gene.icon for gene in genes]) for genes in finalists]
     merits = [judge.merit([gene.icon for gene in genes], score) for genes, score in zip(finalists, scores, strict=True)]
     place = max(range(len(finalists)), key=lambda k: merits[k])
@@ -223,113 +238,10 @@ def search(
         listed=listed_only(best),
         finalists=len(finalists),
         chosen_by=judge.words or objective,
+        climbed_by="" if part is None else in_words(part),
     )
 
 
 def _different(sets: Sequence[list[Candidate]]) -> list[list[Candidate]]:
     """Each set once, by its icons."""
     return list({tuple(gene.icon.name for gene in genes): genes for genes in sets}.values())
-
-
-class _Run:
-    """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
-
-    def __init__(
-        self, fixed: tuple[Icon, ...], optional: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool
-    ) -> None:
-        self.fixed, self.optional = [Candidate(icon) for icon in fixed], [Candidate(icon) for icon in optional]
-        self.families, self.free, self.each = families, free, each
-        self.tried = 0
-
-    def start(self, judge: NominalEvaluator | PopulationEvaluator, rng: np.random.Generator) -> list[Candidate]:
-        """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
-        found = self.best(pool, judge, None)
-        if found is None:
-            bad = [reason for reason in judge.objections if reason is not None]
-            good = [place for place, reason in enumerate(judge.objections) if reason is None]
-            raise ChoiceError(
-                f"no {self.free + len(self.fixed)} icons can be chosen within the limits: {len(bad)} of {len(pool)} "
-                f"that were tried cannot be chosen at all{', the first of which ' + bad[0] if bad else ''}"
-                + judge.request.least_totals(judge.limits, good, self.free + len(self.fixed))
-            )
-        return found
-
-    def improve(
-        self,
-        held: list[Candidate],
-        judge: NominalEvaluator | PopulationEvaluator,
-        rounds: int,
-        batch: int,
-        rng: np.random.Generator,
-        step: float,
-        tell: Any,
-    ) -> list[Candidate]:
-        """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
-        for _ in range(rounds):
-            about = held[len(self.fixed) :]
-            near = [gene.moved(rng, step * float(rng.exponential())) for gene in about for _ in range(batch)]
-            others = [gene for gene in self.optional if gene not in held]
-            pool = [*held, *others, *(gene for gene in near if gene is not None)]
-            better = self.best(pool, judge, held)
-            moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
-            held = better if better is not None else held
-            step = step if moved else max(SHRINK * step, FINEST)
-            tell(self.tried)
-        return held
-
-    def best(
-        self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator, held: list[Candidate] | None
-    ) -> list[Candidate] | None:
-        """The best set out of a pool, plain icons first; None where no set can be played."""
-        self.tried += len(pool)
-        d = judge.pairwise_dprime([gene.icon for gene in pool])
-        must = len(self.fixed)
-        good = [k for k in range(len(pool)) if k < must or judge.objections[k] is None]
-        pool, d = [pool[k] for k in good], d[:, good][:, :, good]
-        if len(pool) < must + self.free:
-            return None
-        middle = np.median(d, axis=0)
-        if self.each:
-            own = np.array([self._place(gene) for gene in pool])
-            middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        limits = None if judge.limits is None else Limits(judge.limits.costs[:, good], judge.limits.most)
-        first = max_min_subset(middle, must + self.free, tuple(range(must)), limits)
-        if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
-            return None
-        chosen = list(first.chosen)
-        if judge.objective != "worst":
-            begin = list(range(must + self.free)) if held is not None else chosen
-            chosen = climbed(
-                judge.namings(d, [gene.icon for gene in pool]), begin, judge.objective, middle, must, limits
-            )
-        return [pool[k] for k in sorted(chosen, key=lambda k: (k >= must, self._place(pool[k]), k))]
-
-    def _place(self, gene: Candidate) -> int:
-        return -1 if gene.family is None else self.families.index(gene.family)
-
-
-def climbed(
-    namings: SubsetIdentification,
-    chosen: list[int],
-    objective: Objective,
-    middle: Array,
-    must: int,
-    limits: Limits | None = None,
-) -> list[int]:
-    """Single swaps that improve an objective until none does; the first `must` stay, and no two alike come in."""
-    score = namings.score(chosen, objective)
-    while True:
-        allowed = np.ones((len(chosen), len(middle)), dtype=bool)
-        allowed[:, chosen] = False
-        for place, thing in enumerate(chosen):
-            rest = [k for k in chosen if k != thing]
-            allowed[place] &= (middle[rest] > ALIKE).all(axis=0) & (thing >= must)
-            if limits is not None:
-                for k in np.flatnonzero(allowed[place]).tolist():
-                    allowed[place, k] = limits.kept([*rest, k])
-        found = namings.swapped(chosen, objective, allowed)
-        place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
-        if not found[place, other] > score + 1e-9:
-            return chosen
-        score, chosen[place] = float(found[place, other]), other

@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..identification.confusion import embed
@@ -26,13 +27,15 @@ HALF = 64
 @dataclass(frozen=True, slots=True)
 class SubsetIdentification:
     """A pool as some people feel it: `half` (people, n, n) half squared distances, `push` (people, n, draws) noise
-    projected on the points, `lapse` (people,), `durations_s` (n,).
+    projected on the points, `lapse` (people,), `durations_s` (n,). A subset scores what the `share` of people reaches,
+    or for None their mean.
     """
 
     half: Array
     push: Array
     lapse: Array
     durations_s: Array
+    share: float | None = None
 
     @classmethod
     def of(
@@ -44,6 +47,7 @@ class SubsetIdentification:
         most: int = PEOPLE,
         *,
         favour: Array | float = 0.0,
+        share: float | None = None,
     ) -> SubsetIdentification:
         """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are.
 
@@ -56,7 +60,7 @@ class SubsetIdentification:
         own = (points**2).sum(axis=-1)
         half = 0.5 * (own[:, :, None] + own[:, None, :]) - np.einsum("pia,pja->pij", points, points)
         favoured = np.broadcast_to(np.asarray(favour, dtype=np.float64), d_prime.shape[:2])[:most, :, None]
-        return cls(half, np.concatenate([push, -push], axis=2) + favoured, np.asarray(lapse[:most]), durations_s)
+        return cls(half, np.concatenate([push, -push], axis=2) + favoured, np.asarray(lapse[:most]), durations_s, share)
 
     def __len__(self) -> int:
         return int(self.half.shape[1])
@@ -67,26 +71,45 @@ class SubsetIdentification:
         return SubsetIdentification(self.half[only], self.push[only], self.lapse[only], self.durations_s)
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
-        """Per cent correct (0–1), bits, or bits a second of the chosen, mean over the people."""
+        """Proportion correct, bits, or bits a second of the chosen: mean over people, or what the share reaches."""
         from . import subset_kernels as subsetkernels
 
         index = np.asarray(chosen, dtype=np.int64)
-        correct, bits = subsetkernels.score_of(self.half, self.push, self.lapse, index)
-        return float(subsetkernels.valued(correct, bits, float(self.durations_s[index].mean()), _code(objective)))
+        each = subsetkernels.scores_of(self.half, self.push, self.lapse, index)
+        return float(self._valued(each, self.durations_s[index].mean(), objective))
 
-    def swapped(self, chosen: Sequence[int], objective: Objective, allowed: Array) -> Array:
+    def swapped(self, chosen: Sequence[int], objective: Objective, allowed: NDArray[np.bool_]) -> Array:
         """Scores (k, n) with one chosen icon replaced by another; −inf where `allowed` (k, n) says no."""
+        from . import subset_kernels as subsetkernels
+
+        index = np.asarray(chosen, dtype=np.int64)
         found = np.full((len(chosen), len(self)), -math.inf)
-        for place, other in zip(*np.nonzero(allowed), strict=True):
-            trial = [*chosen]
-            trial[place] = int(other)
-            found[place, other] = self.score(trial, objective)
+        for place in range(len(chosen)):
+            others = np.flatnonzero(allowed[place])
+            if others.size:
+                each = subsetkernels.swapped(self.half, self.push, self.lapse, index, place, others)
+                trials = np.repeat(index[None], others.size, axis=0)
+                trials[:, place] = others
+                found[place, others] = self._valued(each, self.durations_s[trials].mean(axis=1), objective)
         return found
+
+    def _valued(self, each: Array, duration_s: Any, objective: Objective) -> Array:
+        """Values of an objective from correct and bits (2, …, people): the mean, or what the share of them reaches."""
+        if self.share is None:
+            # A running sum, as over all subsets, so that equal choices have equal scores there and here.
+            correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
+        else:
+            correct, bits = np.quantile(each, 1.0 - self.share, axis=-1)
+        values: Array = {"correct": correct, "bits": bits}.get(objective, bits / duration_s)
+        return values
 
     def enumerated(
         self, count: int, objective: Objective, must: Sequence[int], costs: Array, most: Sequence[float]
     ) -> tuple[tuple[int, ...], float, int] | None:
-        """The best of all subsets that hold `must` and keep the limits, its score, and how many were looked at."""
+        """The best of all subsets that hold `must` and keep the limits, its score, and how many were looked at.
+
+        It is that of the people's mean, whatever `share` is.
+        """
         from . import subset_kernels as subsetkernels
 
         order = np.array([*must, *(k for k in range(len(self)) if k not in set(must))], dtype=np.int64)

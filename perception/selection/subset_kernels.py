@@ -39,12 +39,11 @@ def _tally(counts: Any, size: int, draws: int, lapse: float) -> tuple[float, flo
     return correct / size, bits
 
 
-def _score_of(half: Any, push: Any, lapse: Any, chosen: Any) -> tuple[float, float]:
-    """Proportion correct and bits of one subset, mean over people."""
+def _scores_of(half: Any, push: Any, lapse: Any, chosen: Any) -> Any:
+    """Proportion correct and bits (2, people) of one subset, for every person."""
     people, draws = push.shape[0], push.shape[2]
     size = chosen.size
-    correct = 0.0
-    bits = 0.0
+    each = np.empty((2, people))
     for p in range(people):
         counts = np.zeros((size, size))
         for s in range(draws):
@@ -57,10 +56,51 @@ def _score_of(half: Any, push: Any, lapse: Any, chosen: Any) -> tuple[float, flo
                         least = value
                         best = b
                 counts[a, best] += 1.0
-        one, two = tally(counts, size, draws, lapse[p])
-        correct += one
-        bits += two
-    return correct / people, bits / people
+        each[0, p], each[1, p] = tally(counts, size, draws, lapse[p])
+    return each
+
+
+def _swapped(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: Any) -> Any:
+    """Proportion correct and bits (2, others, people) of a subset with one icon replaced by each of `others`.
+
+    Who is nearest among those that stay is found once, so that each of `others` costs only its own distances.
+    """
+    people, draws, size = push.shape[0], push.shape[2], chosen.size
+    each = np.empty((2, others.size, people))
+    near = np.empty((size, draws))
+    who = np.empty((size, draws), dtype=np.int64)
+    for p in range(people):
+        for a in range(size):
+            for s in range(draws):
+                best = a
+                least = -push[p, chosen[a], s]
+                for b in range(size):
+                    value = half[p, chosen[a], chosen[b]] - push[p, chosen[b], s]
+                    if b != place and value < least:
+                        least = value
+                        best = b
+                near[a, s] = least
+                who[a, s] = best
+        for k in range(others.size):
+            other = others[k]
+            counts = np.zeros((size, size))
+            for a in range(size):
+                if a == place:
+                    continue
+                edge = half[p, chosen[a], other]
+                for s in range(draws):
+                    counts[a, place if edge - push[p, other, s] < near[a, s] else who[a, s]] += 1.0
+            for s in range(draws):
+                best = place
+                least = -push[p, other, s]
+                for b in range(size):
+                    value = half[p, other, chosen[b]] - push[p, chosen[b], s]
+                    if b != place and value < least:
+                        least = value
+                        best = b
+                counts[place, best] += 1.0
+            each[0, k, p], each[1, k, p] = tally(counts, size, draws, lapse[p])
+    return each
 
 
 def _all_subsets(
@@ -145,5 +185,6 @@ def _all_subsets(
 _compile: Any = kernel(nogil=True)
 valued: Callable[[float, float, float, int], float] = _compile(_valued)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
-score_of: Callable[[Array, Array, Array, Any], tuple[float, float]] = _compile(_score_of)
+scores_of: Callable[[Array, Array, Array, Any], Array] = _compile(_scores_of)
+swapped: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_swapped)
 all_subsets: Callable[..., None] = _compile(_all_subsets)

@@ -170,7 +170,7 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
     assert "✓ time <= 60 s: " in words
     assert "Not reached by this search" in words
     assert "contact.area_cm2=18" in words
-    assert "what they maximised was proportion correct" in words
+    assert "what they maximised was proportion correct, in the last climb correct for 95 % of people" in words
     assert "held at the end" in words
     assert "correct" in report.read_text(encoding="utf-8")
     said = cli("search", families, *options[:-2], "--goal", "count 2, time <= 60 s")

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -56,6 +57,27 @@ def test_a_score_is_what_the_confusions_of_the_set_give() -> None:
     assert held.score(range(5), "correct") == pytest.approx(float(proportion_correct(named).mean()), abs=0.01)
     assert held.score(range(5), "bits") == pytest.approx(float(information_bits(named).mean()), abs=0.06)
     assert held.score(range(5), "bits-per-s") == held.score(range(5), "bits") / 4.0
+
+
+@pytest.mark.parametrize("objective", OBJECTIVES)
+@pytest.mark.parametrize("share", [None, 0.95])
+def test_a_swap_scores_what_its_set_scores(objective: Objective, share: float | None) -> None:
+    held = replace(pool(7, 8, people=5), share=share)
+    chosen = [5, 0, 3]
+    allowed = np.ones((3, 8), dtype=bool)
+    allowed[:, chosen], allowed[1, 7] = False, False
+    found = held.swapped(chosen, objective, allowed)
+    assert np.isneginf(found[~allowed]).all()
+    for place, other in zip(*np.nonzero(allowed), strict=True):
+        trial = [int(other) if k == place else icon for k, icon in enumerate(chosen)]
+        assert found[place, other] == pytest.approx(held.score(trial, objective), rel=1e-12)
+
+
+def test_what_a_share_reaches_is_a_quantile_of_the_people() -> None:
+    held = pool(3, 6, people=9)
+    alone = [held.person(k).score([0, 2, 4], "correct") for k in range(9)]
+    reached = replace(held, share=0.9).score([0, 2, 4], "correct")
+    assert reached == pytest.approx(float(np.quantile(alone, 0.1)))
 
 
 @pytest.mark.parametrize("objective", OBJECTIVES)

@@ -1,0 +1,70 @@
+"""Laboratories as the posterior allows them: the observer, the people and the memory that each draw brings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..observer.channels import Norm
+from ..observer.draws import PosteriorDraws
+from ..observer.memory_constants import with_memory
+from ..observer.observer import Observer
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People, draw_people
+from ..sensation.memory_parameters import memory_parameters
+from ..sensation.parameters import latin
+
+
+@dataclass(frozen=True, slots=True)
+class Laboratories:
+    """One laboratory for each of some evenly spaced draws.
+
+    `chosen` (n,) are the draws of `posterior`, `offsets` (n, 2) how much more sensitive (ln; cold, warm) the people of
+    each laboratory are, `memory` constants of memory by name, where the draws have none of their own.
+    """
+
+    posterior: PosteriorDraws
+    chosen: NDArray[np.int64]
+    offsets: Array
+    memory: tuple[dict[str, float], ...]
+    seed: int
+    age_years: float | None
+
+    @classmethod
+    def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> Laboratories:
+        """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
+        held = model.posterior
+        if held is None:
+            raise ValueError(
+                f"{model.name} has no posterior draws, from which an interval for a new laboratory is made"
+            )
+        chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
+        free = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
+        shares = latin(len(free), draws, seed)
+        memory = tuple({p.name: p.at(float(share)) for p, share in zip(free, row, strict=True)} for row in shares)
+        return cls(held, chosen, held.new_laboratory(seed)[chosen], memory, seed, model.age_years)
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+    def at(self, place: int, people: int) -> tuple[Observer, People]:
+        """The observer of one laboratory, and its people."""
+        k = int(self.chosen[place])
+        observer = with_memory(self.posterior.observer(k), self.memory[place])
+        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=self.posterior.draw(k))
+        return observer, drawn.less_sensitive(*(-self.offsets[place]))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns of `values`."""
+        memory = tuple(self.memory[0]) if self.memory else ()
+        return (*self.posterior.names, *self.posterior.memory_names, *memory, "laboratory, cold", "laboratory, warm")
+
+    @property
+    def values(self) -> Array:
+        """Every constant of every laboratory (n, constants)."""
+        memory = np.array([list(each.values()) for each in self.memory]).reshape(len(self), -1)
+        return np.hstack([self.posterior.draws[self.chosen], self.posterior.memory[self.chosen], memory, self.offsets])
