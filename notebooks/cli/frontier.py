@@ -12,8 +12,17 @@ from thermicon.icons.number_text import number, percent
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals
-from ..text.messages import check_changes, check_draws, load_observer, load_rig, progress_bar, usage
+from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals, goal_lines
+from ..text.messages import (
+    check_bounds,
+    check_changes,
+    check_draws,
+    check_parameters,
+    load_observer,
+    load_rig,
+    progress_bar,
+    usage,
+)
 from ..text.options import (
     Changes,
     Draws,
@@ -71,16 +80,8 @@ def frontier_command(
     check_tracking(tracking)
     check_totals(most_time, None)
     look = figure_look(figure, width, style, no_title, figure_data)
-    for option, value, least, highest in (
-        ("--most", most, 2, 64),
-        ("--people", people, 1, 100_000),
-        ("--seed", seed, 0, 2**32 - 1),
-        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
-    ):
-        if not least <= value <= highest:
-            raise usage(f"{value} is outside {least} to {highest}", option)
-    if parameters == 1:
-        raise usage("1 draw has no quantile; give 2 or more, or 0 for none", "--parameters")
+    check_bounds(("--most", most, 2, 64), ("--people", people, 1, 100_000), ("--seed", seed, 0, 2**32 - 1))
+    check_parameters(parameters)
     if objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     if output is not None:
@@ -168,17 +169,18 @@ def _amber(found: Frontier) -> Iterator[str]:
 
 
 def _goal(found: Frontier) -> Iterator[str]:
-    """The largest choice that meets the goal, or what is in the way of the smallest."""
-    if found.goal is None or not found.points:
+    """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
+    judged = [(len(point.icons), point.goal) for point in found.points if point.goal is not None]
+    if not judged:
         return
-    met = [len(point.icons) for point in found.points if point.goal is not None and point.goal.met]
+    met = [each for each in judged if each[1].met]
     if met:
-        more = "the most of these" if max(met) == len(found.points[-1].icons) else "by no larger choice of these"
-        yield f"Goal {found.goal.text}: met by the best {max(met)}, {more}"
-        return
-    first = found.points[0].goal
-    way = "" if first is None else f"; of {len(found.points[0].icons)}, {'; '.join(first.binding)}"
-    yield f"Goal {found.goal.text}: met by none of these choices{way}"
+        count, result = met[-1]
+        more = "the most of these" if count == judged[-1][0] else "by no larger choice of these"
+        yield from goal_lines(result.to_dict(), f"met by the best {count}, {more}")
+    else:
+        count, result = judged[0]
+        yield from goal_lines(result.to_dict(), f"met by none of these choices; the best {count}:")
 
 
 def _reached(found: Frontier) -> str:

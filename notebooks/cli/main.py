@@ -25,7 +25,7 @@ from ..figures.figure_look import (
 )
 from ..startup import is_command, print_anywhere, warn_if_hidden
 from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
-from ..text.messages import check_changes, interrupted, load_rig, usage
+from ..text.messages import check_bounds, check_changes, check_parameters, interrupted, load_rig, usage
 from ..text.options import (
     Bias,
     Changes,
@@ -278,17 +278,8 @@ def rank_command(
     only reports where it disagrees.
     """
     check_changes(changes or [])
-    bounds = (
-        ("--people", people, 1, 100_000),
-        ("--seed", seed, 0, 2**63 - 1),
-        ("--trials", trials, 1, 1_000_000),
-        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
-    )
-    for option, value, least, most in bounds:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
-    if parameters == 1:
-        raise usage("an interval needs at least 2 draws; give 2 or more, or 0 for none", "--parameters")
+    check_bounds(("--people", people, 1, 100_000), ("--seed", seed, 0, 2**63 - 1), ("--trials", trials, 1, 1_000_000))
+    check_parameters(parameters)
     if by not in RANKED_BY:
         raise usage(f"{by!r} is not one of {', '.join(RANKED_BY)}", "--by")
     check_tracking(tracking)

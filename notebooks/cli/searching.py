@@ -19,7 +19,17 @@ from ..figures.figure_look import (
 )
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
-from ..text.messages import check_changes, check_draws, load_observer, load_rig, note, progress_bar, usage
+from ..text.messages import (
+    check_bounds,
+    check_changes,
+    check_draws,
+    check_parameters,
+    load_observer,
+    load_rig,
+    note,
+    progress_bar,
+    usage,
+)
 from ..text.options import (
     Changes,
     Draws,
@@ -99,18 +109,13 @@ def search_command(
     of the rig are tried. The result is the best set for the model, with which it was searched: test it with people.
     """
     check_changes(changes or [])
-    bounds = (
+    check_bounds(
         ("--choose", choose if choose is not None else 2, 2, 64),
         ("--evaluations", evaluations, 10, 1_000_000),
         ("--people", people, 1, 100_000),
         ("--seed", seed, 0, 2**32 - 1),
-        ("--parameters", 0 if parameters is None else parameters, 0, 10_000),
     )
-    for option, value, least, most in bounds:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
-    if parameters == 1:
-        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
+    check_parameters(parameters)
     check_totals(most_time, most_energy)
     if objective is not None and objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")

@@ -76,11 +76,11 @@ def check_totals(most_s: float | None, most_J: float | None) -> None:
             raise usage(f"{most:g} {unit} is not above 0", option)
 
 
-def goal_lines(goal: dict[str, Any] | None) -> Iterator[str]:
-    """Report whether a goal is met: every part with what was predicted, and what is in the way."""
+def goal_lines(goal: dict[str, Any] | None, verdict: str = "") -> Iterator[str]:
+    """Report whether a goal is met, or another `verdict`: what was predicted of each part, and what is in the way."""
     if goal is None:
         return
-    yield "Goal: met" if goal["met"] else "Goal: NOT met"
+    yield f"Goal: {verdict or ('met' if goal['met'] else 'NOT met')}"
     for part in goal["parts"]:
         yield f"  {'✓' if part['met'] else '✗'} {part['text']}: {_goal_value(part)}"
     if goal["binding"]:

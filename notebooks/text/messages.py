@@ -24,6 +24,7 @@ BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
+MOST_DRAWS = 10_000
 
 
 def is_ours(error: BaseException) -> bool:
@@ -70,6 +71,20 @@ class Missing(typer.BadParameter):
 def usage(message: str, option: str) -> typer.BadParameter:
     """Build the error for a command line that makes no sense; raising it exits with 2."""
     return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
+
+
+def check_bounds(*bounds: tuple[str, int, int, int]) -> None:
+    """Fail with a usage error for the first (option, value, least, most) whose value is outside."""
+    for option, value, least, most in bounds:
+        if not least <= value <= most:
+            raise usage(f"{value} is outside {least} to {most}", option)
+
+
+def check_parameters(draws: int | None) -> None:
+    """Fail with a usage error for a number of draws that makes no interval; None is the usual number."""
+    check_bounds(("--parameters", 0 if draws is None else draws, 0, MOST_DRAWS))
+    if draws == 1:
+        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
 
 
 def check_changes(changes: Sequence[str]) -> None:

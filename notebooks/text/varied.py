@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from thermicon.perception.sensitivity.swept import MEASURES, SITE
 
-from .messages import usage
+from .messages import check_bounds, check_parameters, usage
 
 MOST_VALUES = 10_000
 FORM = (
@@ -25,15 +25,8 @@ def read_measures(text: str, people: int, parameters: int, seed: int) -> tuple[t
             raise usage(f"{name!r} is not one of {', '.join(MEASURES)}", "--measure")
     if len(set(names)) < len(names):
         raise usage(f"{text!r}: the same quantity is given twice", "--measure")
-    for option, value, least, most in (
-        ("--people", people, 1, 10_000),
-        ("--parameters", parameters, 0, 10_000),
-        ("--seed", seed, 0, 2**32 - 1),
-    ):
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
-    if parameters == 1:
-        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
+    check_bounds(("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1))
+    check_parameters(parameters)
     if parameters == 0 and "correct_95" in names:
         raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--parameters")
     return names, people, parameters, seed

@@ -20,7 +20,7 @@ from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..sensation.detection import pooled
-from .laboratories import Laboratories
+from .drawn_laboratories import DrawnLaboratories
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
@@ -97,7 +97,7 @@ def laboratory_draws(
         For an observer without draws.
 
     """
-    laboratories, count = Laboratories.of(model, norm, draws, seed), len(persons)
+    laboratories, count = DrawnLaboratories.of(model, norm, draws, seed), len(persons)
     everyone = np.arange(count)
 
     def one(place: int) -> tuple[Array, ...]:

@@ -20,12 +20,16 @@ from ..observer.channels import CHANNELS
 from ..observer.draws import LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
 from ..observer.memory_constants import noise_name
+from .conditioning import Conditioned
+from .measurement_conditioning import Reweighted
 from .nominal import middle_of
 from .playing import Stage
 from .states import OFFSETS, Laboratories, LaboratoryPrior
 
 NO_SPREAD = 1e-6
 """Spread between laboratories (ln) in the draws of one: nothing, but for the logarithm that is taken of it."""
+DATA_LINES = 3
+"""Lines of a provenance that say what was conditioned on: file, participants, number of answers or values."""
 OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resampled"
 
 
@@ -40,6 +44,12 @@ class Resampling:
     how: str
     rig: str
     effective: float
+
+    @classmethod
+    def of(cls, found: Conditioned | Reweighted, provenance: Sequence[str], rig: str) -> Resampling:
+        """The resampling of conditioned laboratories; of the provenance, the lines on the data are noted."""
+        how = how_resampled(len(found.before), found.effective, found.rounds)
+        return cls("; ".join(provenance[:DATA_LINES]), how, rig, found.effective_after)
 
 
 def laboratory_draws(

@@ -16,7 +16,7 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from .changes import ChangedConstant, changed
-from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
+from .laboratory_file import Resampling, laboratory_draws, laboratory_texts
 from .measurement_conditioning import Reweighted, reweight
 from .measurement_fit import ConditionFit, MeasurementFit, compare_measurements
 from .measurements import Measurements
@@ -88,12 +88,7 @@ class MeasuredPilot:
         """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         found, played = self.conditioned, self.confusions_after
         outcome = np.column_stack([played.correct, played.bits, found.predicted_after.mean])
-        resampling = Resampling(
-            note="; ".join(self.provenance[:3]),
-            how=how_resampled(len(found.before), found.effective, found.rounds),
-            rig=", ".join((self.rig, *self.rig_changes)),
-            effective=found.effective_after,
-        )
+        resampling = Resampling.of(found, self.provenance, ", ".join((self.rig, *self.rig_changes)))
         return laboratory_draws(self.prior, found.after, outcome, self.played, resampling)
 
     def files(self) -> tuple[str, str]:

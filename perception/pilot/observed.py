@@ -19,7 +19,7 @@ from .answers import AnswerScore, score_person, score_pooled
 from .changes import ChangedConstant, changed
 from .conditioning import Conditioned, condition
 from .fit import Fit, compare
-from .laboratory_file import Resampling, how_resampled, laboratory_draws, laboratory_texts
+from .laboratory_file import Resampling, laboratory_draws, laboratory_texts
 from .likelihood import person_log_likelihoods
 from .playing import Stage, laboratories_for, stage
 from .prediction import ChangedPrediction, Three, three
@@ -93,12 +93,7 @@ class Observed:
         played = found.confusions_after
         each = np.diagonal(played.pooled, axis1=1, axis2=2)
         predicted = np.column_stack([played.correct, played.bits, each])
-        resampling = Resampling(
-            note="; ".join(self.provenance[:3]),
-            how=how_resampled(len(found.before), found.effective, found.rounds),
-            rig=", ".join((self.rig, *self.rig_changes)),
-            effective=found.effective_after,
-        )
+        resampling = Resampling.of(found, self.provenance, ", ".join((self.rig, *self.rig_changes)))
         return laboratory_draws(self.prior, found.after, predicted, self.played, resampling)
 
     def files(self) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.laboratories import Laboratories
+from ..identification.drawn_laboratories import DrawnLaboratories
 from ..identification.population import PROBES, ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm
@@ -50,7 +50,7 @@ class ShareEvaluator(PopulationEvaluator):
         objective: Objective = "bits" if part.quantity == "bits" else "correct"
         super().__init__(rig, objective, norm, seed, model, tracking, request)
         self.share = part.people
-        laboratories = Laboratories.of(model, norm, min(draws, DRAWS), seed)
+        laboratories = DrawnLaboratories.of(model, norm, min(draws, DRAWS), seed)
         self.groups = []
         for place in range(len(laboratories)):
             observer, people = laboratories.at(place, PEOPLE)

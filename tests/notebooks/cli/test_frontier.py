@@ -28,19 +28,22 @@ def test_a_goal_is_judged_at_every_number(cli: Cli) -> None:
     asked = ("--people", 4, "--parameters", 4, "--most", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s")
     words = " ".join(cli("frontier", "six-icons", *asked).stdout.split())
     assert "time energy goal" in words
-    assert "Goal correct >= 1 % for 95 % of people, time <= 17 s: met by the best 2, the most of these" in words
+    assert "Goal: met by the best 2, the most of these ✓ correct >= 1 % for 95 % of people: " in words
+    assert "✓ time <= 17 s: " in words
     assert "is about people and the uncertainty of the model together (4 draws), as in a goal" in words
     plain = " ".join(cli("frontier", "six-icons", *asked[:2], "--parameters", 0, "--most", 2).stdout.split())
     assert "about people alone, at the nominal constants: milder than in a goal" in plain
     none = " ".join(cli("frontier", "six-icons", *asked[:6], "--goal", "correct >= 99.9 %").stdout.split())
-    assert "met by none of these choices; of 2, " in none
+    assert "Goal: met by none of these choices; the best 2: ✗ correct >= 99.9 %: " in none
+    assert "missed by" in none
+    assert "In the way: " in none
 
 
 @pytest.mark.parametrize(
     ("options", "code", "told"),
     [
         (("--most", 1), 2, "1 is outside 2 to 64"),
-        (("--parameters", 1), 2, "1 draw has no quantile"),
+        (("--parameters", 1), 2, "1 draw has no interval"),
         (("--goal", "corect >= 9 %"), 1, "there is no quantity 'corect'"),
         (("--objective", "all"), 2, "'all' is not one of"),
         (("--most-time", 0), 2, "0 s is not above 0"),

@@ -260,7 +260,7 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     ("options", "told"),
     [
         (("--by", "luck"), "'--by': 'luck' is not one of model, rules"),
-        (("--parameters", 1), "'--parameters': an interval needs at least 2 draws; give 2 or more, or 0 for none"),
+        (("--parameters", 1), "'--parameters': 1 draw has no interval; give 2 or more, or 0 for none"),
         (("--parameters", -1), "'--parameters': -1 is outside 0 to 10000"),
     ],
 )

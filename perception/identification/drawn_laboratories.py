@@ -19,7 +19,7 @@ from ..sensation.parameters import latin
 
 
 @dataclass(frozen=True, slots=True)
-class Laboratories:
+class DrawnLaboratories:
     """One laboratory for each of some evenly spaced draws.
 
     `chosen` (n,) are the draws of `posterior`, `offsets` (n, 2) how much more sensitive (ln; cold, warm) the people of
@@ -34,7 +34,7 @@ class Laboratories:
     age_years: float | None
 
     @classmethod
-    def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> Laboratories:
+    def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> DrawnLaboratories:
         """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
         held = model.posterior
         if held is None:
