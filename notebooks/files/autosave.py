@@ -1,4 +1,7 @@
-"""Unsaved text, kept beside the file it belongs to while somebody types, and offered when the file is opened again."""
+"""Unsaved text, kept beside the file it belongs to while somebody types, and offered when the file is opened again.
+
+A version A that the text is compared with is kept with it.
+"""
 
 from __future__ import annotations
 
@@ -15,6 +18,7 @@ from threading import Lock, Timer
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from .cue_document import MOST_BYTES
+from .kept_draft import KeptVersion, draft_text, read_draft
 from .locking import is_alive
 from .outputs import OutputError, complete_or_absent
 
@@ -24,21 +28,28 @@ EVERY_S = 0.5
 KEPT_S = 30 * 86_400.0
 """Time after which an unsaved text of a process that is gone is removed, in s."""
 
+MOST_DRAFT_BYTES = 4 * MOST_BYTES
+"""Two texts, escaped as JSON."""
+
 _COUNT = itertools.count()
 
 
 @dataclass(frozen=True, slots=True)
 class Unsaved:
-    """A text that was not saved: where it is kept, since when (s since 1970), and whether its process still runs."""
+    """What was not saved: where it is kept, since when (s since 1970), and whether its process still runs.
+
+    ``text`` is None where only a version A was kept, ``version`` is None without one.
+    """
 
     path: Path
-    text: str
+    text: str | None
     since_s: float
     alive: bool
+    version: KeptVersion | None = None
 
     @property
     def age(self) -> str:
-        """How long ago it was typed, in words."""
+        """How long ago it was kept, in words."""
         minutes = max(0.0, time.time() - self.since_s) / 60
         if minutes < 1.5:
             return "a moment ago"
@@ -62,10 +73,10 @@ class Autosave:
         self._timer: Timer | None = None
         self._lock = Lock()
 
-    def keep(self, text: str) -> None:
-        """Keep a text, at once or within half a second."""
+    def keep(self, text: str, version: KeptVersion | None = None) -> None:
+        """Keep a text, and a version A beside it, at once or within half a second."""
         with self._lock:
-            self._text = text
+            self._text = draft_text(text, version)
             if self._timer is not None:
                 return
             wait_s = self._last_s + EVERY_S - time.monotonic()
@@ -105,7 +116,7 @@ class Autosave:
 
 
 def unsaved_texts(place: Path, text: str, own: Path | None = None) -> list[Unsaved]:
-    """Texts of other editors that were never saved to a file and differ from its ``text``, the newest first.
+    """What other editors never saved to a file: texts that differ from its ``text``, and versions A; the newest first.
 
     What equals the text, or is older than 30 days, is removed where its process is gone.
 
@@ -122,9 +133,10 @@ def unsaved_texts(place: Path, text: str, own: Path | None = None) -> list[Unsav
             continue
         with contextlib.suppress(OSError, NotRegular, TooLarge, UnicodeDecodeError):
             since_s, alive = path.lstat().st_mtime, process != os.getpid() and is_alive(process)
-            kept = read_limited(path, MOST_BYTES).decode("utf-8")
-            if kept != text and (alive or time.time() - since_s < KEPT_S):
-                found.append(Unsaved(path, kept, since_s, alive))
+            kept = read_draft(read_limited(path, MOST_DRAFT_BYTES).decode("utf-8"))
+            differs = kept.text != text
+            if (differs or kept.version_a is not None) and (alive or time.time() - since_s < KEPT_S):
+                found.append(Unsaved(path, kept.text if differs else None, since_s, alive, kept.version_a))
             elif not alive:
                 path.unlink()
     return sorted(found, key=lambda each: -each.since_s)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from thermicon.icons import library_names
 from ..editing.icon_edits import only, with_copy, with_name, with_new, without
 from ..files.autosave import Autosave, Unsaved, unsaved_texts
 from ..files.cue_document import CueDocument, create_document, open_document
+from ..files.kept_draft import KeptVersion
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
 
@@ -36,6 +38,7 @@ class Project:
         self._overwrites = False
         self._seen: tuple[object, bool] | None = None
         self._autosave = self._new_autosave()
+        self._version: KeptVersion | None = None
         self.offers: list[Unsaved] = []
         self.look_for_unsaved()
         design.on_change(self.changed)
@@ -65,8 +68,8 @@ class Project:
                 f"{self.document.path.name} {gone} on disk since it was opened here: open it again to see it, "
                 "or save your text under another name"
             )
-        if self.dirty and self._autosave is not None and self._autosave.failed:
-            return f"unsaved text is not kept: {self._autosave.failed}"
+        if (self.dirty or self._version) and self._autosave is not None and self._autosave.failed:
+            return f"{'unsaved text' if self.dirty else 'version A'} is not kept: {self._autosave.failed}"
         return ""
 
     def _changed_on_disk(self) -> bool:
@@ -82,27 +85,34 @@ class Project:
         return self._seen[1]
 
     def changed(self) -> None:
-        """Keep the text as it is now, and forget what is kept once it is saved."""
+        """Keep the text as it is now with version A, and forget what is kept once it is saved and there is no A."""
         self._overwrites = False
         if self._autosave is None:
             return
-        if self.dirty:
-            self._autosave.keep(self.design.text)
+        if self.dirty or self._version is not None:
+            self._autosave.keep(self.design.text, self._version)
         else:
             self._autosave.forget()
 
+    def keep_version(self, version: KeptVersion | None) -> None:
+        """Keep a version A beside the text from now on; None for none."""
+        self._version = version
+        self.changed()
+
     def look_for_unsaved(self) -> None:
-        """Find what was typed for this file elsewhere and never saved."""
+        """Find what was typed for this file elsewhere and never saved, and versions A that were kept there."""
         own = self._autosave
         self.offers = [] if own is None else unsaved_texts(own.place, self.design.text, own.path)
 
-    def restore(self) -> None:
-        """Put the newest unsaved text into the editor, as a step that can be undone."""
-        if self.offers:
-            self.design.show_text(self.offers[0].text)
-            for each in self.offers:
-                each.path.unlink(missing_ok=True)  # it is kept again as the text of this editor
-            self.offers = []
+    def restore(self) -> KeptVersion | None:
+        """Put the newest unsaved text into the editor, as a step that can be undone; return the newest version A."""
+        offers, self.offers = self.offers, []
+        text = next((each.text for each in offers if each.text is not None), None)
+        if text is not None:
+            self.design.show_text(text)
+        for each in offers:
+            each.path.unlink(missing_ok=True)  # it is kept again by this editor
+        return next((each.version for each in offers if each.version is not None), None)
 
     def discard(self) -> None:
         """Drop unsaved texts of editors that are gone; those of running ones stay theirs."""
@@ -110,6 +120,13 @@ class Project:
             if not each.alive:
                 each.path.unlink(missing_ok=True)
         self.offers = []
+
+    def discard_texts(self) -> None:
+        """Drop unsaved texts of editors that are gone, and go on to offer versions A alone."""
+        held = [replace(each, text=None) for each in self.offers if each.version is not None]
+        self.offers = [each for each in self.offers if each.version is None]
+        self.discard()
+        self.offers = held
 
     def openable(self) -> list[str]:
         """What can be opened: cue files of the folder by name, and the shipped sets."""
@@ -133,6 +150,8 @@ class Project:
             name, path = source, self.place(source)
             document = open_document(path)
             text = document.text
+        if not self.dirty and before is not None:
+            before.forget()  # version A goes along
         self.document, self.name, self._base = document, name, text
         self._autosave = self._new_autosave()
         self.design.open_text(text)
@@ -186,6 +205,7 @@ class Project:
         before, self._autosave = self._autosave, self._new_autosave()
         if before is not None:
             before.forget()
+        self.changed()
 
     @property
     def _path(self) -> Path:

@@ -15,6 +15,7 @@ from .log_panel import LogPanel
 from .project import SHIPPED, Project
 
 if TYPE_CHECKING:
+    from ..files.kept_draft import KeptVersion
     from .design_view import DesignView
 
 ICON_VERBS = ("New icon", "Duplicate", "Rename", "Delete")
@@ -25,6 +26,7 @@ class ProjectBar:
 
     def __init__(self, project: Project, view: DesignView) -> None:
         self.project, self.view = project, view
+        self.take_version: Callable[[KeptVersion], None] = lambda kept: None
         self._quiet = False
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
@@ -100,8 +102,8 @@ class ProjectBar:
         self.offer.layout.display = "none"
 
     def decided(self) -> None:
-        """The page's own offer was decided on; what the kernel kept is older."""
-        self.project.discard()
+        """The page's own offer was decided on; the text that the kernel kept is older."""
+        self.project.discard_texts()
         self._show_offer()
 
     def take_rig(self, name: str) -> None:
@@ -164,7 +166,7 @@ class ProjectBar:
     def _offer_panel(self) -> widgets.Box:
         self.offered = widgets.HTML()
         yes = self._button("Restore it", "as a step that can be undone", self._restore)
-        no = self._button("Discard", "drop the unsaved text", self._discard)
+        no = self._button("Discard", "drop what was not saved", self._discard)
         return widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
 
     def _show_offer(self) -> None:
@@ -172,13 +174,28 @@ class ProjectBar:
         self.offer.layout.display = "" if offers else "none"
         if offers:
             who = " in another workbench that is still open" if offers[0].alive else ""
-            said = f"Unsaved text of {self.project.name} was typed {offers[0].age}{who}:"
-            self._set(self.offered, fragment("marked", said, ""))
+            self._set(self.offered, fragment("marked", f"{self._offered_words()} {offers[0].age}{who}:", ""))
+
+    def _offered_words(self) -> str:
+        """What is offered, and that it was typed or kept."""
+        offers, name = self.project.offers, self.project.name
+        text = any(each.text is not None for each in offers)
+        if not any(each.version for each in offers):
+            return f"Unsaved text of {name} was typed"
+        return f"Unsaved text of {name} and a version A were kept" if text else f"A version A of {name} was kept"
 
     def _restore(self) -> None:
-        self.project.restore()
+        text = any(each.text is not None for each in self.project.offers)
+        version = self.project.restore()
         self._show_offer()
-        self._after("the unsaved text is in the editor; Undo takes it back out")
+        said = ["the unsaved text is in the editor; Undo takes it back out"] * text
+        if version is not None:
+            try:
+                self.take_version(version)
+                said.append("version A is in the Versions view again")
+            except ValueError as wrong:
+                said.append(str(wrong))
+        self._after("; ".join(said))
 
     def _discard(self) -> None:
         self.project.discard()

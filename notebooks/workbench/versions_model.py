@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..editing.cue_check import read_text
+from ..files.kept_draft import KeptVersion
 from ..timeline.frames import CanvasFrame, traces_of
 from ..timeline.overlaid import STYLES, series_of, values_on
 from ..timeline.terms import terms_of
@@ -53,6 +56,34 @@ class Version:
     def rig_words(self) -> str:
         """The rig with its changes, in words."""
         return ", ".join((self.rig.name, *self.rig.changes))
+
+    def to_kept(self) -> KeptVersion:
+        """The version as it is kept beside unsaved text."""
+        return KeptVersion(
+            text=self.text,
+            icon=self.icon,
+            rig=self.nominal.toml,
+            rig_changes=self.nominal.changes,
+            values=dict(self.values),
+        )
+
+    @classmethod
+    def of_kept(cls, kept: KeptVersion) -> Version:
+        """The version that was kept; a ValueError where this release no longer knows its rig or its knobs."""
+        from thermicon.circuit import Rig, RigError
+
+        from .knobs import apply
+
+        with TemporaryDirectory() as folder:
+            file = Path(folder) / "version-a.toml"
+            file.write_text(kept.rig, encoding="utf-8")
+            try:
+                nominal = replace(Rig.load(file), changes=kept.rig_changes)
+                applied = apply(nominal, kept.values)
+            except (RigError, KeyError) as wrong:
+                why = str(wrong).replace(f"{file}: ", "").replace("\n", "; ")
+                raise ValueError(f"version A cannot be restored: {why}") from None
+        return cls(kept.text, kept.icon, nominal, applied.rig, applied.observer, dict(kept.values))
 
 
 @dataclass(frozen=True, slots=True)

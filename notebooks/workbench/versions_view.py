@@ -32,14 +32,21 @@ SHARES = 10
 class VersionsView(LiveView[Request]):
     """Versions of one ``DesignModel``, compared while the tab is ``shown``; ``box`` holds the widgets.
 
-    ``take`` puts a version into the editor, with its rig; ``goal`` says which goal both are judged by.
+    ``take`` puts a version into the editor, with its rig; ``goal`` says which goal both are judged by; ``keeps`` gets
+    every new version A, None for none, so that it outlives the kernel.
     """
 
     settles_s = 0.25
 
-    def __init__(self, design: DesignModel, take: Callable[[Version], None], goal: Callable[[], Goal | None]) -> None:
+    def __init__(
+        self,
+        design: DesignModel,
+        take: Callable[[Version], None],
+        goal: Callable[[], Goal | None],
+        keeps: Callable[[Version | None], None] = lambda version: None,
+    ) -> None:
         super().__init__(design)
-        self._take, self._goal = take, goal
+        self._take, self._goal, self._keeps = take, goal, keeps
         self.kept: Version | None = None
         self._known: dict[Any, Any] = {}
         self._result = False
@@ -71,7 +78,12 @@ class VersionsView(LiveView[Request]):
 
     def keep_now(self) -> None:
         """Keep what is in the editor as version A."""
-        self.kept = self.now
+        self.restore(self.now)
+
+    def restore(self, version: Version) -> None:
+        """Take a version as version A."""
+        self.kept = version
+        self._keeps(version)
         self._show_kept()
         self.renew(0.0)
 
@@ -80,6 +92,7 @@ class VersionsView(LiveView[Request]):
         if self.kept is None:
             raise ValueError("there is no version A yet: keep one first")
         before, self.kept = self.kept, self.now
+        self._keeps(self.kept)
         self._take(before)
         self._show_kept()
         self.renew(0.0)
@@ -87,6 +100,7 @@ class VersionsView(LiveView[Request]):
     def drop(self) -> None:
         """Drop version A."""
         self.kept = None
+        self._keeps(None)
         self._stop()
         self._known.clear()
         self._show_kept()

@@ -215,6 +215,7 @@ class Workbench:
         from .export_view import ExportView
         from .project_bar import ProjectBar
         from .set_view import SetView
+        from .versions_model import Version
         from .versions_view import VersionsView
 
         style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
@@ -222,7 +223,13 @@ class Workbench:
         self.set_view = ranked = SetView(self._design, design.show_text)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = ProjectBar(self.project, design)
-        self.versions_view = versions = VersionsView(self._design, self._take_version, lambda: ranked.goal.goal)
+        self.versions_view = versions = VersionsView(
+            self._design,
+            self._take_version,
+            lambda: ranked.goal.goal,
+            lambda version: self.project.keep_version(None if version is None else version.to_kept()),
+        )
+        bar.take_version = lambda kept: versions.restore(Version.of_kept(kept))
         ranked.keep = self.project.keep_only
         ranked.goal.text.value = self._goal
         design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}

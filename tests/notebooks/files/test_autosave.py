@@ -10,6 +10,7 @@ import pytest
 
 from thermicon.notebooks.files.autosave import EVERY_S, KEPT_S, Autosave, unsaved_texts
 from thermicon.notebooks.files.cue_document import ChangedOnDisk, create_document, open_document
+from thermicon.notebooks.files.kept_draft import HEAD, KeptVersion, draft_text, read_draft
 from thermicon.notebooks.files.outputs import OutputError
 
 GONE = 4_000_000
@@ -101,3 +102,30 @@ def test_a_folder_that_takes_nothing_is_told(tmp_path: Path) -> None:
     kept.keep("text")
     assert kept.failed is not None
     assert "cannot write" in kept.failed
+
+
+def test_a_version_is_kept_with_the_text_and_plain_drafts_are_still_read(tmp_path: Path) -> None:
+    place, version = (
+        tmp_path / "a.cue",
+        KeptVersion(text="cue 1 # A", rig="name = 'x'", values={"age": 65.0, "site": "y"}),
+    )
+    kept = Autosave(place)
+    kept.keep("cue 1", version)
+    (alone,) = unsaved_texts(place, "cue 1")
+    assert (alone.text, alone.version) == (None, version)
+    (both,) = unsaved_texts(place, "as saved")
+    assert (both.text, both.version) == ("cue 1", version)
+    kept.forget()
+    left_behind(place, "typed by an earlier release")
+    assert [(each.text, each.version) for each in unsaved_texts(place, "cue 1")] == [
+        ("typed by an earlier release", None)
+    ]
+
+
+def test_a_draft_of_another_release_is_read_as_far_as_it_is_known() -> None:
+    version = KeptVersion(text="A", rig="r")
+    later = draft_text("B", version).replace('"text":"B"', '"text":"B","theme":"dark"')
+    assert "dark" in later
+    assert read_draft(later) == read_draft(draft_text("B", version))
+    broken = HEAD + ": 9}"
+    assert read_draft(broken).text == broken
