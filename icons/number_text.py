@@ -13,6 +13,15 @@ def signed(value: float, form: str = "g") -> str:
     return f"{value:{form}}".replace("-", "−")
 
 
+def count_of(count: int, noun: str, plural: str = "") -> str:
+    """Write a count with its noun, whose plural has an s unless it is given.
+
+    >>> count_of(1, "icon"), count_of(0, "choice"), count_of(2, "person", "people")
+    ('1 icon', '0 choices', '2 people')
+    """
+    return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
+
+
 def number(value: float, digits: int = 1) -> str:
     """Round to ``digits`` decimals, drop trailing zeros, and use a real minus sign.
 

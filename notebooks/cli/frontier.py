@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.number_text import number, percent
+from thermicon.icons.number_text import count_of, number, percent
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
@@ -138,7 +138,7 @@ def show_frontier(found: Frontier, title: str) -> None:
         )
     last = found.points[-1] if found.points else None
     starred = any(not point.optimal for point in found.points)
-    crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
+    crowd = count_of(found.people, "virtual person", "virtual people")
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
     show(
         *([title, ""] if title else []),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import number, percent, percent_span
+from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
@@ -125,7 +125,7 @@ class FoundSet:
         made = table("", "before", "after", numbers=("before", "after"))
         for what, before, after in self._rows():
             made.add_row(what, before, after)
-        crowd = "1 virtual person" if self.after.people == 1 else f"{self.after.people} virtual people"
+        crowd = count_of(self.after.people, "virtual person", "virtual people")
         icons = [
             f"  - {icon.name}: {icon.metadata.tags[-1]}"
             for icon in found.found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.icons.number_text import number, percent, percent_span
+from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .messages import usage
 
@@ -143,7 +143,7 @@ def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Ite
     else:
         yield (
             f"  - the best choice found; none exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
-            f"({chosen['looked_at']} choices examined)"
+            f"({count_of(chosen['looked_at'], 'choice')} examined)"
         )
     own = chosen["at_own_range"]
     yield (
@@ -158,9 +158,9 @@ def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Ite
     energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
     yield f"  - total duration {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:
-        people = min(chosen["people"], ONE_BY_ONE)
+        people = count_of(min(chosen["people"], ONE_BY_ONE), "individual person", "individual people")
         yield (
-            f"  - also the best choice for {percent(chosen['best_for_people'])} of {people} individual people; "
+            f"  - also the best choice for {percent(chosen['best_for_people'])} of {people}; "
             f"a choice for one person alone would gain d′ {chosen['median_loss']:.2f} (median)"
         )
     for icon in chosen["excluded"][:MOST_EXCLUDED]:
@@ -183,6 +183,8 @@ def scored(objective: str, value: float) -> str:
 
 def _searched(chosen: dict[str, Any]) -> str:
     if chosen["objective"] == "worst":
-        count = chosen["looked_at"]
-        return f"proven by bisection over d′ ({'1 threshold' if count == 1 else f'{count} thresholds'})"
-    return f"all {chosen['looked_at']} choices were evaluated, with {chosen['people']} people"
+        return f"proven by bisection over d′ ({count_of(chosen['looked_at'], 'threshold')})"
+    people = count_of(chosen["people"], "person", "people")
+    if chosen["looked_at"] == 1:
+        return f"it is the only one, evaluated with {people}"
+    return f"all {chosen['looked_at']} choices were evaluated, with {people}"

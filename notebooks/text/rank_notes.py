@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import number, percent
+from thermicon.icons.number_text import count_of, number, percent
 
 from .tables import table
 
@@ -76,7 +76,7 @@ def norm_lines(result: dict[str, Any]) -> Iterator[str]:
         if not changes:
             order = "same order"
         else:
-            more = f" ({len(changes) - 1} more change{'s' * (len(changes) > 2)} of order)" if len(changes) > 1 else ""
+            more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
             order = f"{changes[0][1]} before {changes[0][0]}{more}"
         yield f"     with the {NORM_NAMES.get(norm, norm)} distance: {percent(share)} correct, {order}"
 
@@ -136,9 +136,7 @@ def rules_lines(result: Mapping[str, Any]) -> list[str]:
     lines = []
     if pairs:
         apart = sum(pair["distinguishable_by_rules"] for pair in pairs)
-        lines.append(
-            f"Set: {apart} of {'1 pair' if len(pairs) == 1 else f'{len(pairs)} pairs'} distinguishable by the rules"
-        )
+        lines.append(f"Set: {apart} of {count_of(len(pairs), 'pair')} distinguishable by the rules")
     lines += [f"     {rule['text']}" for rule in whole["rules"]] if pairs else [r["text"] for r in whole["rules"]]
     if whole["worst_pair"]:
         lines += ["", *_worst(pairs, whole["worst_pair"])]
@@ -149,7 +147,7 @@ def rules_caveat(result: Mapping[str, Any]) -> str:
     """Return the sentence that explains the score and what the model was used for."""
     changes = result["rig_changes"]
     what_if = f" with {', '.join(changes)}" if changes else ""
-    crowd = "1 virtual person" if result["people"] == 1 else f"{result['people']} virtual people"
+    crowd = count_of(result["people"], "virtual person", "virtual people")
     return (
         f"Scored by rules of thumb alone on the {result['rig']} rig{what_if}: the share of rules passed, equally "
         "weighted, then the smallest margin as a multiple of its threshold. Rules on latency and felt peak need the "

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from thermicon.icons.number_text import number, percent, percent_span, seconds
+from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
 
 from .assumption_text import assumption_lines
 from .choices import choice_lines, goal_lines, laboratory
@@ -81,7 +81,7 @@ def _disagreements(result: dict[str, Any]) -> list[str]:
 
 def caveat(result: dict[str, Any]) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
-    crowd = "1 virtual person" if result["people"] == 1 else f"{result['people']} virtual people"
+    crowd = count_of(result["people"], "virtual person", "virtual people")
     changes = result["rig_changes"]
     what_if = f" with {', '.join(changes)}" if changes else ""
     norm = "" if result["norm"] == "episodes" else f", {result['norm']} norm"
@@ -117,8 +117,8 @@ def number_lines(result: dict[str, Any]) -> list[str]:
         lines.append(f"     predicted with the observer of {result['observer']}")
     if whole["proportion_correct_interval_new_laboratory"]:
         low, high = whole["proportion_correct_interval_new_laboratory"]
-        people = whole["new_laboratory_people"]
-        lines.append(f"     mean of {people} people in {_where(result)} (95 %): {percent_span(low, high)}")
+        people = count_of(whole["new_laboratory_people"], "person", "people")
+        lines.append(f"     mean of {people} in {_where(result)} (95 %): {percent_span(low, high)}")
     elif not result["chosen"]:
         lines.append(_no_interval(result["observer"]))
     if bits is not None:

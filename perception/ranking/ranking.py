@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.number_text import count_of
+
 from ..arrays import Array, own_arrays
 from ..comparison.rule_score import counted
 from ..comparison.rules import RuleResult
@@ -263,14 +265,14 @@ class Ranking:
 
     def __repr__(self) -> str:
         low, high = self.proportion_correct_interval
-        icons = "1 icon" if len(self.icons) == 1 else f"{len(self.icons)} icons"
+        icons = count_of(len(self.icons), "icon")
         where = with_changes(self.rig, self.rig_changes)
         if self.by == "rules":
             worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
             apart = sum(pair.rules_pass for pair in self.pairs)
             pairs = f", {apart} of {len(self.pairs)} pairs distinguishable" if self.pairs else ""
             return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
-        crowd = "1 person" if self.people == 1 else f"{self.people} people"
+        crowd = count_of(self.people, "person", "people")
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
         bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"

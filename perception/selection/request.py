@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.icons.number_text import count_of
+
 from ..arrays import Array
 from .subset_identification import OBJECTIVES, Objective
 
@@ -181,7 +183,7 @@ def check_selection(asked: Selection, names: Sequence[str]) -> None:
 
 def _too_few(count: int, all_: int, left: int, names: Sequence[str], excluded: dict[str, str]) -> str:
     if not excluded:
-        there = "there is only 1 icon" if all_ == 1 else f"there are only {all_} icons"
+        there = f"there {'is' if all_ == 1 else 'are'} only {count_of(all_, 'icon')}"
         return f"{count} icons cannot be chosen: {there}"
     reasons = "; ".join(f"{name} {excluded[name]}" for name in names[:3])
     more = f"; and {len(names) - 3} more" if len(names) > 3 else ""
