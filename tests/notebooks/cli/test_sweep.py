@@ -13,6 +13,8 @@ import pytest
 from thermicon.circuit import Rig, RigError, simulate, summarise
 from thermicon.icons import read_cue
 from thermicon.notebooks import sweep, sweep_figure
+from thermicon.notebooks.figures.figure_look import Look
+from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
 
 Cli = Callable[..., Any]
@@ -198,6 +200,31 @@ def test_figure_colours_tell_cooling_from_warming(two: Path) -> None:
     assert [text.get_text() for text in figure.axes[-1].get_xticklabels()] == ["0.0003", "0.001", "0.003"]
     assert all("(" in ax.get_ylabel() for ax in figure.axes)
     assert figure.axes[0].get_xscale() == "log"
+
+
+def test_a_figure_for_a_column_is_no_taller_than_a_fifth_more_than_it_is_wide(two: Path) -> None:
+    icons, rig = read_cue(two), Rig.load("thenar")
+    for key, values, count in (("contact.area_cm2", [4.0, 9.0], 2), ("contact.resistance_m2K_per_W", [3e-4, 3e-3], 7)):
+        look = Look("paper", 85.0)
+        figure = sweep_figure(sweep(icons, rig, key, values), key, across=look.across(3))
+        restyle(figure, look)
+        assert len(figure.axes) == count
+        assert "the same at all values: largest miss; display" in " ".join(figure.get_supxlabel().split())
+        assert float(figure.get_figheight()) <= 1.2 * float(figure.get_figwidth())
+        figure.draw_without_rendering()
+        boxes = [ax.yaxis.label.get_window_extent() for ax in figure.axes]
+        assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+
+
+def test_what_is_the_same_everywhere_is_drawn_flat_and_not_as_its_last_digits(two: Path) -> None:
+    frame = sweep(read_cue(two), Rig.load("thenar"), "contact.area_cm2", [4.0, 9.0])
+    figure = sweep_figure(frame, "contact.area_cm2")
+    assert len(figure.axes) == 9
+    peak = figure.axes[5]
+    low, high = peak.get_ylim()
+    assert high - low > 0.1
+    figure.draw_without_rendering()
+    assert peak.yaxis.get_offset_text().get_text() == ""
 
 
 @pytest.mark.slow
