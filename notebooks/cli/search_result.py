@@ -170,7 +170,7 @@ class FoundSet:
         pair = (self.before, self.after)
         if self.after.people > 1:
             one, other = (percent_span(*each.proportion_correct_interval) for each in pair)
-            yield "  95 % of people", one, other
+            yield "  middle 95 % of people", one, other
         intervals = [each.new_laboratory for each in pair]
         if all(intervals):
             one, other = (percent_span(*each.proportion_correct) for each in intervals if each is not None)

@@ -86,7 +86,7 @@ def _head(result: dict[str, Any], ranking: Ranking, title: str) -> Iterator[Bloc
         if result["pairs"]:
             yield Cards(((f"{apart} of {len(result['pairs'])}", "pairs distinguishable by the rules"),))
         return
-    spread = "" if ranking.people == 1 else "; 95 % of people: {}"
+    spread = "" if ranking.people == 1 else "; middle 95 % of people: {}"
     low, high = whole["proportion_correct_interval"]
     shown = [(percent(whole["proportion_correct"]), "named correctly" + spread.format(percent_span(low, high)))]
     if whole["information_bits"] is not None:

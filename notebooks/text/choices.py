@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.request import Selection
 
 OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
+SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 MOST_EXCLUDED = 5
 ONE_BY_ONE = 50
 
@@ -77,12 +78,17 @@ def check_totals(most_s: float | None, most_J: float | None) -> None:
 
 
 def goal_lines(goal: dict[str, Any] | None, verdict: str = "") -> Iterator[str]:
-    """Report whether a goal is met, or another `verdict`: what was predicted of each part, and what is in the way."""
+    """Report whether a goal is met, or another `verdict`: what was predicted of each part, and what is in the way.
+
+    What a share of people means is said too, unless a `verdict` is given, whose command says it with its table.
+    """
     if goal is None:
         return
     yield f"Goal: {verdict or ('met' if goal['met'] else 'NOT met')}"
     for part in goal["parts"]:
         yield f"  {'✓' if part['met'] else '✗'} {part['text']}: {_goal_value(part)}"
+    if not verdict and any(part["text"].endswith(" of people") for part in goal["parts"]):
+        yield f"  {SHARE}"
     if goal["binding"]:
         yield f"  In the way: {'; '.join(goal['binding'])}"
     if names := goal.get("not_reached"):

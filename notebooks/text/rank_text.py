@@ -150,8 +150,8 @@ def _bits_range(interval: Sequence[float] | None, where: str) -> Iterator[str]:
 
 
 def _range(result: dict[str, Any], interval: str) -> str:
-    """The interval of 95 % of people; nothing for one person."""
-    return "" if result["people"] == 1 else f"; 95 % of people: {interval}"
+    """The interval of the middle 95 % of people, which a goal's 95 % is not; nothing for one person."""
+    return "" if result["people"] == 1 else f"; middle 95 % of people: {interval}"
 
 
 def disagreement_lines(found: Sequence[dict[str, Any]]) -> Iterator[str]:

@@ -13,6 +13,8 @@ TERMS = {
     "nominal person": "the observer itself, between the virtual people: every multiplier is 1",
     "confusion matrix": "how often each presented icon (row) gets each name (column)",
     "proportion correct": "share of trials with the right name, 0 to 1",
+    "middle 95 % of people": "the range without the lowest and the highest 2.5 % of the virtual people, at the nominal "
+    "constants; a goal for 95 % of people is about what all but 5 % reach, with the uncertainty of the model",
     "bits": "information from icon to response; 2.58 bits name six icons without error",
     "gate": "the safety check that every exported drive passes",
 }

@@ -62,9 +62,9 @@ def scores_html(ranking: Ranking) -> str:
         return fragment("notes", [ALONE])
     draws, where = ranking.new_laboratory, _where(ranking)
     low, high = ranking.proportion_correct_interval
-    correct = [f"95 % of people: {percent_span(low, high)}"]
+    correct = [f"middle 95 % of people: {percent_span(low, high)}"]
     least, most = ranking.information_bits_interval
-    bits = [f"95 % of people: {least:.2f}–{most:.2f}"]
+    bits = [f"middle 95 % of people: {least:.2f}–{most:.2f}"]
     if draws is not None:
         correct.append(f"{where}: {percent_span(*draws.proportion_correct)}")
         bits.append(f"{where}: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
@@ -85,7 +85,8 @@ def caveat_html(result: dict[str, Any]) -> str:
     limits = f"{past} past a hard limit" if past else "no icon past a hard limit"
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
     by = "" if result["observer"] == "shipped" else f" Predicted with the observer of {result['observer']}."
-    words = fragment("terms", terms_of("d′", "bits", "detected", "felt", "onset", "proportion correct", SIMULATED))
+    known = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", SIMULATED)
+    words = fragment("terms", terms_of(*known))
     return fragment("block", f"{meaning} {caveat(result)}{by} {simulated}", "th-soft") + words
 
 

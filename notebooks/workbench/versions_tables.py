@@ -61,7 +61,7 @@ def _score_rows(both: RankedVersions) -> list[Row]:
     difference = "–"
     if gain is not None:
         mean, (low, high) = gain
-        difference = f"{_points(mean)} (95 % of people: {_points(low, '')} to {_points(high)})"
+        difference = f"{_points(mean)} (middle 95 % of people: {_points(low, '')} to {_points(high)})"
 
     def row(name: str, value: Callable[[Ranking], str], gap: Callable[[Ranking, Ranking], str]) -> Row:
         cells = [value(each) if each is not None else "–" for each in (a, b)]

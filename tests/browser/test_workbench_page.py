@@ -125,7 +125,7 @@ def test_a_goal_a_version_and_a_log_on_the_page(
     open_tab(page, "Versions")
     versions = page.locator(".thermicon-versions")
     expect(versions).to_contain_text("predicted for the same 200 people", timeout=4 * SETTLES_MS)
-    expect(versions).to_contain_text("points (95 % of people: ")
+    expect(versions).to_contain_text("points (middle 95 % of people: ")
     expect(versions.locator(".changes tr")).to_have_count(2)
     shot("page-versions")
     page.get_by_role("button", name="Swap A and B").click()

@@ -54,7 +54,9 @@ def test_a_version_is_kept_and_the_edited_one_is_compared_with_it() -> None:
     bench.text = EDITED
     assert view.worker.wait()
     results = said(view, "results")
-    assert re.search(r"correct \d+ % \d+ % \+\d+ points \(95 % of people: [+−]?\d+ to \+\d+ points\)", results), results
+    assert re.search(
+        r"correct \d+ % \d+ % \+\d+ points \(middle 95 % of people: [+−]?\d+ to \+\d+ points\)", results
+    ), results
     assert "confused most near and nearer near and nearer" in results
     assert "limits of this simulation kept kept" in results
     assert "same 6 people" in said(view, "status")
