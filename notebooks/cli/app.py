@@ -9,7 +9,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from ..text.messages import fail, interrupted, into_nowhere, is_ours
+from ..text.messages import fail, interrupted, into_nowhere, is_ours, late_notes
 
 SENTENCE = 400
 """More letters than any first sentence of a command's help has."""
@@ -44,8 +44,9 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
         try:
-            result = super().invoke(ctx)
-            sys.stdout.flush()
+            with late_notes():
+                result = super().invoke(ctx)
+                sys.stdout.flush()
         except KeyboardInterrupt:
             raise interrupted() from None
         except BrokenPipeError:

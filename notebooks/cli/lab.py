@@ -138,7 +138,8 @@ def page_environment(place: Path, file: Path | None, rig: str | None, observer: 
     if file is not None:
         open_document(file)
         told[FILE] = str(file.resolve())
-    used = load_rig(rig, []) if rig is not None or observer is not None else None
+    # The page says beside its curves what is doubtful about the module.
+    used = load_rig(rig, [], module_matters=False) if rig is not None or observer is not None else None
     if observer is not None:
         load_observer(observer, used)
         told[OBSERVER] = str(observer.resolve())

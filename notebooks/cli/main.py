@@ -125,7 +125,7 @@ def check_command(
     check_changes(changes or [])
     from .check import check
 
-    check(files, load_rig(rig, changes or []) if rig is not None or changes else None)
+    check(files, load_rig(rig, changes or [], module_matters=False) if rig is not None or changes else None)
 
 
 @app.command("fmt", rich_help_panel=WRITE)

@@ -78,7 +78,8 @@ def cite_command(
     check_changes(changes or [])
     if bibtex and (rig is not None or changes):
         raise usage("applies to the paragraph; BibTeX entries do not describe a rig", "--rig" if rig else "--set")
-    cite_file(file, bibtex, load_rig(rig, changes or []) if rig is not None or changes else None)
+    named = rig is not None or bool(changes)
+    cite_file(file, bibtex, load_rig(rig, changes or [], module_matters=False) if named else None)
 
 
 def cite_file(file: str, as_bibtex: bool, rig: Rig | None) -> None:

@@ -7,6 +7,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
+from contextvars import ContextVar
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, TextIO
 
@@ -24,6 +25,7 @@ BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
+_LATE: ContextVar[list[str] | None] = ContextVar("late notes", default=None)
 MOST_DRAWS = 10_000
 
 
@@ -40,7 +42,8 @@ def interrupted() -> typer.Exit:
 
 
 def fail(message: str) -> NoReturn:
-    """Say what is wrong on stderr and leave with the code for bad input."""
+    """Say what is wrong on stderr, after all other notes, and leave with the code for bad input."""
+    _say_late()
     typer.echo(clean(message), err=True)
     raise typer.Exit(BAD_INPUT)
 
@@ -51,6 +54,32 @@ def note(message: str) -> None:
         typer.echo(clean(message), err=True)
     except BrokenPipeError:
         into_nowhere(sys.stderr)
+
+
+@contextlib.contextmanager
+def late_notes() -> Iterator[None]:
+    """Hold back notes for the end of the block, where they do not stand between a command and its result."""
+    token = _LATE.set([])
+    try:
+        yield
+    finally:
+        _say_late()
+        _LATE.reset(token)
+
+
+def note_at_end(message: str) -> None:
+    """Note something once, at the end of the command; at once outside of one."""
+    held = _LATE.get()
+    if held is None:
+        note(message)
+    elif message not in held:
+        held.append(message)
+
+
+def _say_late() -> None:
+    held = _LATE.get() or []
+    while held:
+        note(held.pop(0))
 
 
 def into_nowhere(stream: TextIO) -> None:
@@ -95,16 +124,24 @@ def check_changes(changes: Sequence[str]) -> None:
             raise usage(f"{change!r} is not of the form KEY=VALUE, for example contact.area_cm2=4", "--set")
 
 
-def load_rig(name: str | None, changes: Sequence[str]) -> Rig:
-    """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr."""
+def load_rig(name: str | None, changes: Sequence[str], *, module_matters: bool = True) -> Rig:
+    """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr.
+
+    What is doubtful about the data sheets of its module is said at the end, and not at all by commands that neither
+    simulate nor export, to which the module does not matter.
+    """
     check_changes(changes)
     from thermicon.circuit import Rig
 
     rig = Rig.load(name or DEFAULT_RIG)
     if changes:
         rig = rig.with_set(list(changes))
+    sheets = () if rig.pump is None else rig.pump.origin.warnings
     for warning in rig.warnings:
-        note(f"warning: {warning}")
+        if warning not in sheets:
+            note(f"warning: {warning}")
+        elif module_matters:
+            note_at_end(f"warning: {warning}")
     return rig
 
 

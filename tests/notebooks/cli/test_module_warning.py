@@ -1,0 +1,55 @@
+"""The warning on the data sheets of a module: once, at the end, and only where the module is used."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.notebooks.text.messages import late_notes, load_rig, note, note_at_end
+
+Cli = Callable[..., Any]
+DOUBT = "that its two data sheets stand for"
+
+
+@pytest.fixture
+def hand(tmp_path: Path) -> Path:
+    path = tmp_path / "hand.toml"
+    Rig.load("fingertip").with_(module={"name": "TEC1-12706"}, driver={"current_limit_A": 2.0}).save(path)
+    return path
+
+
+def test_it_ends_what_a_simulation_says(cli: Cli, two: Path, hand: Path, tmp_path: Path) -> None:
+    said = cli("simulate", two, "--rig", hand, "-o", tmp_path / "trace.csv")
+    lines = said.stderr.splitlines()
+    assert len(lines) > 1
+    assert DOUBT in lines[-1]
+    assert sum(DOUBT in line for line in lines) == 1
+
+
+@pytest.mark.parametrize("command", ["check", "cite"])
+def test_it_is_not_said_where_the_module_is_not_used(cli: Cli, two: Path, hand: Path, command: str) -> None:
+    assert DOUBT not in cli(command, two, "--rig", hand).stderr
+    loud = cli(command, two, "--rig", hand, "--set", "ambient.film_W_per_m2K=60")
+    assert "skin at rest loses" in loud.stderr
+
+
+def test_an_error_stands_last(cli: Cli, two: Path, hand: Path) -> None:
+    said = cli("simulate", two, "--rig", hand, "--icon", "nobody")
+    assert said.exit_code == 1
+    lines = said.stderr.splitlines()
+    assert DOUBT in lines[-2]
+    assert "nobody" in lines[-1]
+
+
+def test_notes_are_held_back_only_within_a_command(hand: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    load_rig(str(hand), [])
+    assert DOUBT in capsys.readouterr().err
+    with late_notes():
+        note_at_end("late")
+        note_at_end("late")
+        note("soon")
+    assert capsys.readouterr().err.splitlines() == ["soon", "late"]
