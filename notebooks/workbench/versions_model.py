@@ -68,8 +68,11 @@ class Version:
         )
 
     @classmethod
-    def of_kept(cls, kept: KeptVersion) -> Version:
-        """The version that was kept; a ValueError where this release no longer knows its rig or its knobs."""
+    def of_kept(cls, kept: KeptVersion, model: ObserverModel | None = None) -> Version:
+        """The version that was kept, predicted by the observer of the workbench that restores it.
+
+        A ValueError where this release no longer knows its rig or its knobs.
+        """
         from thermicon.circuit import Rig, RigError
 
         from .knobs import apply
@@ -79,11 +82,11 @@ class Version:
             file.write_text(kept.rig, encoding="utf-8")
             try:
                 nominal = replace(Rig.load(file), changes=kept.rig_changes)
-                applied = apply(nominal, kept.values)
+                applied = apply(nominal, kept.values, None if model is None else model.nominal)
             except (RigError, KeyError) as wrong:
                 why = str(wrong).replace(f"{file}: ", "").replace("\n", "; ")
                 raise ValueError(f"version A cannot be restored: {why}") from None
-        return cls(kept.text, kept.icon, nominal, applied.rig, applied.observer, dict(kept.values))
+        return cls(kept.text, kept.icon, nominal, applied.rig, applied.observer, dict(kept.values), model)
 
 
 @dataclass(frozen=True, slots=True)

@@ -229,7 +229,7 @@ class Workbench:
             lambda: ranked.goal.goal,
             lambda version: self.project.keep_version(None if version is None else version.to_kept()),
         )
-        bar.take_version = lambda kept: versions.restore(Version.of_kept(kept))
+        bar.take_version = lambda kept: versions.restore(Version.of_kept(kept, self._design.model))
         ranked.keep = self.project.keep_only
         ranked.goal.text.value = self._goal
         design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}

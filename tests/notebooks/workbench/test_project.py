@@ -15,6 +15,8 @@ from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.autosave import EVERY_S
 from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
 from thermicon.notebooks.workbench.project_bar import ProjectBar
+from thermicon.notebooks.workbench.versions_model import Version
+from thermicon.perception.observer.observer import DATA
 
 TEXT = "cue 1\n\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\n\nicon b { hold for 1 s }\n"
 TYPED = TEXT.replace("3 K", "4 K")
@@ -221,6 +223,19 @@ def test_version_a_is_offered_with_unsaved_text_its_rig_and_knobs(path: Path) ->
     assert second.versions_view.kept.rig_words == "fingertip, contact.area_cm2=1.2"
     assert "version A is in the Versions view again" in said(bar)
     assert not second.versions_view.swap.disabled
+
+
+def test_a_restored_version_is_predicted_by_the_observer_of_its_workbench(path: Path) -> None:
+    file = path.with_name("lab.toml")
+    file.write_text((DATA / "observer.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    bench = Workbench(path, observer=file)
+    assert bench.page is not None
+    assert bench.versions_view is not None
+    kept = bench.versions_view.now.to_kept()
+    restored = Version.of_kept(kept, bench.versions_view.now.model)
+    assert restored == bench.versions_view.now
+    assert restored.model is not None
+    assert restored.model.name == "lab.toml"
 
 
 def test_version_a_alone_is_offered_until_it_is_dropped(path: Path) -> None:
