@@ -63,11 +63,9 @@ class Workbench:
         For a file or a name that does not exist.
     RigError
         For a rig that does not exist, or cannot be.
-    RecordError
-        For an observer file that cannot be read, or is of another version.
     ValueError
-        For an icon that the set does not have, a goal that cannot be read (`GoalError`), and a log that cannot be
-        used (`LogError`).
+        For an icon that the set does not have, a goal that cannot be read (`GoalError`), a log that cannot be used
+        (`LogError`), and an observer file that cannot be read or is of another version (`RecordError`).
 
     Examples
     --------
