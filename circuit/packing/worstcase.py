@@ -185,7 +185,8 @@ def _followed(delivery: DeliveredDrive, between_s: float) -> tuple[tuple[Check, 
         for each in zip(*drives.values(), strict=True)
     )
     again = tuple(new if new.quantity == RATE else old for old, new in zip(alone, again, strict=True))
-    checks = worst_of([alone, arrived, again])
+    second = f"in a second play {min(between_s, LONGEST_BETWEEN_S):.4g} s after the first"
+    checks = worst_of([alone, _during(arrived, "after the last set-point"), _during(again, second)])
     nominal, rest_A = ensemble.only([0]), float(drive.current_A[0])
     faulty = Faulty(nominal, drive, rest_A, nominal.at_rest(rest_A), rig.limits)
     return checks, faulty, (float(unpowered.min()), float(unpowered.max()))
@@ -195,6 +196,12 @@ def _then(samples: Samples, hold_s: float, after: Samples | None = None) -> Samp
     """Samples whose last one is held for `hold_s` more, and what comes after."""
     held = np.full(math.ceil(hold_s * samples.rate_Hz), samples.codes[-1])
     return replace(samples, codes=np.concatenate([samples.codes, held, *([] if after is None else [after.codes])]))
+
+
+def _during(checks: Sequence[Check], when: str) -> tuple[Check, ...]:
+    """Checks whose scenarios say in which part of a sequence they are, before how it ends."""
+    parts = ((check, *check.scenario.partition(", then ")) for check in checks)
+    return tuple(replace(check, scenario=f"{corner}, {when}{then}{ending}") for check, corner, then, ending in parts)
 
 
 def _demands(verdict: Gate, faulty: Faulty, unpowered_C: tuple[float, float], rest_s: float | None) -> Demands:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -10,13 +11,14 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.packing.worstcase import worst_case
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
-from thermicon.circuit.safety.gate import gate_set
+from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.single import Single, checks_of_lanes
 from thermicon.icons import load_library, parse
 
@@ -135,6 +137,52 @@ class TestRefusals:
         assert narrowed is not None
         assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
         assert "transconductance" not in narrowed.text
+
+
+class TestFollowedSetPoints:
+    """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
+
+    @pytest.mark.parametrize("change", ["cool by 6", "cool by 3", "warm by 3", "warm by 6"])
+    def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
+        shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
+        found = worst_case(by_controller(shape, RIG, "skin"))
+        assert found.safe, found.reason
+        assert rate_in(found) > 3.0, "a skin that changes at 3 K/s"
+
+    @pytest.mark.parametrize(("change", "sign"), [("warm", "−"), ("cool", "")])
+    def test_a_return_that_is_too_fast_is_refused(self, change: str, sign: str) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.0, "contact.resistance_m2K_per_W": 1e-4})
+        away = f"{change} by 3 °C at 2 °C/s; hold for 1 s"
+        found = worst_case(by_controller(away, small))
+        assert re.match(
+            rf"rate of skin temperature reaches {sign}\d\d\.\d+ K/s at 2\.[56]\d s, with contact −30 %, .*, "
+            rf"after the last set-point, {'below' if sign else 'above'} the hard limit of {sign}10 K/s from 2\.5\d s",
+            str(found.reason),
+        ), found.reason
+        back = worst_case(by_controller(f"{away}; return at 2 °C/s", small))
+        assert back.safe, "the same rig, returned slowly"
+
+    def test_a_second_play_from_where_the_first_one_left_the_module_is_refused(self) -> None:
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 1.0})
+        played = by_controller("step warm by 1 °C; hold for 1 s; step cool by 2 °C; hold for 1 s", rig)
+        assert re.match(
+            r"rate of skin temperature reaches 10\.\d+ K/s at 2\.\d\d s, with contact −30 %, .*, "
+            r"in a second play 0 s after the first, above the hard limit of 10 K/s",
+            str(worst_case(played, 0.0).reason),
+        )
+        assert worst_case(played, 15.0).safe, "by then the module is at its baseline"
+
+
+SMALL = {"skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5}
+
+
+def by_controller(shape: str, rig: Rig, control: str = "display") -> DeliveredDrive:
+    text = f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon a {{ {shape} }}\n"
+    return deliver(parse(text)["a"], rig, Device.load("closed-loop-controller"))
+
+
+def rate_in(verdict: Gate) -> float:
+    return max(abs(check.value) for check in verdict.checks if check.quantity == "rate of skin temperature")
 
 
 class TestStartWithoutPower:
