@@ -15,11 +15,13 @@ from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..rig.rig import Rig
+from ..rig.rigfile import RigError
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
+from ..solver.network import network_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import steady_state
+from ..solver.steady import holding_current_A, state_under_current, steady_state
 from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
@@ -50,13 +52,19 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     )  # fmt: skip
 
 
-def follow_samples(rig: Rig, samples: Samples) -> Drive:
+def follow_samples(rig: Rig, samples: Samples, *, nearest: bool = False) -> Drive:
     """Return the current by which the rig's display follows held set-points; RigError without a steady state.
 
-    It ends with the set-points, in a row of the current that holds the rest.
+    It ends with the set-points, in a row of the current that holds the rest. `nearest`: where the first set-point
+    cannot be held, the display begins as near to it as it may come.
     """
     levels = samples.command
-    rest, state = steady_state(rig, "display", float(levels[0]))
+    try:
+        rest, state = steady_state(rig, "display", float(levels[0]))
+    except RigError:
+        if not nearest:
+            raise
+        rest, state = _nearest_rest(rig, float(levels[0]))
     bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
@@ -68,6 +76,16 @@ def follow_samples(rig: Rig, samples: Samples) -> Drive:
         gains = np.array([gains_of(rig)])
         currents, _, _ = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([rest]), bank.states([state]))
     return Drive(times, [*currents[0], rest], held=True)
+
+
+def _nearest_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
+    """The current in A within the driver's limits that brings the display nearest to a level, and its steady state."""
+    network, driver = network_of(rig), rig.driver
+    current = float(np.clip(holding_current_A(network, "display", level_C), driver.current_min_A, driver.current_max_A))
+    try:
+        return current, state_under_current(network, current)
+    except ArithmeticError as problem:
+        raise RigError(f"rig {rig.name}, one corner of it: {problem}; begin nearer to rest") from None
 
 
 def designed_until(drive: Drive, end_s: float) -> Drive:

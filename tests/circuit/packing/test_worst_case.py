@@ -13,8 +13,11 @@ import pytest
 from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.temperatures import follow_samples
+from thermicon.circuit.packing.controlled import Module, samples_of
 from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
@@ -162,15 +165,45 @@ class TestFollowedSetPoints:
         back = worst_case(by_controller(f"{away}; return at 2 °C/s", small))
         assert back.safe, "the same rig, returned slowly"
 
-    def test_a_second_play_from_where_the_first_one_left_the_module_is_refused(self) -> None:
-        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 1.0})
+    def test_a_second_play_from_where_the_first_one_left_the_module_needs_a_pause(self) -> None:
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.91})
         played = by_controller("step warm by 1 °C; hold for 1 s; step cool by 2 °C; hold for 1 s", rig)
+        at_once, later = worst_case(played, 0.0), worst_case(played, 15.0)
         assert re.match(
             r"rate of skin temperature reaches 10\.\d+ K/s at 2\.\d\d s, with contact −30 %, .*, "
-            r"in a second play 0 s after the first, above the hard limit of 10 K/s",
-            str(worst_case(played, 0.0).reason),
+            r"in a second play 0 s after the first, above the hard .*; the shortest safe pause is 0\.\d s",
+            str(at_once.reason),
+        ), at_once.reason
+        assert later.safe, "by then the module is at its baseline"
+        shortest = later.repeated.shortest_pause_s
+        assert shortest is not None
+        assert 0.0 < shortest == later.demands.pause_at_least_s < 1.0
+        assert worst_case(played, shortest).safe
+        assert not worst_case(played, shortest - 0.1).safe
+
+    def test_a_loop_saturates_where_its_source_does_and_not_where_its_file_says(self) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.97})
+        played = "step warm by 1 °C; hold for 1 s; step cool by 1 °C; hold for 1 s"
+        found = worst_case(by_controller(played, small))
+        assert re.match(r"rate of skin temperature reaches .* K/s .*, gain \+10 %, ", str(found.reason)), found.reason
+        measured = small.with_(
+            **{
+                "uncertainty.gain_relative": 0.0,
+                "uncertainty.reason": "a test: its current source was measured",
+            }
         )
-        assert worst_case(played, 15.0).safe, "by then the module is at its baseline"
+        assert worst_case(by_controller(played, measured)).safe
+
+    def test_a_corner_that_cannot_hold_the_baseline_begins_as_near_to_it_as_it_comes(self) -> None:
+        weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.02})
+        module, samples = Module.of(weak), samples_of(by_controller("warm by 2 °C at 2 °C/s", weak))
+        with pytest.raises(RigError, match="the module cools it to 3"):
+            [follow_samples(rig, samples) for rig in module.rigs]
+        begun = module.drives(samples).current_A[:, 0]
+        display = module.ensemble.hold(begun, module.ensemble.at_rest(begun), np.array([0.0, 1.0]))[0][1, :, 0]
+        assert len(display) == 33
+        assert display[0] == pytest.approx(32.0, abs=1e-3), "the rig as given holds it"
+        assert 32.5 < display.max() < 33.0
 
 
 SMALL = {"skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5}
