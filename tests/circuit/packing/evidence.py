@@ -68,7 +68,7 @@ def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Genera
         if isinstance(course, Course):
             as_shown(rig, course, pauses, rng, worst)
             if course.held:
-                followed(rig, course, judged_s, rng, worst)
+                followed(rig, course, [judged_s, least], rng, worst)
     currents = [one for one in played if isinstance(one, Held)]
     player = Player(rig, rng) if currents else None
     for held in currents:

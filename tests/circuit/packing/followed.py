@@ -23,9 +23,6 @@ STEPS_A_ROW = 2
 LONGEST_PAUSE_S, AFTERWARDS_S = 15.0, 10.0
 """Of a pause, how much is simulated before a second play, and how long the module is followed after it."""
 
-HELD_WITHIN_K = 0.05
-"""A world that misses the first set-point by more cannot hold the baseline at all."""
-
 
 class Follower:
     """One rig in all its worlds, whose display follows set-points."""
@@ -43,13 +40,14 @@ class Follower:
         eye = np.eye(self.store.shape[1])
         self.inverse = np.linalg.inv(self.circuit.matrix + self.store[:, :, None] * eye)
         self._tried_A = np.array([self.least_A, 0.5 * (self.least_A + self.most_A), self.most_A])
-        tried = [self._modes(amperes).step(self.period_s) for amperes in self._tried_A]
+        tried = [self.modes(amperes).step(self.period_s) for amperes in self._tried_A]
         self._ahead = (
             np.stack([move[:, 1] for move, _ in tried], axis=1),
             np.stack([add[:, 1, 0] for _, add in tried], 1),
         )
 
-    def _modes(self, amperes: Array) -> Modes:
+    def modes(self, amperes: Array) -> Modes:
+        """Exact steps under currents (W,) that are held."""
         return self.circuit.modes(amperes, amperes**2)
 
     def allowed(self, amperes: Array, state: Array) -> Array:
@@ -70,8 +68,8 @@ class Follower:
         coldest = -slope / (2 * np.maximum(bend, 1e-12))
         return self.allowed(middle + half * np.where(under_root > 0, exact, coldest), state)
 
-    def rest(self, level_C: float) -> tuple[Array, Array]:
-        """States (W, n) at rest with the display at a level or as near as it may come, and which worlds hold it."""
+    def rest(self, level_C: float) -> Array:
+        """States (W, n) at rest with the display at a level, or as near to it as it may come."""
         low, high = self.least_A.copy(), self.most_A.copy()
         for _ in range(40):  # towards the current of greatest cooling, the driver's highest in most worlds
             near, far = low + (high - low) / 3, high - (high - low) / 3
@@ -82,8 +80,7 @@ class Follower:
             middle = 0.5 * (low + high)
             warm = self._steady(middle)[:, 1] > level_C
             low, high = np.where(warm, middle, low), np.where(warm, high, middle)
-        state = self._steady(0.5 * (low + high))
-        return state, np.abs(state[:, 1] - level_C) < HELD_WITHIN_K
+        return self._steady(0.5 * (low + high))
 
     def _steady(self, amperes: Array) -> Array:
         """Steady states (W, n); above 1000 °C where the module would heat without end."""
@@ -132,24 +129,40 @@ class Follower:
         place = np.floor(np.arange(count) * self.period_s / course.step_s + 1e-6).astype(int)
         return np.asarray(course.display_C[np.minimum(place, len(course.display_C) - 1)])
 
-
-def followed(rig: Json, course: Course, pause_s: float, rng: np.random.Generator, worst: Worst) -> Worst:
-    """Play set-points twice on the rig's own module, with a pause between; and zero current after either."""
-    follower = Follower(rig, rng)
-    state, _ = follower.rest(float(course.display_C[0]))
-    off = follower._modes(np.zeros(len(state)))
-    for hold_s in (min(pause_s, LONGEST_PAUSE_S), AFTERWARDS_S):
-        rows, ended = follower.follow(follower.levels_of(course, 0.0), state)
-        waited, state = follower.follow(follower.levels_of(course, hold_s)[len(rows) // follower.rows :], ended)
-        together = np.concatenate([rows, waited[1:]])
+    def hold(self, course: Course, hold_s: float, played: Array, state: Array, worst: Worst) -> Array:
+        """States (W, n) after the last set-point was held behind the rows of a play; rates across the join count."""
+        levels = self.levels_of(course, hold_s)[len(played) // self.rows :]
+        rows, ended = self.follow(levels, state)
+        together = np.concatenate([played[-2:-1], rows])
         worst.levels(together)
-        worst.rates(together, np.full(len(together) - 1, follower.row_s))
-        after, loose = [follower.circuit.read(ended[:, :, None])], ended[:, :, None]
-        for step_s, count in AFTER:
-            move, add = off.step(step_s)
-            for _ in range(count):
-                loose = move @ loose + add
-                after.append(follower.circuit.read(loose))
-        worst.levels(np.array(after))
-        worst.rates(np.array(after[:101]), np.full(100, AFTER[0][0]))
+        worst.rates(together, np.full(len(together) - 1, self.row_s))
+        return ended
+
+
+def followed(rig: Json, course: Course, pauses: list[float], rng: np.random.Generator, worst: Worst) -> Worst:
+    """Play set-points twice on the rig's own module, with each pause between; and zero current after either play."""
+    follower = Follower(rig, rng)
+    rest = follower.rest(float(course.display_C[0]))
+    rows, ended = follower.follow(follower.levels_of(course, 0.0), rest)
+    _judge(follower, rows, ended, worst)
+    for pause_s in {min(pause, LONGEST_PAUSE_S) for pause in pauses}:
+        state = follower.hold(course, pause_s, rows, ended, worst)
+        again, late = follower.follow(follower.levels_of(course, 0.0), state)
+        _judge(follower, again, late, worst)
+        follower.hold(course, AFTERWARDS_S, again, late, worst)
     return worst
+
+
+def _judge(follower: Follower, rows: Array, ended: Array, worst: Worst) -> None:
+    """Levels and rates of a play, and of a minute of zero current after it."""
+    worst.levels(rows)
+    worst.rates(rows, np.full(len(rows) - 1, follower.row_s))
+    off, loose = follower.modes(np.zeros(len(ended))), ended[:, :, None]
+    after = [follower.circuit.read(loose)]
+    for step_s, count in AFTER:
+        move, add = off.step(step_s)
+        for _ in range(count):
+            loose = move @ loose + add
+            after.append(follower.circuit.read(loose))
+    worst.levels(np.array(after))
+    worst.rates(np.array(after[:101]), np.full(100, AFTER[0][0]))
