@@ -2,48 +2,30 @@
 
 A display that is exactly at its set-points bounds the temperatures of repetition. No module jumps as a set-point does,
 so rates, and the hot plate, are those of the module that follows in each corner: in a play, on its return after the
-last set-point, and in a second play after the pause.
+last set-point, and in a play after itself or after those of the set that leave the display farthest away.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from thermicon.icons.number_text import signed
 
-from ..arrays import Array
 from ..delivery.delivered_drive import DeliveredDrive
 from ..delivery.samples import Samples
-from ..delivery.temperatures import follow_samples
-from ..rig.corner import with_gain
-from ..rig.rig import Rig
 from ..safety.checks import Check, colour_of, findings_of, worst_of
-from ..safety.corners import corners_of
 from ..safety.demands import Demands, SingleFault
-from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.gate import Gate
-from ..safety.repeated import Repeated, shortest_of
-from ..safety.single import checks_of_lanes
-from ..safety.single_faults import BEYOND_K, Faulty
-from ..safety.tally import WATCHED
+from ..safety.repeated import RECOVERED_K, Repeated, shortest_of
+from ..safety.single_faults import BEYOND_K
 from ..safety.thermode import DisplayCourse, Under
 from ..safety.thermode_gate import gate_shown
-from ..solver.steady import check_sink
+from .following_module import FollowingModule
 
 HELD = "every set-point reached"
-
-SETTLING_S = 10.0
-"""How long a module is followed after the last set-point, to which it returns at its own rate."""
-
-LONGEST_BETWEEN_S = 15.0
-"""Pause before the second play of a module at most: by then its display is at the baseline, and only skin is not."""
-
-OF_THE_MODULE = ("rate of skin temperature", "hot plate")
-"""What a display that is at its set-points does not bound."""
 
 
 def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
@@ -56,20 +38,19 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     verdicts = gate_shown(
         shows, rig, stuck_C=device.interval("set-point range"), pause_s=pause_s, rates=False, module=True
     )
-    module, under = Module.of(rig), Under.of(rig)
+    module, under, plays = FollowingModule.of(rig), Under.of(rig), [samples_of(delivery) for delivery in deliveries]
+    onces = [worst_of([module.once(play), verdict.once]) for play, verdict in zip(plays, verdicts, strict=True)]
+    repeats = _repeated(module, plays, [_safe(once) for once in onces], [verdict.repeated for verdict in verdicts])
     judged = []
-    for delivery, verdict in zip(deliveries, verdicts, strict=True):
-        samples = samples_of(delivery)
-        once = worst_of([module.once(samples), verdict.once])
-        repeated = _repeated(module, samples, verdict.repeated)
-        verdict = replace(
+    for delivery, verdict, once, repeated in zip(deliveries, verdicts, onces, repeats, strict=True):
+        with_module = replace(
             verdict,
             scenarios=verdict.scenarios + len(module.ensemble.corners),
             checks=worst_of([once, verdict.checks, repeated.checks]),
             once=once,
             repeated=repeated,
         )
-        judged.append(replace(verdict, demands=_demands(verdict, module, delivery, under)))
+        judged.append(replace(with_module, demands=_demands(with_module, module, delivery, under)))
     return tuple(judged)
 
 
@@ -85,99 +66,58 @@ def _held(delivery: DeliveredDrive) -> DisplayCourse:
     return DisplayCourse(HELD, 1.0 / samples.rate_Hz, samples.command)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Module:
-    """The rig's module in the corners of its uncertainty, in which it follows set-points as fast as its driver can.
+def _repeated(
+    module: FollowingModule, plays: Sequence[Samples], safe: Sequence[bool], shown: Sequence[Repeated]
+) -> list[Repeated]:
+    """The verdicts on repeated plays in any order: the display at its set-points, and the module in one after another.
 
-    A loop corrects the gain of its current source, but not the limit at which that saturates: `rigs` have the limits as
-    they flow. A weaker source is slower, so only the strongest is judged.
+    A play that is not safe by itself is never written, so never part of a sequence, and no pause makes it safe.
     """
+    together = [play for play, alone in zip(plays, safe, strict=True) if alone]
 
-    ensemble: Ensemble
-    rigs: tuple[Rig, ...]
+    def safe_with(pause_s: float) -> bool:
+        return all(_safe(checks) for checks in _in_sequence(module, together, pause_s))
 
-    @staticmethod
-    def of(rig: Rig) -> Module:
-        """The rig as given, and its corners with the strongest source."""
-        most = rig.uncertainty.gain_relative
-        corners = tuple(corner for corner in corners_of(rig) if corner.nominal or corner.gain_relative == most)
-        rigs = tuple(with_gain(corner.rig, corner.gain_relative) for corner in corners)
-        return Module(Ensemble.on(rig, corners, None), rigs)
-
-    def drives(self, samples: Samples) -> LaneDrives:
-        """The currents by which each corner follows set-points, as commanded."""
-        flows = [follow_samples(rig, samples, nearest=True) for rig in self.rigs]
-        return LaneDrives(flows[0].time_s, np.array([flow.current_A for flow in flows]) / self.ensemble.gain[:, None])
-
-    def checks(self, samples: Samples) -> tuple[Check, ...]:
-        """Every rule in its worst corner and ending."""
-        return checks_of_lanes(self.ensemble, self.drives(samples), self.ensemble.rig.limits)
-
-    def once(self, samples: Samples) -> tuple[Check, ...]:
-        """Every rule for one play, and for the module on its return after the last set-point."""
-        arrived = self.checks(_then(samples, SETTLING_S))
-        return worst_of([self.checks(samples), _during(arrived, "after the last set-point")])
-
-    def again(self, samples: Samples, pause_s: float) -> tuple[Check, ...]:
-        """The rules of `OF_THE_MODULE` in a second play, as far as a pause of that length leaves it away from rest."""
-        between_s = min(pause_s, LONGEST_BETWEEN_S)
-        twice = self.checks(_then(_then(samples, between_s, samples), SETTLING_S))
-        when = f"in a second play {between_s:.4g} s after the first"
-        return tuple(check for check in _during(twice, when) if check.quantity in OF_THE_MODULE)
-
-    def unpowered_C(self) -> tuple[float, float]:
-        """Between which temperatures in °C the display stands without power; RigError where the sink cannot."""
-        off = self.ensemble.at_rest(0.0)
-        for nodes in off.nodes_C:
-            check_sink(self.ensemble.rig, nodes)
-        values, _ = self.ensemble.hold(0.0, off, np.array([0.0, 1.0]))
-        display: Array = values[WATCHED.index("display_C"), :, -1]
-        return float(display.min()), float(display.max())
-
-    def faulty(self, samples: Samples) -> Faulty:
-        """Single faults of the rig as given."""
-        nominal, drive = self.ensemble.only([0]), follow_samples(self.rigs[0], samples)
-        rest_A = float(drive.current_A[0])
-        return Faulty(nominal, drive, rest_A, nominal.at_rest(rest_A), self.ensemble.rig.limits)
+    shortest = least_s = shown[0].shortest_pause_s
+    if least_s is not None and not safe_with(least_s):
+        shortest = shortest_of(lambda pause_s: pause_s >= least_s and safe_with(pause_s))
+    sequences = iter(_in_sequence(module, together, shown[0].pause_s))
+    repeats = []
+    for repeated, alone in zip(shown, safe, strict=True):
+        if alone:
+            again = {(check.quantity, check.severity, check.upper): check for check in next(sequences)}
+            of_module = (again.get((check.quantity, check.severity, check.upper), check) for check in repeated.checks)
+            checks = worst_of([repeated.checks, tuple(of_module)])
+            repeats.append(replace(repeated, checks=checks, shortest_pause_s=shortest))
+        else:
+            repeats.append(replace(repeated, shortest_pause_s=None))
+    return repeats
 
 
-def _repeated(module: Module, samples: Samples, shown: Repeated) -> Repeated:
-    """The verdict on repeated plays: the display at its set-points, and the module in a second play."""
-
-    def safe(pause_s: float) -> bool:
-        return colour_of(findings_of(module.again(samples, pause_s))) != "red"
-
-    again = {(check.quantity, check.severity, check.upper): check for check in module.again(samples, shown.pause_s)}
-    with_module = (again.get((check.quantity, check.severity, check.upper), check) for check in shown.checks)
-    shortest = least_s = shown.shortest_pause_s
-    if least_s is not None and not safe(least_s):
-        shortest = shortest_of(lambda pause_s: pause_s >= least_s and safe(pause_s))
-    return replace(shown, checks=worst_of([shown.checks, tuple(with_module)]), shortest_pause_s=shortest)
-
-
-def _then(samples: Samples, hold_s: float, after: Samples | None = None) -> Samples:
-    """Samples whose last one, which marks the end, is held for `hold_s`, and what comes after."""
-    held = np.full(math.ceil(hold_s * samples.rate_Hz - 1e-9), samples.codes[-1])
-    rest = samples.codes[-1:] if after is None else after.codes
-    return replace(samples, codes=np.concatenate([samples.codes[:-1], held, rest]))
+def _in_sequence(module: FollowingModule, plays: Sequence[Samples], pause_s: float) -> list[tuple[Check, ...]]:
+    """Each play after itself, and after those that leave the display farthest above and below the baseline."""
+    away: set[int] = set()
+    if len(plays) > 1:
+        left_K = [module.left_K(play, pause_s) for play in plays]
+        extremes = max(left_K), min(left_K)
+        away = {left_K.index(extreme) for extreme in extremes if abs(extreme) > RECOVERED_K}
+    return [
+        worst_of(module.again(play, pause_s, plays[before]) for before in sorted({number, *away}))
+        for number, play in enumerate(plays)
+    ]
 
 
-def _during(checks: Sequence[Check], when: str) -> tuple[Check, ...]:
-    """Checks whose scenarios say in which part of a sequence they are, before how it ends."""
-    parts = ((check, *check.scenario.partition(", then ")) for check in checks)
-    return tuple(replace(check, scenario=f"{corner}, {when}{then}{ending}") for check, corner, then, ending in parts)
+def _safe(checks: Sequence[Check]) -> bool:
+    return colour_of(findings_of(checks)) != "red"
 
 
-def _demands(verdict: Gate, module: Module, delivery: DeliveredDrive, under: Under) -> Demands:
+def _demands(verdict: Gate, module: FollowingModule, delivery: DeliveredDrive, under: Under) -> Demands:
     """What set-points demand, and what a loop that loses its sensor or has its poles swapped does to the module.
 
     The cut-off leaves room for the display without power: a player starts from there, and returns there after a stop.
     """
-    cut, unpowered_C, faulty = (
-        verdict.demands.cut_off_display_C,
-        module.unpowered_C(),
-        module.faulty(samples_of(delivery)),
-    )
+    cut, faulty = verdict.demands.cut_off_display_C, module.faulty(samples_of(delivery))
+    unpowered_C = module.unpowered_C()
     reach = (min(cut.low + BEYOND_K, unpowered_C[0]), max(cut.high - BEYOND_K, unpowered_C[1]))
     cut_off, stuck = faulty.cut_off(reach)
     rest_s = _rest_s(under, delivery, unpowered_C)

@@ -153,6 +153,19 @@ def followed(rig: Json, course: Course, pauses: list[float], rng: np.random.Gene
     return worst
 
 
+def followed_in_order(
+    rig: Json, courses: list[Course], order: list[tuple[int, float]], rng: np.random.Generator, worst: Worst
+) -> Worst:
+    """Play set-points of a set one after the other on the rig's own module, each with a pause after it."""
+    follower = Follower(rig, rng)
+    state = follower.rest(float(courses[order[0][0]].display_C[0]))
+    for which, pause_s in order:
+        rows, ended = follower.follow(follower.levels_of(courses[which], 0.0), state)
+        _judge(follower, rows, ended, worst)
+        state = follower.hold(courses[which], min(pause_s, LONGEST_PAUSE_S), rows, ended, worst)
+    return worst
+
+
 def _judge(follower: Follower, rows: Array, ended: Array, worst: Worst) -> None:
     """Levels and rates of a play, and of a minute of zero current after it."""
     worst.levels(rows)

@@ -14,9 +14,10 @@ from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.temperatures import follow_samples
-from thermicon.circuit.packing.controlled import Module, samples_of
+from thermicon.circuit.packing.controlled import samples_of
+from thermicon.circuit.packing.following_module import FollowingModule
 from thermicon.circuit.packing.pack import pack
-from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.packing.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
@@ -181,6 +182,21 @@ class TestFollowedSetPoints:
         assert worst_case(played, shortest).safe
         assert not worst_case(played, shortest - 0.1).safe
 
+    def test_in_a_set_a_play_may_begin_where_another_icon_left_the_module(self) -> None:
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.91})
+        upward = by_controller("step warm by 1 °C; hold for 1 s", rig)
+        downward = by_controller("cool by 1 °C at 4 °C/s; hold for 1 s", rig)
+        assert all(worst_case(alone, 0.0).safe for alone in (upward, downward))
+        first, second = worst_cases([upward, downward], 0.0)
+        assert re.match(
+            r"rate of skin temperature reaches 10\.\d+ K/s at 1\.\d\d s, with contact −30 %, .*, in a play 0 s after "
+            r"another icon of the set, above the hard .*; the shortest safe pause is 0\.\d s",
+            str(first.reason),
+        ), first.reason
+        assert second.safe
+        assert second.demands.pause_at_least_s == first.repeated.shortest_pause_s
+        assert all(verdict.safe for verdict in worst_cases([upward, downward], first.repeated.shortest_pause_s))
+
     def test_a_loop_saturates_where_its_source_does_and_not_where_its_file_says(self) -> None:
         small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.97})
         played = "step warm by 1 °C; hold for 1 s; step cool by 1 °C; hold for 1 s"
@@ -196,7 +212,7 @@ class TestFollowedSetPoints:
 
     def test_a_corner_that_cannot_hold_the_baseline_begins_as_near_to_it_as_it_comes(self) -> None:
         weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.02})
-        module, samples = Module.of(weak), samples_of(by_controller("warm by 2 °C at 2 °C/s", weak))
+        module, samples = FollowingModule.of(weak), samples_of(by_controller("warm by 2 °C at 2 °C/s", weak))
         with pytest.raises(RigError, match="the module cools it to 3"):
             [follow_samples(rig, samples) for rig in module.rigs]
         begun = module.drives(samples).current_A[:, 0]
