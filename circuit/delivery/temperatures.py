@@ -8,6 +8,8 @@ PID loop where it has one.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,10 +18,11 @@ from thermicon.icons import Icon
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..solver.batch_inputs import bank_of, run_follow, run_regulate
+from ..solver.batch_inputs import Bank, bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
 from ..solver.network import network_of
+from ..solver.plate import PAST_MOST_COOLING
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import holding_current_A, state_under_current, steady_state
 from .delivered_drive import DeliveredDrive
@@ -52,20 +55,21 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     )  # fmt: skip
 
 
-def follow_samples(rig: Rig, samples: Samples, *, nearest: bool = False) -> Drive:
+def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False) -> Drive:
     """Return the current by which the rig's display follows held set-points; RigError without a steady state.
 
-    It ends with the set-points, in a row of the current that holds the rest. `nearest`: where the first set-point
-    cannot be held, the display begins as near to it as it may come.
+    It ends with the set-points, in a row of the current that holds the rest. `to_the_limit`: where the module cannot
+    reach a set-point, even the first, the current goes to the driver's limit, past the most cooling, as in a real loop.
     """
     levels = samples.command
     try:
         rest, state = steady_state(rig, "display", float(levels[0]))
     except RigError:
-        if not nearest:
+        if not to_the_limit:
             raise
-        rest, state = _nearest_rest(rig, float(levels[0]))
-    bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+        rest, state = _saturated_rest(rig, float(levels[0]))
+    lane, period = np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    bank = _past_most_cooling(rig) if to_the_limit else bank_of(rig)
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
     place = np.floor(times[:-1] * samples.rate_Hz + 1e-6).astype(np.int64)
@@ -78,14 +82,26 @@ def follow_samples(rig: Rig, samples: Samples, *, nearest: bool = False) -> Driv
     return Drive(times, [*currents[0], rest], held=True)
 
 
-def _nearest_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
-    """The current in A within the driver's limits that brings the display nearest to a level, and its steady state."""
+def _saturated_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
+    """The current in A to which a loop runs that cannot hold a level, and the steady state there.
+
+    Where there is none, since the module would heat without limit, the one of the most cooling.
+    """
     network, driver = network_of(rig), rig.driver
-    current = float(np.clip(holding_current_A(network, "display", level_C), driver.current_min_A, driver.current_max_A))
-    try:
-        return current, state_under_current(network, current)
-    except ArithmeticError as problem:
-        raise RigError(f"rig {rig.name}, one corner of it: {problem}; begin nearer to rest") from None
+    most_cooling = holding_current_A(network, "display", level_C)
+    limit = driver.current_min_A if most_cooling < driver.current_min_A else driver.current_max_A
+    for current in (limit, float(np.clip(most_cooling, driver.current_min_A, driver.current_max_A))):
+        with suppress(ArithmeticError):
+            return current, state_under_current(network, current)
+    raise RigError(f"rig {rig.name}, one corner of it: it heats without limit at rest; begin nearer to rest")
+
+
+def _past_most_cooling(rig: Rig) -> Bank:
+    """The rig for a loop that does not know at which current its module cools most."""
+    network = network_of(rig)
+    plates = network.plates.copy()
+    plates[PAST_MOST_COOLING] = 1.0
+    return Bank.of([replace(network, plates=plates)])
 
 
 def designed_until(drive: Drive, end_s: float) -> Drive:

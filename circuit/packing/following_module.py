@@ -37,7 +37,8 @@ class FollowingModule:
     """The rig's module in the corners of its uncertainty, in which it follows set-points as fast as its driver can.
 
     A loop corrects the gain of its current source, but not the limit at which that saturates: `rigs` have the limits as
-    they flow. A weaker source is slower, so only the strongest is judged.
+    they flow. A weaker source is slower, so only the strongest is judged. Where a set-point cannot be reached the loop
+    runs to that limit, since it does not know at which current its module cools most.
     """
 
     ensemble: Ensemble
@@ -53,7 +54,7 @@ class FollowingModule:
 
     def drives(self, samples: Samples) -> LaneDrives:
         """The currents by which each corner follows set-points, as commanded."""
-        flows = [follow_samples(rig, samples, nearest=True) for rig in self.rigs]
+        flows = [follow_samples(rig, samples, to_the_limit=True) for rig in self.rigs]
         return LaneDrives(flows[0].time_s, np.array([flow.current_A for flow in flows]) / self.ensemble.gain[:, None])
 
     def checks(self, samples: Samples) -> tuple[Check, ...]:
