@@ -52,9 +52,9 @@ def cli() -> Callable[..., Said]:
 def process() -> Callable[..., Said]:
     """``process("check", "a.cue")`` runs a command as a person would, in a process of its own."""
 
-    def run(*arguments: object, cwd: Path | None = None, within_s: float = 120) -> Said:
+    def run(*arguments: object, cwd: Path | None = None) -> Said:
         command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *(str(each) for each in arguments)]
-        done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=within_s, check=False)
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=120, check=False)
         return Said(done.returncode, done.stdout, done.stderr)
 
     return run
