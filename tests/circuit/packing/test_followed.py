@@ -65,3 +65,22 @@ def test_the_fastest_skin_is_that_of_the_gate(shape: str, pause_s: float) -> Non
     assert ready.verdict.colour != "red", "a play that is refused by itself is not judged in sequences"
     rates = [abs(check.value) for check in ready.verdict.checks if check.quantity == "rate of skin temperature"]
     assert (1 + worst.beyond["rate"]) * RATE_K_PER_S == pytest.approx(max(rates), rel=2e-3)
+
+
+def test_the_hottest_plate_is_that_of_the_gate_where_a_loop_passes_the_most_cooling() -> None:
+    rig = Rig.load("thenar").with_(**{
+        "skin.elements": [1] * 5, "heat_sink.resistance_K_per_W": 0.6081, "module.cold_plate_J_per_K": 7.119,
+        "module.hot_plate_J_per_K": 5.684, "contact.area_cm2": 4.871, "contact.resistance_m2K_per_W": 0.002575,
+        "driver.current_limit_A": 1.819, "driver.update_Hz": 10.0,
+    })  # fmt: skip
+    text = "warm by 3.53 °C at 9.98 °C/s; hold for 2.51 s; return at 3.15 °C/s"
+    icon = parse(f"cue 1\nset s {{ control skin\n baseline 31.7 °C }}\nicon a {{ {text} }}")["a"]
+    form = load_format("setpoint-csv")
+    ready = prepare(icon, rig, Device.load("closed-loop-controller"), form, pause_s=4.9)
+    hottest = max(check.value for check in ready.verdict.checks if check.quantity == "hot plate")
+    files = pack([replace(ready, refusals=())], form)
+    rig_text, course = sidecar_in(files, "a")["rig"]["document"], read_file(files, "a")
+    worst = followed(rig_text, course, [4.9], np.random.default_rng(1), Worst())
+    assert worst.beyond["hot plate high"] == pytest.approx(0.26, abs=0.1), "in a second play, and in no first one"
+    assert hottest - 60.0 == pytest.approx(worst.beyond["hot plate high"], abs=0.03)
+    assert ready.verdict.colour == "red"
