@@ -8,6 +8,8 @@ PID loop where it has one.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,11 +17,14 @@ from thermicon.icons import Icon
 
 from ..arrays import Array
 from ..rig.rig import Rig
-from ..solver.batch_inputs import bank_of, run_follow, run_regulate
+from ..rig.rigfile import RigError
+from ..solver.batch_inputs import Bank, bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
+from ..solver.network import network_of
+from ..solver.plate import PAST_MOST_COOLING
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import steady_state
+from ..solver.steady import holding_current_A, state_under_current, steady_state
 from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
@@ -50,14 +55,21 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     )  # fmt: skip
 
 
-def follow_samples(rig: Rig, samples: Samples) -> Drive:
+def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False) -> Drive:
     """Return the current by which the rig's display follows held set-points; RigError without a steady state.
 
-    It ends with the set-points, in a row of the current that holds the rest.
+    It ends with the set-points, in a row of the current that holds the rest. `to_the_limit`: where the module cannot
+    reach a set-point, even the first, the current goes to the driver's limit, past the most cooling, as in a real loop.
     """
     levels = samples.command
-    rest, state = steady_state(rig, "display", float(levels[0]))
-    bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    try:
+        rest, state = steady_state(rig, "display", float(levels[0]))
+    except RigError:
+        if not to_the_limit:
+            raise
+        rest, state = _saturated_rest(rig, float(levels[0]))
+    lane, period = np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
+    bank = _past_most_cooling(rig) if to_the_limit else bank_of(rig)
     count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
     times: Array = np.arange(count + 1, dtype=np.float64) * period
     place = np.floor(times[:-1] * samples.rate_Hz + 1e-6).astype(np.int64)
@@ -68,6 +80,28 @@ def follow_samples(rig: Rig, samples: Samples) -> Drive:
         gains = np.array([gains_of(rig)])
         currents, _, _ = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([rest]), bank.states([state]))
     return Drive(times, [*currents[0], rest], held=True)
+
+
+def _saturated_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
+    """The current in A to which a loop runs that cannot hold a level, and the steady state there.
+
+    Where there is none, since the module would heat without limit, the one of the most cooling.
+    """
+    network, driver = network_of(rig), rig.driver
+    most_cooling = holding_current_A(network, "display", level_C)
+    limit = driver.current_min_A if most_cooling < driver.current_min_A else driver.current_max_A
+    for current in (limit, float(np.clip(most_cooling, driver.current_min_A, driver.current_max_A))):
+        with suppress(ArithmeticError):
+            return current, state_under_current(network, current)
+    raise RigError(f"rig {rig.name}, one corner of it: it heats without limit at rest; begin nearer to rest")
+
+
+def _past_most_cooling(rig: Rig) -> Bank:
+    """The rig for a loop that does not know at which current its module cools most."""
+    network = network_of(rig)
+    plates = network.plates.copy()
+    plates[PAST_MOST_COOLING] = 1.0
+    return Bank.of([replace(network, plates=plates)])
 
 
 def designed_until(drive: Drive, end_s: float) -> Drive:

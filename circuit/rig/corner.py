@@ -81,6 +81,26 @@ def perturbed(
     return replace(changed, document=json.dumps(document, sort_keys=True, ensure_ascii=False))
 
 
+def with_gain(rig: Rig, gain_relative: float) -> Rig:
+    """Return a rig whose driver saturates where a source does whose gain deviates by a share: at limits as they flow.
+
+    >>> with_gain(Rig.load("thenar"), 0.1).driver.current_max_A
+    1.6500000000000001
+    """
+    if not gain_relative:
+        return rig
+    assert rig.pump is not None
+    document, driver, factor = json.loads(rig.document), rig.driver, 1.0 + gain_relative
+    low, high = driver.current_min_A * factor, driver.current_max_A * factor
+    document["driver"] |= {"current_min_A": low, "current_limit_A": high}
+    flowing = replace(driver, current_min_A=low, current_max_A=high)
+    return replace(
+        rig,
+        pump=replace(rig.pump, driver=flowing),
+        document=json.dumps(document, sort_keys=True, ensure_ascii=False),
+    )
+
+
 def _pumped(rig: Rig, *, heat_sink: HeatSink | None = None, module: Peltier | None = None) -> Rig:
     """The rig with another heat sink or module."""
     assert rig.pump is not None

@@ -39,6 +39,7 @@ from .plate import (
     HIGHEST_A,
     HOT_J_PER_K,
     LOWEST_A,
+    PAST_MOST_COOLING,
     RESISTANCE,
     SINK_AIR_W_PER_K,
     SINK_C,
@@ -333,7 +334,8 @@ def limited(amperes, hot, cold, sink, p):
         amperes, code = (p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
     if amperes < (-p[COMPLIANCE_V] - seebeck) / ohm:
         amperes, code = (-p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
-    if amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # the best cooling is never below half of αT_c/R
+    capped = p[PAST_MOST_COOLING] == 0.0
+    if capped and amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # the best cooling is never below half of αT_c/R
         most = greatest_cooling(cold, p[SINK_W_PER_K] * sink + leak * cold, p[SINK_W_PER_K] + leak, alpha, ohm, leak)
         if amperes > most:
             amperes, code = most, MODULE

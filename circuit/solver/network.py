@@ -63,7 +63,7 @@ class Network:
 
     `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
     `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED, as if there were no extras;
-    `plates` (18,) for the kernel, in the order that `plate` names; `legs` is the number of cells of the legs.
+    `plates` (19,) for the kernel, in the order that `plate` names; `legs` is the number of cells of the legs.
     """
 
     capacity_J_per_K: Array

@@ -26,7 +26,10 @@ SINK_AIR_W_PER_K, SINK_START_C, LEG_J_PER_K = range(15, 18)
 """Places of a passive heat sink's conductance to air (0: it is not passive; SINK_C is then the air's temperature), of
 its temperature at the start (NaN: where the current and the air leave it), and of the heat capacity of all legs."""
 
-PLATE_NUMBERS = 18
+PAST_MOST_COOLING = 18
+"""Place of 1 for a loop that does not know at which current its module cools most, and runs to the driver's limit."""
+
+PLATE_NUMBERS = 19
 
 
 def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:

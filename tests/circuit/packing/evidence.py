@@ -18,6 +18,7 @@ import numpy as np
 
 from tests.circuit.packing.adversarial import Case, some_case
 from tests.circuit.packing.exported_files import Course, read_file, sidecar_in
+from tests.circuit.packing.followed import followed, followed_in_order
 from tests.circuit.packing.independent import Json
 from tests.circuit.packing.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
 from thermicon.circuit import Prepared
@@ -66,6 +67,12 @@ def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Genera
     for course in played:
         if isinstance(course, Course):
             as_shown(rig, course, pauses, rng, worst)
+            if course.held:
+                followed(rig, course, [judged_s, least], rng, worst)
+    regulated = [one for one in played if isinstance(one, Course) and one.held]
+    if len(regulated) > 1:
+        order = [(int(rng.integers(len(regulated))), float(rng.choice([judged_s, least]))) for _ in range(6)]
+        followed_in_order(rig, regulated, order, rng, worst)
     currents = [one for one in played if isinstance(one, Held)]
     player = Player(rig, rng) if currents else None
     for held in currents:
@@ -79,7 +86,7 @@ def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Genera
 
 
 def as_shown(rig: Json, course: Course, pauses: list[float], rng: np.random.Generator, worst: Worst) -> None:
-    """A display that is prescribed: a thermode's, or the set-points of a controller, exactly reached."""
+    """A display that is prescribed: a thermode's, or the set-points of a controller, exactly reached, without rates."""
     skin = Skin(rig, rng)
     if not course.held:
         shown(skin, course.display_C, course.step_s, pauses, (LAGS_S[1], float(rng.choice(LAGS_S))), worst)

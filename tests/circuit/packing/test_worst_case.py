@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 from typing import Any
@@ -10,13 +11,18 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.temperatures import follow_samples
+from thermicon.circuit.packing.controlled import samples_of
+from thermicon.circuit.packing.following_module import FollowingModule
 from thermicon.circuit.packing.pack import pack
-from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.packing.worstcase import worst_case, worst_cases
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
-from thermicon.circuit.safety.gate import gate_set
+from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.single import Single, checks_of_lanes
 from thermicon.icons import load_library, parse
 
@@ -135,6 +141,106 @@ class TestRefusals:
         assert narrowed is not None
         assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
         assert "transconductance" not in narrowed.text
+
+
+class TestFollowedSetPoints:
+    """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
+
+    @pytest.mark.parametrize("change", ["cool by 6", "cool by 3", "warm by 3", "warm by 6"])
+    def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
+        shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
+        found = worst_case(by_controller(shape, RIG, "skin"))
+        assert found.safe, found.reason
+        assert rate_in(found) > 3.0, "a skin that changes at 3 K/s"
+
+    @pytest.mark.parametrize(("change", "sign"), [("warm", "−"), ("cool", "")])
+    def test_a_return_that_is_too_fast_is_refused(self, change: str, sign: str) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.0, "contact.resistance_m2K_per_W": 1e-4})
+        away = f"{change} by 3 °C at 2 °C/s; hold for 1 s"
+        found = worst_case(by_controller(away, small))
+        assert re.match(
+            rf"rate of skin temperature reaches {sign}\d\d\.\d+ K/s at 2\.[56]\d s, with contact −30 %, .*, "
+            rf"after the last set-point, {'below' if sign else 'above'} the hard limit of {sign}10 K/s from 2\.5\d s",
+            str(found.reason),
+        ), found.reason
+        back = worst_case(by_controller(f"{away}; return at 2 °C/s", small))
+        assert back.safe, "the same rig, returned slowly"
+
+    def test_a_second_play_from_where_the_first_one_left_the_module_needs_a_pause(self) -> None:
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.91})
+        played = by_controller("step warm by 1 °C; hold for 1 s; step cool by 2 °C; hold for 1 s", rig)
+        at_once, later = worst_case(played, 0.0), worst_case(played, 15.0)
+        assert re.match(
+            r"rate of skin temperature reaches 10\.\d+ K/s at 2\.\d\d s, with contact −30 %, .*, "
+            r"in a second play 0 s after the first, above the hard .*; the shortest safe pause is 0\.\d s",
+            str(at_once.reason),
+        ), at_once.reason
+        assert later.safe, "by then the module is at its baseline"
+        shortest = later.repeated.shortest_pause_s
+        assert shortest is not None
+        assert 0.0 < shortest == later.demands.pause_at_least_s < 1.0
+        assert worst_case(played, shortest).safe
+        assert not worst_case(played, shortest - 0.1).safe
+
+    def test_in_a_set_a_play_may_begin_where_another_icon_left_the_module(self) -> None:
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.91})
+        upward = by_controller("step warm by 1 °C; hold for 1 s", rig)
+        downward = by_controller("cool by 1 °C at 4 °C/s; hold for 1 s", rig)
+        assert all(worst_case(alone, 0.0).safe for alone in (upward, downward))
+        first, second = worst_cases([upward, downward], 0.0)
+        assert re.match(
+            r"rate of skin temperature reaches 10\.\d+ K/s at 1\.\d\d s, with contact −30 %, .*, in a play 0 s after "
+            r"another icon of the set, above the hard .*; the shortest safe pause is 0\.\d s",
+            str(first.reason),
+        ), first.reason
+        assert second.safe
+        assert second.demands.pause_at_least_s == first.repeated.shortest_pause_s
+        assert all(verdict.safe for verdict in worst_cases([upward, downward], first.repeated.shortest_pause_s))
+
+    def test_a_loop_saturates_where_its_source_does_and_not_where_its_file_says(self) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.97})
+        played = "step warm by 1 °C; hold for 1 s; step cool by 1 °C; hold for 1 s"
+        found = worst_case(by_controller(played, small))
+        assert re.match(r"rate of skin temperature reaches .* K/s .*, gain \+10 %, ", str(found.reason)), found.reason
+        measured = small.with_(
+            **{
+                "uncertainty.gain_relative": 0.0,
+                "uncertainty.reason": "a test: its current source was measured",
+            }
+        )
+        assert worst_case(by_controller(played, measured)).safe
+
+    def test_a_loop_runs_to_the_limit_of_its_driver_where_a_set_point_cannot_be_reached(self) -> None:
+        weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.03})
+        samples = samples_of(by_controller("cool by 4 °C at 2 °C/s; hold for 4 s; return at 2 °C/s", weak))
+        assert follow_samples(weak, samples).current_A.max() < 1.4, "a design does not pass the most cooling"
+        assert FollowingModule.of(weak).drives(samples).current_A[0].max() == pytest.approx(1.5)
+
+    def test_a_corner_that_cannot_hold_the_baseline_rests_at_the_limit(self) -> None:
+        weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.02})
+        module, samples = FollowingModule.of(weak), samples_of(by_controller("warm by 2 °C at 2 °C/s", weak))
+        with pytest.raises(RigError, match="the module cools it to 3"):
+            [follow_samples(rig, samples) for rig in module.rigs]
+        begun = module.drives(samples).current_A[:, 0]
+        display = module.ensemble.hold(begun, module.ensemble.at_rest(begun), np.array([0.0, 1.0]))[0][1, :, 0]
+        assert len(display) == 33
+        assert display[0] == pytest.approx(32.0, abs=1e-3), "the rig as given holds it"
+        away = np.abs(display - 32.0) > 0.01
+        assert away.sum() == 4
+        assert begun[away] == pytest.approx(1.5)
+        assert display[away].min() > 42.0
+
+
+SMALL = {"skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5}
+
+
+def by_controller(shape: str, rig: Rig, control: str = "display") -> DeliveredDrive:
+    text = f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon a {{ {shape} }}\n"
+    return deliver(parse(text)["a"], rig, Device.load("closed-loop-controller"))
+
+
+def rate_in(verdict: Gate) -> float:
+    return max(abs(check.value) for check in verdict.checks if check.quantity == "rate of skin temperature")
 
 
 class TestStartWithoutPower:

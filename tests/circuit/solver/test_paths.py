@@ -183,7 +183,6 @@ STEPPED = {
 CONSIDERED = {
     "fitting": {"forward"},
     "delivery": {"deliver", "netlist", "regulated", "spread", "temperatures", "formats/form"},
-    "packing": {"worstcase"},
     "safety": {"corners", "endings", "ensemble", "sessiondrive", "single_faults", "thermode"},
     "solver": {
         "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",

@@ -57,6 +57,8 @@ DRIVES = [
     "time_s,current_A,code\r\n0,0.1,5\r\n0.01,0.2,6\r\n",
     '"time_s" , "current_A"\n\n0,0\n1e-3,1\n',
 ]
+SHORT = "cue 1\nset s { control display\n baseline 32 °C }\nicon tap { cool by 1 °C at 20 °C/s\n return at 20 °C/s }\n"
+"""Every sample of a sound card costs the gate computing, and a cue of 8 s a minute."""
 SETTINGS = [
     *(f"{key}=1" for key in KEYS),
     "probe.0.name=x",
@@ -214,12 +216,13 @@ def test_damaged_inputs_are_read_or_refused_in_words() -> None:
 @pytest.mark.slow
 def test_damaged_inputs_through_the_command(process: Callable[..., Any], tmp_path: Path) -> None:
     rng = random.Random("commands")
+    (tmp_path / "short.cue").write_text(SHORT, encoding="utf-8")
     for _ in range(COMMANDS):
         data, reader = mutated(rng)
         words = {
             "read_cue": ("check", "a.cue"),
             "read_rig": ("check", "six-icons", "--rig", "a.toml"),
-            "read_device": ("export", "cooling-step-skin", "--to", "csv", "--device", "a.toml", "-o", "out", "--force"),
+            "read_device": ("export", "short.cue", "--to", "csv", "--device", "a.toml", "-o", "out", "--force"),
             "read_drive": ("simulate", "--current", "a.csv"),
         }.get(reader.__name__, ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")))
         for name in words:
