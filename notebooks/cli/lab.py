@@ -23,7 +23,7 @@ from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 from ..files.cue_document import open_document
 from ..files.outputs import check_folder, stopped_cleanly, write_together
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
-from ..text.messages import fail, interrupted, load_observer, load_rig, note, usage
+from ..text.messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
@@ -103,8 +103,8 @@ def lab_command(
     """
     if page and files_only:
         raise usage("opens nothing, so no page can be served", "--files-only")
-    if port is not None and not 1 <= port <= 65535:
-        raise usage(f"{port} is outside 1 to 65535", "--port")
+    if port is not None:
+        check_bounds(("--port", port, 1, 65535))
     if rig is not None and not page:
         raise usage("is for --page; in a notebook, write Workbench(rig=...)", "--rig")
     file = folder if page and folder.suffix.lower() == CUE else None

@@ -285,8 +285,8 @@ def rank_command(
     check_tracking(tracking)
     if workers is not None and cluster is not None:
         raise usage("applies to this machine; a cluster brings its own workers", "--workers")
-    if workers is not None and not 1 <= workers <= 1024:
-        raise usage(f"{workers} is outside 1 to 1024", "--workers")
+    if workers is not None:
+        check_bounds(("--workers", workers, 1, 1024))
     check_task(context, gap, bias)
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":

@@ -12,7 +12,7 @@ import typer
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
-from ..text.messages import check_changes, load_observer, load_rig, note, progress_bar, usage
+from ..text.messages import check_bounds, check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import (
     Changes,
     DrawsFile,
@@ -167,9 +167,7 @@ def _rank_lines(file: str, icons: IconSet, rig: Rig, request: Request) -> list[s
 
 def check_numbers(draws: int, seed: int, norm: str) -> None:
     """Fail with a usage error for draws or a seed out of range, and for a norm that there is not."""
-    for option, value, least, most in (("--draws", draws, LEAST_DRAWS, MOST_DRAWS), ("--seed", seed, 0, 2**32 - 1)):
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
+    check_bounds(("--draws", draws, LEAST_DRAWS, MOST_DRAWS), ("--seed", seed, 0, 2**32 - 1))
     check_norm_option(norm)
 
 
@@ -247,8 +245,7 @@ def plan_command(
     check_numbers(draws, seed, norm)
     check_tracking(tracking)
     people, times = _numbers(participants, "--participants", 2, 500), _numbers(trials, "--trials", 1, 5000)
-    if not 1 <= pilot <= MOST_LENGTH:
-        raise usage(f"{pilot} is outside 1 to {MOST_LENGTH}", "--pilot")
+    check_bounds(("--pilot", pilot, 1, MOST_LENGTH))
     if width is not None and other is not None:
         raise usage("belongs to one set; with two, give --power", "--width")
     if power is not None and other is None:
@@ -302,9 +299,7 @@ def _numbers(text: str, option: str, least: int, most: int) -> tuple[int, ...]:
         found = sorted({int(part) for part in text.split(",")})
     except ValueError:
         raise usage(f"{text!r} is not a list of whole numbers such as 8,16,32", option) from None
-    for value in found:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
+    check_bounds(*((option, value, least, most) for value in found))
     if len(found) > MOST_SIZES:
         raise usage(f"{len(found)} numbers; at most {MOST_SIZES} are tried at once", option)
     return tuple(found)

@@ -21,7 +21,7 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..text.messages import check_changes, load_rig, note, usage
+from ..text.messages import check_bounds, check_changes, load_rig, note, usage
 from ..text.options import Changes, OneFile, RigName
 
 if TYPE_CHECKING:
@@ -121,8 +121,7 @@ def session_command(
         raise usage(f"{gap:g} s is outside 0 to {LONGEST_GAP_S:g} s", "--gap")
     if repeats is not None and repeats < 1:
         raise usage(f"{repeats} is not a number of repeats of 1 or more", "--repeats")
-    if not 0 <= seed <= 2**63 - 1:
-        raise usage(f"{seed} is outside 0 to {2**63 - 1}", "--seed")
+    check_bounds(("--seed", seed, 0, 2**63 - 1))
     if tracking not in TRACKING:
         raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from ..files.outputs import STDOUT, OutputError, check_folder, check_output, complete_or_absent
-from ..text.messages import note, usage
+from ..text.messages import check_bounds, note, usage
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,13 +59,7 @@ def validate_command(
     written, with predictions from temperature and from heat flow side by side. With --leave-out, the tables that the
     report shows of left-out experiments are made again, coverage, log scores and weights of the variants included.
     """
-    for option, value, least, most in (
-        ("--people", people, 2, 2000),
-        ("--draws", draws, 0, 1000),
-        ("--seed", seed, 0, 2**32 - 1),
-    ):
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
+    check_bounds(("--people", people, 2, 2000), ("--draws", draws, 0, 1000), ("--seed", seed, 0, 2**32 - 1))
     if leave_out:
         if json_out is not None:
             raise usage("--leave-out writes tables: give a folder with -o", "--json")

@@ -21,7 +21,7 @@ from ..files.outputs import (
     check_separate,
     complete_or_absent,
 )
-from ..text.messages import REFUSED, check_changes, load_rig, note, progress_bar, usage
+from ..text.messages import REFUSED, check_bounds, check_changes, load_rig, note, progress_bar, usage
 from ..text.options import Changes, DrawsFile, IconName, OneFile, RigName, Tail, check_tail
 
 if TYPE_CHECKING:
@@ -274,14 +274,11 @@ def sensitivity_command(
     The shares are read from draws of the posterior, with which the set is predicted as a new laboratory would see it.
     """
     check_changes(changes or [])
-    bounds = (
+    check_bounds(
         ("--people", people, 1, 10_000),
         ("--seed", seed, 0, 2**32 - 1),
         ("--draws", 64 if draws is None else draws, 64, 100_000),
     )
-    for option, value, least, most in bounds:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
     from .sensitivity import Request, sensitivity_file
 
     look = figure_look(figure, width, style, no_title, figure_data)
@@ -320,13 +317,11 @@ def calibrate_command(
     effective sample size above 600) or --steps is reached. What did not converge is refused without --force. The same
     seed gives the same draws, however many workers there are and however often the run was interrupted.
     """
-    for option, value, least, most in (
+    check_bounds(
         ("--seed", seed, 0, 2**32 - 1),
         ("--steps", steps, 100, MOST_STEPS),
         ("--workers", workers if workers is not None else 1, 1, 8),
-    ):
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
+    )
     if variant not in VARIANT_NAMES:
         raise usage(f"{variant!r} is not one of {', '.join(VARIANT_NAMES)}", "--variant")
     check_output(output, (".csv",), "a table of draws")
