@@ -157,9 +157,13 @@ class _Store:
 @cache
 def kept_in() -> Path | None:
     """The folder of compiled code; None, with one line on stderr, where no folder is safe to read from."""
+    place = compiled_folder(numba.__version__, llvmlite.__version__)
     try:
-        folder = private_folder(compiled_folder(numba.__version__, llvmlite.__version__))
+        folder = private_folder(place)
     except NotPrivate as problem:
+        with suppress(NotPrivate):
+            if any(private_folder(place, writable=False).iterdir()):
+                return place  # one that an administrator filled, or a read-only home: what is there is used
         if multiprocessing.parent_process() is None:
             logging.getLogger("thermicon").warning(
                 "compiled code cannot be stored, so that every run compiles it again: %s", problem

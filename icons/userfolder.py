@@ -32,11 +32,12 @@ class NotPrivate(OSError):
     """A folder cannot be created, or others could write into it; the text says why and what to do."""
 
 
-def private_folder(path: Path) -> Path:
+def private_folder(path: Path, *, writable: bool = True) -> Path:
     """Return a folder, created if missing, into which only this user (and the system's administrator) can write.
 
     Its owner and mode and those of all folders above are checked, as ssh does with its keys. On Windows, where access
-    lists keep the user's own folders private, it is only created. Raises NotPrivate.
+    lists keep the user's own folders private, it is only created. A folder that is only read need not be `writable`.
+    Raises NotPrivate.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -55,7 +56,7 @@ def private_folder(path: Path) -> Path:
         for folder in (real, *real.parents):
             if fault := _fault(folder, folder == real):
                 raise NotPrivate(f"{folder} {fault}; set THERMICON_CACHE to a folder that only you can write to")
-    if not os.access(path, os.W_OK | os.X_OK):
+    if writable and not os.access(path, os.W_OK | os.X_OK):
         raise NotPrivate(f"{path} is not writable")
     return path
 

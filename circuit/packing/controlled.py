@@ -137,6 +137,7 @@ def _demands(verdict: Gate, module: FollowingModule, delivery: DeliveredDrive, u
         rest_before_first_play_s=rest_s,
         pause_at_least_s=verdict.repeated.shortest_pause_s,
         faults=(*verdict.demands.faults[:1], start, lost),
+        current_limit_A=(delivery.rig.driver.current_min_A, delivery.rig.driver.current_max_A),
     )
 
 

@@ -80,6 +80,9 @@ CURES = (
     (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
 )
 """What keeps a quantity within its limit, by the beginning of its name."""
+AFTER_THE_LAST = "after the last set-point"
+END_AT_BASELINE = "an end at which the display is near the baseline, such as a hold there, or a lower current limit"
+NEARER_BASELINE = "a baseline nearer to resting skin, since it is beyond the limit from the start"
 
 
 def more_and_cure(findings: Sequence[Check]) -> str:
@@ -89,13 +92,18 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     ''
     """
     hard = [finding for finding in findings if finding.severity == "hard"]
+    if hard and AFTER_THE_LAST in hard[0].scenario:
+        cures = [END_AT_BASELINE]
+    elif any(check.unit == "°C" and check.since_s == 0.0 and "repeated" not in check.scenario for check in hard):
+        cures = [NEARER_BASELINE]
+    else:
+        cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
     others = [
         f"{check.quantity} {signed(check.value, '.4g')}{'' if check.unit == '1' else ' ' + check.unit} "
         f"(limit {signed(check.limit, '.4g')})"
         for check in hard[1:]
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
-    cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
     return f"{more}; use {', '.join(cures)}" if cures else more
 
 

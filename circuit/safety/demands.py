@@ -48,7 +48,9 @@ class Demands:
 
     `watchdog_s`: a stuck current must be cut after this time; 60 where a minute is safe, 0 where no time is.
     `rest_before_first_play_s`: the rest must be held so long on a display that was without power; None: 10 min do not
-    suffice. `zero_current_at_most_s`: after which contact must end, since the dose adds up.
+    suffice. `zero_current_at_most_s`: after which contact must end, since the dose adds up. `current_limit_A`: between
+    which currents a controller that is given set-points must stay, since with more it follows their jumps too fast;
+    None where the drive itself is the current, or the device a thermode.
     """
 
     watchdog_s: float
@@ -58,6 +60,7 @@ class Demands:
     pause_at_least_s: float | None
     zero_current_at_most_s: float | None
     faults: tuple[SingleFault, ...]
+    current_limit_A: tuple[float, float] | None = None
 
     def __repr__(self) -> str:
         cut = self.cut_off_display_C

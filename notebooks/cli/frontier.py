@@ -176,7 +176,7 @@ def _goal(found: Frontier) -> Iterator[str]:
     met = [each for each in judged if each[1].met]
     if met:
         count, result = met[-1]
-        more = "the most of these" if count == judged[-1][0] else "by no larger choice of these"
+        more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
         yield from goal_lines(result.to_dict(), f"met by the best {count}, {more}")
     else:
         count, result = judged[0]

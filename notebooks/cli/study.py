@@ -112,8 +112,8 @@ def report_lines(plan: Plan) -> list[str]:
         )
     if judged.after_breaks:
         colours = dict.fromkeys(blocks.verdict for blocks in judged.after_breaks.values())
-        blocks_from_rest = "each block from rest, as after a long break"
-        lines.append(f"            without their breaks; {blocks_from_rest}: {' and '.join(colours)}")
+        blocks_from_rest = "with each block from rest, as after a long break"
+        lines.append(f"            (orders without their breaks); {blocks_from_rest}: {' and '.join(colours)}")
     return [*lines, *(f"  caution   {text}" for text in judged.cautions)]
 
 

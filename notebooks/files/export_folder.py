@@ -17,7 +17,7 @@ from pathlib import Path
 
 from .belonging import claims_in, not_ours, replaced_with
 from .locking import lock
-from .outputs import OutputError, check_folder, interrupts_wait
+from .outputs import OutputError, check_folder, interrupts_wait, kept_text
 from .swapping import exchange
 
 CURE = "give a folder of its own, such as -o drives"
@@ -124,8 +124,7 @@ def _keep(files: Collection[str], there: Collection[str], folder: Path, replace:
     """Raise OutputError where a file of the export is there already, unless it may be replaced."""
     taken = [name for name in files if name in there]
     if taken and not replace:
-        more = f" and {len(taken) - 1} more" if len(taken) > 1 else ""
-        raise OutputError(f"{folder / taken[0]}{more} already exists and was kept; {how}")
+        raise OutputError(f"{kept_text(folder, taken)}; {how}")
 
 
 @contextmanager

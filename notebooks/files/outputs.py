@@ -120,8 +120,7 @@ def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = Fal
             folder.mkdir(exist_ok=True)
             there = [name for name in files if (folder / name).exists()]
             if there and not replace:
-                more = f" and {len(there) - 1} more" if len(there) > 1 else ""
-                raise OutputError(f"{folder / there[0]}{more} already exists and was kept; --force replaces it")
+                raise OutputError(f"{kept_text(folder, there)}; --force replaces {'it' if len(there) == 1 else 'them'}")
             drafts = {name: held.enter_context(draft_of(folder / name)) for name in files}
             for name, draft in drafts.items():
                 with draft.open("wb") as file:
@@ -188,3 +187,14 @@ def interrupts_wait() -> Iterator[Callable[[], None]]:
         for number, action in held.items():
             signal.signal(number, action)
     check()
+
+
+def kept_text(folder: Path, there: Sequence[str]) -> str:
+    """That files of a folder are there already and were kept.
+
+    >>> kept_text(Path("out"), ["a.csv"]), kept_text(Path("out"), ["a.csv", "b.csv", "c.csv"])
+    ('out/a.csv already exists and was kept', 'out/a.csv and 2 more already exist and were kept')
+    """
+    if len(there) == 1:
+        return f"{folder / there[0]} already exists and was kept"
+    return f"{folder / there[0]} and {len(there) - 1} more already exist and were kept"

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import number
+from thermicon.icons.number_text import number, signed
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared
@@ -104,6 +104,10 @@ def demands_text(gates: Sequence[Named]) -> str:
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
     cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display"
     parts.append(cut_off if within < QUICKEST_S else f"{cut_off} within {within:g} s")
+    limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
+    if limits:
+        least, most = max(low for low, _ in limits), min(high for _, high in limits)
+        parts.append(f"a controller limited to {signed(least, 'g')} … {most:g} A")
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]

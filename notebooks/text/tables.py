@@ -34,10 +34,15 @@ def rendered(part: Table | str, width: int, is_terminal: bool = True) -> list[st
     """Return the lines of a table or a text at this width.
 
     Names and headings stay whole: in a pipe, which has no width, the table gets as wide as they need; on a narrow
-    terminal they are wrapped, and no letter is lost.
+    terminal they are wrapped, and no letter is lost. A command stays on one line, so that it can be copied.
+
+    >>> rendered("  thermicon rank six-icons --observer a-laboratory.csv", 20)
+    ['  thermicon rank six-icons --observer a-laboratory.csv']
     """
     from rich.console import Console
 
+    if isinstance(part, str) and part.lstrip().startswith("thermicon "):
+        return [part]
     if not isinstance(part, str):
         least = Console(width=WIDEST).measure(part).minimum + 2 * len(part.columns)  # rich leaves out the gaps
         if not is_terminal:

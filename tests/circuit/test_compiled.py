@@ -235,3 +235,18 @@ def test_options_have_the_same_text_in_every_process() -> None:
         for seed in (1, 2)
     }
     assert texts == {"[('fastmath', ['arcp', 'contract', 'nsz'])]\n"}
+
+
+def test_a_folder_that_cannot_be_written_is_read(
+    monkeypatch: pytest.MonkeyPatch, sources: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(os, "access", lambda *_: False)  # to root every folder of a test is writable
+    monkeypatch.setenv("THERMICON_CACHE", str(sources.parent / "cache"))
+    folder = compiled.kept_in.__wrapped__()
+    assert folder is not None
+    assert sum(1 for _ in folder.iterdir()) == 2
+    assert caplog.text == ""
+    for kept in folder.iterdir():
+        kept.unlink()
+    assert compiled.kept_in.__wrapped__() is None
+    assert "compiled code cannot be stored" in caplog.text

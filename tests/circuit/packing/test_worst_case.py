@@ -19,7 +19,7 @@ from thermicon.circuit.packing.following_module import FollowingModule
 from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.packing.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.checks import worst_of
+from thermicon.circuit.safety.checks import more_and_cure, worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
@@ -163,8 +163,17 @@ class TestFollowedSetPoints:
             rf"after the last set-point, {'below' if sign else 'above'} the hard limit of {sign}10 K/s from 2\.5\d s",
             str(found.reason),
         ), found.reason
+        assert found.demands.current_limit_A == (-small.driver.current_max_A, small.driver.current_max_A)
+        assert "use an end at which the display is near the baseline" in more_and_cure(found.findings)
         back = worst_case(by_controller(f"{away}; return at 2 °C/s", small))
         assert back.safe, "the same rig, returned slowly"
+
+    def test_a_baseline_beyond_a_limit_is_named_as_the_cause(self) -> None:
+        icon = parse("cue 1\nset s { control display\n baseline 47 °C }\nicon a { warm by 1 °C at 1 °C/s }")["a"]
+        found = worst_case(deliver(icon, RIG, Device.load("closed-loop-controller")))
+        assert more_and_cure(found.findings).endswith(
+            "use a baseline nearer to resting skin, since it is beyond the limit from the start"
+        )
 
     def test_a_second_play_from_where_the_first_one_left_the_module_needs_a_pause(self) -> None:
         rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.91})

@@ -183,7 +183,7 @@ class TestFiles:
         (out / "cool-step.csv").write_text("mine")
         said = cli("export", two, "--to", "csv", "-o", out, *SURE)
         assert said.exit_code == 1
-        assert f"{out / 'cool-step.json'} and 3 more already exists and was kept; --force replaces it" in said.stderr
+        assert f"{out / 'cool-step.json'} and 3 more already exist and were kept; --force replaces" in said.stderr
         assert (out / "cool-step.csv").read_text() == "mine"
         assert cli("export", two, "--to", "csv", "-o", out, "--force", *SURE).exit_code == 0
         assert (out / "cool-step.csv").read_text() != "mine"

@@ -28,7 +28,7 @@ def test_a_goal_is_judged_at_every_number(cli: Cli) -> None:
     asked = ("--people", 4, "--parameters", 4, "--most", 3, "--goal", "correct >= 1 % for 95 % of people, time <= 17 s")
     words = " ".join(cli("frontier", "six-icons", *asked).stdout.split())
     assert "time energy goal" in words
-    assert "Goal: met by the best 2, the most of these ✓ correct >= 1 % for 95 % of people: " in words
+    assert "Goal: met by the best 2, the largest choice here ✓ correct >= 1 % for 95 % of people: " in words
     assert "✓ time <= 17 s: " in words
     assert "is about people and the uncertainty of the model together (4 draws), as in a goal" in words
     plain = " ".join(cli("frontier", "six-icons", *asked[:2], "--parameters", 0, "--most", 2).stdout.split())

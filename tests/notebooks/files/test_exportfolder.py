@@ -183,7 +183,7 @@ class TestFiles:
 
     def test_a_drive_is_kept_unless_forced(self, tmp_path: Path) -> None:
         publish(drive("a", b"1"), tmp_path)
-        with pytest.raises(OutputError, match=r"a\.json and 1 more already exists and was kept; --force replaces it"):
+        with pytest.raises(OutputError, match=r"a\.json and 1 more already exist and were kept; --force replaces"):
             publish(drive("a", b"2"), tmp_path)
         assert held(tmp_path) == drive("a", b"1")
         publish(drive("a", b"2"), tmp_path, replace=True)
@@ -334,7 +334,7 @@ class TestTwoAtOnce:
         for turn, said in enumerate(race(tmp_path, 30, "same")):
             assert sorted(word == "done" for word in said) == [False, True], said
             loser = next(word for word in said if word != "done")
-            assert "already exists and was kept" in loser or "another export is writing into" in loser
+            assert "already exist and were kept" in loser or "another export is writing into" in loser
             winner = "xy"[said.index("done")]
             assert (tmp_path / f"out{turn}" / "a.csv").read_text() == winner
             assert json.loads((tmp_path / f"out{turn}" / "a.json").read_text())["drive_sha256"] == digest(
@@ -380,5 +380,5 @@ class TestTwoAtOnce:
         said = [run.communicate()[1] for run in runs]
         assert sorted(run.returncode for run in runs) == [0, 1]
         loser = next(text for run, text in zip(runs, said, strict=True) if run.returncode)
-        assert "already exists and was kept" in loser or "another export is writing into out" in loser
+        assert "already exist and were kept" in loser or "another export is writing into out" in loser
         assert len(names(tmp_path / "out")) == 2
