@@ -380,5 +380,5 @@ class TestTwoAtOnce:
         said = [run.communicate()[1] for run in runs]
         assert sorted(run.returncode for run in runs) == [0, 1]
         loser = next(text for run, text in zip(runs, said, strict=True) if run.returncode)
-        assert "already exist and were kept" in loser or "another export is writing into out" in loser
+        assert "kept; --force replaces" in loser or "another export is writing into out" in loser
         assert len(names(tmp_path / "out")) == 2
