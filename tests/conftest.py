@@ -33,6 +33,12 @@ sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 hypothesis.settings.register_profile("steady", derandomize=True, deadline=None)
 hypothesis.settings.load_profile("steady")
 
+
+def pytest_xdist_auto_num_workers() -> int:
+    """One process more than there are cores, since some tests wait for servers and browsers."""
+    return (os.cpu_count() or 1) + 1
+
+
 DEBIAN_PACKAGE = {"cc": "gcc", "chromium": "chromium", "ngspice": "ngspice"}
 
 

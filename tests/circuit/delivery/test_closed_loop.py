@@ -174,6 +174,7 @@ def sampled_loop(rig: Rig, cue: Icon, end_s: float) -> str:
     return text.replace(".options reltol", loop + ".options reltol")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("body", ["cool by 1 °C over 10 ms\nhold for 5 s", "cool by 3 °C at 2 °C/s\nhold for 3 s"])
 def test_the_same_loop_in_ngspice_agrees_within_5_mK(body: str, tool: Tool, tmp_path: Path) -> None:
     cue = icon(body)

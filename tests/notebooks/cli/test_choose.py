@@ -118,6 +118,7 @@ def test_bad_choices(cli: Cli, options: tuple[object, ...], code: int, told: str
     assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
+@pytest.mark.slow
 def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_path: Path) -> None:
     out = tmp_path / "found.cue"
     asked = ("search", families, "--choose", 3, "--evaluations", 40, "--people", 6, "--seed", 4)

@@ -60,7 +60,15 @@ def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, answers: Pat
     assert json.loads(said[0])["seed"] == 4
 
 
-@pytest.mark.parametrize("options", [(), ("--norm", "naming", "--tracking", "display", "--set", "contact.area_cm2=6")])
+@pytest.mark.parametrize(
+    "options",
+    [
+        (),
+        pytest.param(
+            ("--norm", "naming", "--tracking", "display", "--set", "contact.area_cm2=6"), marks=pytest.mark.slow
+        ),
+    ],
+)
 def test_what_rank_shows_of_a_kept_laboratory_is_what_it_shows(
     cli: Cli, two: Path, answers: Path, tmp_path: Path, options: tuple[str, ...]
 ) -> None:

@@ -29,6 +29,7 @@ def two_panels() -> Figure:
     return figure
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pdf", "svg", "png"])
 def test_the_same_figure_gives_the_same_bytes_without_a_date(tmp_path: Path, kind: str) -> None:
     look = Look("paper", 85.0)

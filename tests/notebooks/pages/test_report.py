@@ -91,6 +91,7 @@ def made(ranking: Ranking, icons: IconSet, rig: Rig) -> str:
     return report(ranking, icons, rig, "thermicon rank a&b.cue")
 
 
+@pytest.mark.slow
 def test_the_page_stands_alone(made: str) -> None:
     reader = read(made)
     assert made.startswith("<!DOCTYPE html>\n")

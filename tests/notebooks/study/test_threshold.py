@@ -100,6 +100,7 @@ def quest_of(out: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     return importlib.import_module("study_questplus")
 
 
+@pytest.mark.slow
 def test_without_answers_the_interval_is_that_of_the_prior(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = quest_of(out, monkeypatch)
     qp = module.quest([0.1, 0.4, 1.6])

@@ -336,6 +336,7 @@ def test_a_choice_names_the_laboratory(laboratory: ObserverModel) -> None:
     assert "for your laboratory, lab.csv (95 %): " in chosen_html(made.ranking)
 
 
+@pytest.mark.slow
 def test_the_laboratory_of_a_workbench_predicts_in_every_view(laboratory: ObserverModel, tmp_path: Path) -> None:
     file = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "thenar")
     bench = Workbench(TWO, observer=file)

@@ -83,6 +83,7 @@ def test_draws_judge_with_their_own_memory(icons: IconSet, rig: Rig, tmp_path: P
     )
 
 
+@pytest.mark.slow
 def test_the_laboratory_in_the_middle_predicts_the_mean(icons: IconSet, rig: Rig) -> None:
     found = pilot(icons, rig, 2, 12, 60, 4)
     some, played = found.conditioned.after, found.conditioned.confusions_after

@@ -117,6 +117,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -
         assert np.array_equal(getattr(model.people(9, 4), field), getattr(whole.people(9, 4), field)), field
 
 
+@pytest.mark.slow
 def test_memory_stands_beside_the_constants_of_each_draw(found: Observed, tmp_path: Path) -> None:
     (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
     draws = PosteriorDraws.load(tmp_path / "lab.csv")

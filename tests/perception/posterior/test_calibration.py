@@ -49,6 +49,7 @@ class Some:
         return self.whole.predictions(self.filled(vector))
 
 
+@pytest.mark.slow
 def test_a_few_constants_are_found_again_in_three_data_sets() -> None:
     scores = []
     for seed in range(3):
