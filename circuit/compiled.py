@@ -31,9 +31,16 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
-from thermicon.icons.userfolder import NotPrivate, compiled_folder, private_folder, read_private, write_private
+from thermicon.icons.userfolder import (
+    NotPrivate,
+    compiled_folder,
+    opened,
+    private_folder,
+    read_private,
+    sealed,
+    write_private,
+)
 
-HASH_BYTES = 32
 STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 
@@ -132,18 +139,15 @@ class _Store:
 
     def load(self, key: Any) -> Any:
         """Return what was saved under a key; None where nothing was saved or the file is damaged."""
-        if (folder := kept_in()) is None or (data := read_private(self._path(folder, key))) is None:
+        if (folder := kept_in()) is None or (content := opened(read_private(self._path(folder, key)))) is None:
             return None
-        if hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
-            return None
-        return pickle.loads(data[HASH_BYTES:])
+        return pickle.loads(content)
 
     def save(self, key: Any, data: Any) -> None:
         """Write plain data under a key."""
         if (folder := kept_in()) is None:
             return
-        content = dumps(data)
-        write_private(self._path(folder, key), hashlib.sha256(content).digest() + content)
+        write_private(self._path(folder, key), sealed(dumps(data)))
 
     def flush(self) -> None:
         """Nothing to do: nothing is buffered."""

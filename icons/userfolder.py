@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import platform
 import stat
 import sys
 from pathlib import Path
 
+HASH_BYTES = 32
 WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
@@ -87,6 +89,22 @@ def read_private(path: Path) -> bytes | None:
             return file.read()
     except OSError:
         return None
+
+
+def sealed(content: bytes) -> bytes:
+    """Return content after its own hash, so that damage is noticed.
+
+    >>> opened(sealed(b"content")), opened(sealed(b"content")[:-1]), opened(None)
+    (b'content', None, None)
+    """
+    return hashlib.sha256(content).digest() + content
+
+
+def opened(data: bytes | None) -> bytes | None:
+    """Return the content of what `sealed` made; None where there is nothing, or where it is damaged."""
+    if data is None or hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
+        return None
+    return data[HASH_BYTES:]
 
 
 def write_private(path: Path, data: bytes) -> None:

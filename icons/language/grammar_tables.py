@@ -7,12 +7,10 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from ..userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from ..userfolder import NotPrivate, cache_folder, opened, private_folder, read_private, sealed, write_private
 
 if TYPE_CHECKING:
     from lark import Lark
-
-HASH_BYTES = 32
 
 
 @cache
@@ -48,8 +46,7 @@ def packed(parser: "Lark") -> bytes:
     """Return the tables of a parser as bytes that begin with their own hash."""
     tables = io.BytesIO()
     parser.save(tables)
-    content = tables.getvalue()
-    return hashlib.sha256(content).digest() + content
+    return sealed(tables.getvalue())
 
 
 def unpacked(data: bytes | None) -> "Lark | None":
@@ -58,11 +55,11 @@ def unpacked(data: bytes | None) -> "Lark | None":
     >>> unpacked(b"damaged") is None
     True
     """
-    if data is None or hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
+    if (tables := opened(data)) is None:
         return None
     from lark import Lark
 
     try:
-        return Lark.load(io.BytesIO(data[HASH_BYTES:]))
+        return Lark.load(io.BytesIO(tables))
     except Exception:  # of another version of lark that has the same number
         return None

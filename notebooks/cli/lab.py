@@ -130,7 +130,7 @@ def lab_command(
 
 
 def page_environment(place: Path, file: Path | None, rig: str | None, observer: Path | None = None) -> dict[str, str]:
-    """What the kernels of a page are told: its folder, the cue file, the rig and the observer that it shows.
+    """Environment of the kernels of a page: its folder, the cue file, the rig and the observer that it shows.
 
     Raises OutputError for a file, RigError for a rig, RecordError for an observer that cannot be read.
     """

@@ -11,18 +11,26 @@ import hashlib
 import pickle
 import platform
 from contextlib import suppress
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons.userfolder import NotPrivate, cache_folder, private_folder, read_private, write_private
+from thermicon.icons.userfolder import (
+    NotPrivate,
+    cache_folder,
+    opened,
+    private_folder,
+    read_private,
+    sealed,
+    write_private,
+)
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
 
 MOST_KEPT = 50
 """About 0.2 MB each."""
-HASH_BYTES = 32
 LIBRARIES = ("numpy", "scipy", "numba")
 
 
@@ -33,12 +41,10 @@ def recall(asked: str) -> Ranking | None:
     """
     from thermicon.perception import Ranking
 
-    if (path := _path(asked)) is None or (data := read_private(path)) is None:
-        return None
-    if hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
+    if (path := _path(asked)) is None or (content := opened(read_private(path))) is None:
         return None
     with suppress(Exception):  # a pickle of another version of a class can fail in any way
-        ranking = pickle.loads(data[HASH_BYTES:])
+        ranking = pickle.loads(content)
         path.touch()
         return ranking if isinstance(ranking, Ranking) else None
     return None
@@ -48,22 +54,26 @@ def remember(asked: str, ranking: Ranking) -> None:
     """Keep a ranking; where that is not possible, it is computed again the next time."""
     if (path := _path(asked)) is None:
         return
-    content = pickle.dumps(ranking)
     with suppress(OSError):
-        write_private(path, hashlib.sha256(content).digest() + content)
+        write_private(path, sealed(pickle.dumps(ranking)))
         kept = sorted(path.parent.glob("*.ranking"), key=lambda each: each.stat().st_mtime)
         for old in kept[:-MOST_KEPT]:
             old.unlink(missing_ok=True)
 
 
-def _path(asked: str) -> Path | None:
+@cache
+def _made_by() -> tuple[str, ...]:
+    """Code, Python, processor and libraries that compute a ranking."""
     from thermicon.circuit.program import DRIVES, code_digest
 
+    code = code_digest((*DRIVES, "thermicon.perception"))
+    return (code, platform.python_version(), platform.machine(), *map(version, LIBRARIES))
+
+
+def _path(asked: str) -> Path | None:
     try:
         folder = private_folder(cache_folder() / "rankings")
     except NotPrivate:
         return None
-    made_by = [code_digest((*DRIVES, "thermicon.perception")), platform.python_version(), platform.machine()]
-    made_by += [version(name) for name in LIBRARIES]
-    name = hashlib.sha256("\0".join([*made_by, asked]).encode("utf-8")).hexdigest()
+    name = hashlib.sha256("\0".join([*_made_by(), asked]).encode("utf-8")).hexdigest()
     return folder / f"{name[:40]}.ranking"

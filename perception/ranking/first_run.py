@@ -41,7 +41,7 @@ def prepare_people() -> None:
 
 
 def prepare_limits() -> None:
-    """Compile what a run is held against the limits of safety with, and the superposition of responses."""
+    """Compile the checks of a run against the limits of safety, and the superposition of responses."""
     from thermicon.circuit import Rig, simulate_many
     from thermicon.circuit.safety.limits import checks_of
     from thermicon.circuit.safety.tally import WATCHED

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons.language import grammar_tables
-from thermicon.icons.language.grammar_tables import HASH_BYTES, built, grammar, packed, unpacked
+from thermicon.icons.language.grammar_tables import built, grammar, packed, unpacked
+from thermicon.icons.userfolder import HASH_BYTES
 
 CUE = resources.files("thermicon.icons").joinpath("library", "six-icons.cue").read_text(encoding="utf-8")
 
