@@ -91,10 +91,8 @@ function hatch(context, left, top, width, height, colour) {
   context.restore();
 }
 
-/** Makes the bitmap of a canvas fit its box sharply; returns its context in CSS pixels, or null without a box. */
-function fitted(canvas) {
-  const width = canvas.clientWidth;
-  const height = canvas.clientHeight;
+/** Makes the bitmap of a canvas fit a box of {width, height} sharply; returns its context in CSS pixels, or null without a box. */
+function fitted(canvas, { width, height }) {
   if (!width || !height) return null;
   const ratio = window.devicePixelRatio || 1;
   const wide = Math.round(width * ratio);

@@ -7,6 +7,8 @@ const BADGES = {
   grey: { word: "not judged", sign: "?" },
 };
 
+const TEXT_LAGS_MS = 100; // behind a pulled corner
+
 class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
@@ -74,8 +76,7 @@ class DesignView {
   }
 
   show(frame) {
-    this.takeText(frame.text);
-    if (!this.textPending) this.editor.show(frame.troubles);
+    this.showTextOf(frame);
     this.showIcons(frame);
     this.undo.disabled = !frame.can_undo;
     this.redo.disabled = !frame.can_redo;
@@ -85,6 +86,19 @@ class DesignView {
     setText(this.measured, frame.measured);
     this.timeline.show(frame);
     Object.assign(this.root.dataset, { icon: frame.icon ?? "", colour: frame.badge.colour });
+  }
+
+  /** While a corner is pulled, the text follows after the curves, once the page has time. */
+  showTextOf(frame) {
+    const take = () => {
+      clearTimeout(this.later);
+      this.later = 0;
+      this.takeText(frame.text);
+      if (!this.textPending) this.editor.show(frame.troubles);
+    };
+    this.newestText = take;
+    if (!this.timeline.handles.pulledBeyond(frame.seq)) take();
+    else this.later ||= setTimeout(() => this.newestText(), TEXT_LAGS_MS);
   }
 
   showIcons({ icons, icon }) {
@@ -109,6 +123,7 @@ class DesignView {
   }
 
   stop() {
+    clearTimeout(this.later);
     this.editor.stop();
     this.timeline.stop();
     this.badge.stop();

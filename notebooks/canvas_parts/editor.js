@@ -93,7 +93,8 @@ class Editor {
       this.livePlace = line;
       this.view.dispatch({ effects: this.setLive.of(line) });
     }
-    if (follow && line) this.reveal(line, "nearest");
+    if (follow && line && line !== this.followed) this.reveal(line, "nearest");
+    this.followed = follow ? line : 0;
   }
 
   reveal(line, y = "center") {

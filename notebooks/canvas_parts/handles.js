@@ -23,6 +23,11 @@ class Handles {
     return this.pulled !== null;
   }
 
+  /** Whether a pull goes on that the answer to message `seq` does not end. */
+  pulledBeyond(seq) {
+    return this.pulling && !(this.pulled.done && seq >= this.pulled.done);
+  }
+
   /** Where a handle is now: where it is pulled to, else where the kernel says. */
   placeOf(index) {
     const handle = this.list[index];

@@ -5,6 +5,8 @@ const STAGE_HELP =
   "Left and right arrows move the time cursor, with Shift ten times as far. Square brackets choose a corner; " +
   "arrows then move it, and Escape goes back to the cursor.";
 
+const TIP_ROOM = 70; // pixels that the tallest tip needs above its corner
+
 class Timeline {
   /** `post` sends a message and returns its seq, `say` tells screen readers; without `post` nothing can be dragged. */
   constructor(root, post, say) {
@@ -12,8 +14,10 @@ class Timeline {
     this.handles = new Handles(post, () => this.refresh(), say);
     this.sayReading = whenQuiet(() => say(this.reading()), 500);
     this.build();
+    this.boxes = null;
     this.observer = new ResizeObserver(() => {
       this.fitLegends();
+      this.boxes = null;
       this.redraw();
     });
     this.observer.observe(this.stage);
@@ -67,9 +71,22 @@ class Timeline {
     const shape = JSON.stringify(frame.panels.map((panel) => [panel.key, panel.label, panel.height, panel.series.map(look)]));
     if (shape === this.shape) return;
     this.shape = shape;
+    this.panels.forEach(({ plot }) => this.observer.unobserve(plot));
     this.panels = frame.panels.map((panel) => this.makePanel(panel));
     this.stack.replaceChildren(...this.panels.map((parts) => parts.element));
+    this.panels.forEach(({ plot }) => this.observer.observe(plot));
     this.fitLegends();
+    this.boxes = null;
+  }
+
+  /** Where plots and axis lie; asked for once a layout, since each question makes the browser lay out the whole page. */
+  measureBoxes() {
+    const { left, top, width, height } = this.element.getBoundingClientRect();
+    const boxOf = (element) => {
+      const box = element.getBoundingClientRect();
+      return { left: box.left - left, top: box.top - top, width: box.width, height: box.height };
+    };
+    return { whole: { width, height }, axis: boxOf(this.axis), plots: this.panels.map(({ plot }) => boxOf(plot)) };
   }
 
   makePanel(panel) {
@@ -130,8 +147,9 @@ class Timeline {
   drawAll() {
     cancelAnimationFrame(this.part); // what it would draw is drawn here
     this.palette ??= paletteOf(this.root);
+    this.boxes ??= this.measureBoxes();
     this.panels.forEach((parts, k) => {
-      const surface = fitted(parts.base);
+      const surface = fitted(parts.base, this.boxes.plots[k]);
       const panel = this.frame.panels[k];
       if (surface) parts.lay = drawPanel(surface, this.frame, panel, this.view, this.ranges.get(panel.key), this.palette);
     });
@@ -139,14 +157,15 @@ class Timeline {
   }
 
   drawOver() {
+    this.boxes ??= this.measureBoxes();
     this.panels.forEach((parts, k) => {
-      const surface = parts.lay && fitted(parts.over);
+      const surface = parts.lay && fitted(parts.over, this.boxes.plots[k]);
       if (!surface) return;
       this.drawCursor(surface.context, this.frame.panels[k], parts);
       this.handles.drawGuide(surface.context, parts.key, this.targetStart(this.frame.panels[k]), parts.lay, this.palette);
       this.handles.draw(surface.context, parts.key, parts.lay, this.palette);
     });
-    const axis = fitted(this.axis);
+    const axis = fitted(this.axis, this.boxes.axis);
     if (axis) drawTimeAxis(axis, this.view, this.cursor, this.palette);
     this.panels.forEach((parts, k) => this.readOut(this.frame.panels[k], parts)); // texts last: they undo the layout
     this.showTip();
@@ -198,22 +217,26 @@ class Timeline {
   showTip() {
     const tip = this.handles.tip();
     const handle = tip && this.frame.handles[tip.index];
-    const parts = handle && this.panels.find(({ key, lay }) => key === handle.panel && lay);
-    if (parts) this.placeTip(tip, parts);
+    const place = handle ? this.panels.findIndex(({ key, lay }) => key === handle.panel && lay) : -1;
+    if (place >= 0) this.placeTip(tip, this.panels[place].lay, this.boxes.plots[place]);
     else this.tip.hidden = true;
     this.onHandle(handle ? handle.line : 0, this.handles.pulling);
   }
 
-  placeTip(tip, { lay, plot }) {
+  /** The tip hangs on the side of its corner that has more room, so that its own size need not be known. */
+  placeTip(tip, lay, box) {
     const { t, y } = this.handles.placeOf(tip.index);
     setText(this.tip, tip.text);
     this.tip.hidden = false;
-    const frame = this.element.getBoundingClientRect();
-    const box = plot.getBoundingClientRect();
-    const [across, down] = [box.left - frame.left + lay.x(t), box.top - frame.top + lay.y(y)];
-    const { offsetWidth: wide, offsetHeight: high } = this.tip;
-    this.tip.style.left = `${clamp(across + 12, 2, this.element.clientWidth - wide - 2)}px`;
-    this.tip.style.top = `${down - high - 12 < 0 ? down + 14 : down - high - 12}px`;
+    const { width, height } = this.boxes.whole;
+    const across = clamp(box.left + lay.x(t), 0, width);
+    const down = clamp(box.top + lay.y(y), 0, height);
+    const [toLeft, below] = [across > width / 2, down < TIP_ROOM];
+    const { style } = this.tip;
+    style.left = toLeft ? "auto" : `${across + 12}px`;
+    style.right = toLeft ? `${width - across + 12}px` : "auto";
+    style.top = below ? `${down + 14}px` : "auto";
+    style.bottom = below ? "auto" : `${height - down + 12}px`;
   }
 
   moveCursor(t) {

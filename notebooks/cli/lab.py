@@ -34,6 +34,8 @@ MOST_BYTES = 200_000_000
 """Bytes of a notebook that is looked at; with all its pictures one has some millions."""
 STAMP = "thermicon"
 """The key of a copy's metadata that holds the fingerprint it was written with."""
+PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.pages.prompt_socket.PromptSocket"
+"""Option of JupyterLab by which answers of a kernel on this machine do not wait; a gateway has a socket of its own."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
 
 State = Literal["new", "current", "older", "changed"]
@@ -208,6 +210,8 @@ def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> 
     """
     module, notebook = ("thermicon.notebooks.pages.page_server", PAGE) if page else ("jupyterlab", FIRST)
     words = [sys.executable, "-P", "-m", module, str(folder.resolve() / notebook)]
+    if not page and "JUPYTER_GATEWAY_URL" not in os.environ:
+        words.append(PROMPT)
     words += ["--no-browser"] if no_browser else []
     return words + ([f"--port={port}"] if port is not None else [])
 

@@ -22,6 +22,8 @@ from tornado.web import HTTPError, RequestHandler
 from traitlets.config import Config
 from voila.app import Voila  # type: ignore[import-untyped]
 
+from .prompt_socket import PromptSocket
+
 NAMES = ("localhost", "127.0.0.1", "[::1]")
 """Names of this machine that a request may come under."""
 
@@ -70,6 +72,7 @@ class PageServer(Voila):  # type: ignore[misc]
         super().initialize(argv)
         self.token = secrets.token_urlsafe(24)
         self.identity_provider_class = IdentityProvider
+        self.kernel_websocket_connection_class = PromptSocket
         self.voila_configuration.multi_kernel_manager_class = Kernels
         self.voila_configuration.file_allowlist = []
         self.update_config(

@@ -56,6 +56,7 @@ class DesignModel:
         self.measured: Measured | None = None
         self._applied = apply(rig, {}, self._young)
         self._drag: _Drag | None = None
+        self._moving = False
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
         self.history = History(Edited(text, self.scene.icon))
         self.last_ms = 0.0
@@ -92,11 +93,7 @@ class DesignModel:
 
     def turn(self, values: Mapping[str, float | str]) -> CanvasFrame:
         """Set knobs, by key; the others stay where they are."""
-
-        def act() -> None:
-            self._set({**self.values, **values})
-
-        return self._answer(act)
+        return self._answer(lambda: self._turned(values))
 
     def reset(self) -> CanvasFrame:
         """Bring all knobs back to the rig's own values."""
@@ -161,6 +158,7 @@ class DesignModel:
 
     def _answer(self, act: Callable[[], str | None], seq: int = 0) -> CanvasFrame:
         began, before = time.perf_counter(), (self.text, self.rig)
+        self._moving = False
         shown: str | None = None
         try:
             shown = act()
@@ -168,7 +166,7 @@ class DesignModel:
             self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
-            made = frame_of(self.scene, self.measured, MOST_POINTS if self._drag is None else DRAGGED_POINTS)
+            made = frame_of(self.scene, self.measured, DRAGGED_POINTS if self._moving else MOST_POINTS)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
@@ -194,6 +192,10 @@ class DesignModel:
                 return None
             case "drag":
                 return self._dragged(message)
+            case "turn":
+                self._moving = True
+                self._turned({str(message.get("key")): self._knob_value(message)})
+                return None
             case "undo" | "redo":
                 return self._step(self.history.undo() if kind == "undo" else self.history.redo(), kind)
             case "apply":
@@ -218,6 +220,7 @@ class DesignModel:
         drawing, base = self.scene.drawing, self._drag.text
         start = None if drawing is None else drawing.start
         time_s, level = _float(message.get("t")), _float(message.get("y"))
+        self._moving = not end
         moved = drag(base, self.scene.icon or "", handle, time_s, level, start)
         if moved.refused is None:
             self.history = self.history.dragged(moved.text, end)
@@ -250,9 +253,26 @@ class DesignModel:
         self._draw(icon)
         return text
 
-    def _set(self, values: Mapping[str, float | str]) -> None:
+    def _knob_value(self, message: Message) -> float:
+        """The value that a page sets a knob to; raises ValueError for what no slider of the rig can say."""
+        value = _float(message.get("value"))
+        for knob in knobs_of(self.nominal):
+            if knob.key == message.get("key") and not knob.options and knob.low <= value <= knob.high:
+                return value
+        raise ValueError(f"no slider goes to {message.get('key')} = {message.get('value')}")
+
+    def _turned(self, values: Mapping[str, float | str]) -> None:
+        """Set knobs; nothing is simulated again where the page was ahead of its own slider."""
+        wanted = {**self.values, **values}
+        if self._unlike_rig(wanted) != self.values:
+            self._set(wanted)
+
+    def _unlike_rig(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
         own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
-        self.values = {key: value for key, value in values.items() if own.get(key) != value}
+        return {key: value for key, value in values.items() if own.get(key) != value}
+
+    def _set(self, values: Mapping[str, float | str]) -> None:
+        self.values = self._unlike_rig(values)
         self._applied = apply(self.nominal, self.values, self._young)
         self._draw()
 

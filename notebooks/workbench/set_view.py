@@ -49,7 +49,12 @@ ShowText = Callable[[str], None]
 SetRequest = tuple[str, "Rig", "Selection | None", "Goal | None"]
 """Text, rig, the choice of a few icons, if any, and the goal, if any."""
 SHARES = 10
-SMALL = "cue 1; icon dip { cool by 2 K at 2 K/s; return at 2 K/s }; icon glow { warm by 2 K at 2 K/s; return at 2 K/s }"
+SMALL = """cue 1
+icon dip { cool by 2 K at 2 K/s; return at 2 K/s }
+icon glow { warm by 2 K at 2 K/s; return at 2 K/s }
+icon beat { repeat 2 { pulse cool by 2 K for 1 s; rest for 1 s } }
+"""
+"""A set that calls what a first ranking of any set calls: three icons, since two are easier to place."""
 WIDE, BESIDE = "1 1 500px", 6
 """Table and heat maps are side by side for at most this number of icons."""
 
@@ -109,7 +114,7 @@ class SetView(LiveView[SetRequest]):
         self._warmer.ask(self._load, 1.0)
 
     def _load(self, job: Job) -> None:
-        rank_set(SMALL, self.design.nominal, 2, 0, progress=job.go_on)
+        rank_set(SMALL, self.design.nominal, *QUICK, progress=job.go_on)
 
     def _mark_outdated(self, request: SetRequest) -> None:
         self._mark(self.made is not None and request[:2] != self._source())

@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.browser.jupyter import Server, end_kernels, page_of, page_of_file, running
+from thermicon.notebooks.cli.lab import PROMPT
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
 WINDOW = {"width": 1280, "height": 800}
@@ -23,6 +24,7 @@ LAB = (
     "--ServerApp.disable_check_xsrf=True",
     "--ServerApp.port_retries=0",
     "--LabApp.expose_app_in_browser=True",
+    PROMPT,
 )
 
 

@@ -13,9 +13,11 @@ from tests.browser.jupyter import Server, command, dark, errors_in, open_noteboo
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
+    drag_first_handle,
     expect_text,
     open_tab,
     root,
+    settled_text,
     text_of,
     type_below_the_first_screen,
     type_drag_and_err,
@@ -94,6 +96,31 @@ def test_a_slider_changes_the_curves_and_reset_brings_them_back(bench: Page) -> 
     assert root(bench).get_attribute("data-seq") is not None, before
     bench.get_by_role("button", name="Reset").click()
     expect(bench.locator(".tm-notes").first).to_be_hidden()
+
+
+LINE = "document.querySelector('.thermicon .tm-root[data-view=design]').workbench.line"
+FRAMES = "window.__thermicon.design.length"
+
+
+def test_a_drag_goes_past_the_server_and_needs_not(bench: Page) -> None:
+    bench.wait_for_function(f"{LINE}.isOpen")
+    type_text(bench, TWO)
+    bench.wait_for_timeout(500)
+    drag_first_handle(bench, 0.0, 25.0)
+    first = settled_text(bench)
+    assert first != TWO
+    bench.evaluate(f"{LINE}.socket.close()")  # as when something between page and kernel cuts it
+    bench.wait_for_function(f"!{LINE}.isOpen")
+    before = bench.evaluate(FRAMES)
+    drag_first_handle(bench, 0.0, 20.0)
+    assert settled_text(bench) not in (TWO, first)
+    assert bench.evaluate(FRAMES) > before
+    knob = bench.locator(".thermicon-knob .noUi-handle").first
+    knob.focus()
+    seen = bench.evaluate(FRAMES)
+    knob.press("ArrowRight")
+    bench.wait_for_function(f"{FRAMES} > {seen}")
+    expect(bench.locator(".tm-banner:not([hidden])")).to_have_count(0)
 
 
 def test_the_set_is_compared_and_an_edit_applied(bench: Page, shot: Shot) -> None:

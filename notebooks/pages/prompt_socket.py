@@ -1,0 +1,20 @@
+"""Answers of a kernel sent at once: without this, a small message waits for the page to confirm the one before.
+
+TCP holds small packets back until earlier ones are confirmed (Nagle), and pages confirm up to 40 ms late. Each answer
+follows the short message that the kernel is busy, so that each would wait.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from jupyter_server.services.kernels.connection.channels import ZMQChannelsWebsocketConnection
+
+
+class PromptSocket(ZMQChannelsWebsocketConnection):
+    """The connection of a page to its kernel, without waiting."""
+
+    def connect(self) -> Any:
+        """Connect, and send small messages at once from then on."""
+        self.websocket_handler.set_nodelay(True)
+        return super().connect()

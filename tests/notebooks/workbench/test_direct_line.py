@@ -1,0 +1,187 @@
+"""The direct line between a page and the kernel of this machine: who gets in, what is answered, what ends it."""
+
+import asyncio
+import json
+import struct
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import numpy
+import pytest
+from tornado.httpclient import HTTPClientError
+from tornado.websocket import WebSocketClientConnection, websocket_connect
+
+from thermicon.circuit import Rig
+from thermicon.notebooks.workbench.canvas import Canvas
+from thermicon.notebooks.workbench.design_model import DesignModel
+from thermicon.notebooks.workbench.direct_line import HERE, MOST_BYTES, DirectLine, packed
+
+DIP = "cue 1; icon dip { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }"
+Result = TypeVar("Result")
+
+
+def on_line(line: DirectLine, talk: Callable[[WebSocketClientConnection], Awaitable[Result]]) -> Result:
+    """Open a line, talk on it, close it."""
+
+    async def go() -> Result:
+        port, token = line.open()
+        socket = await websocket_connect(f"ws://{HERE}:{port}/{token}")
+        try:
+            return await asyncio.wait_for(talk(socket), 20)
+        finally:
+            socket.close()
+            line.close()
+
+    return asyncio.run(go())
+
+
+def unpacked(data: bytes) -> tuple[dict[str, Any], list[bytes]]:
+    (size,) = struct.unpack("<I", data[:4])
+    meta, at = json.loads(data[4 : 4 + size]), 4 + size
+    buffers = []
+    for length in meta["lengths"]:
+        buffers.append(data[at : at + length])
+        at += length
+    assert at == len(data)
+    return meta, buffers
+
+
+def canvas_of(model: DesignModel) -> tuple[Canvas, list[dict[str, Any]]]:
+    """A canvas with a model behind it, and the messages that it sends by Jupyter."""
+    canvas, sent = Canvas(), list[dict[str, Any]]()
+    canvas.send = lambda content, buffers=None: sent.append(content)
+
+    def receive(message: Any) -> None:
+        frame = model.receive(message)
+        canvas.frame(frame.meta, frame.buffers)
+
+    canvas.on_message(receive)
+    receive({"type": "hello", "seq": 1})
+    return canvas, sent
+
+
+def test_a_frame_survives_its_packing_and_its_buffers_are_aligned():
+    values = numpy.arange(5, dtype="<f4")
+    meta, buffers = unpacked(packed({"seq": 7, "label": "Δ °C"}, [values.tobytes(), b""]))
+    assert (meta["seq"], meta["label"]) == (7, "Δ °C")
+    assert numpy.frombuffer(buffers[0], "<f4").tolist() == values.tolist()
+    (size,) = struct.unpack("<I", packed({"seq": 7}, [])[:4])
+    assert size % 4 == 0
+
+
+def test_a_step_of_a_drag_is_answered_on_the_line_alone():
+    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+    before = len(sent)
+
+    async def talk(socket: WebSocketClientConnection) -> Any:
+        await socket.write_message(
+            json.dumps({"type": "drag", "handle": 0, "t": 1.5, "y": 29.0, "end": False, "seq": 9})
+        )
+        return await socket.read_message()
+
+    meta, buffers = unpacked(on_line(canvas._line, talk))
+    assert (meta["type"], meta["seq"], meta["lengths"]) == ("frame", 9, [len(each) for each in buffers])
+    assert "hold for 2 s" in meta["text"]
+    assert meta["text"] != DIP
+    assert meta["panels"][0]["key"] == "temperature"
+    assert len(sent) == before
+
+
+def test_a_step_of_a_slider_is_drawn_and_the_slider_itself_draws_nothing_anew():
+    model = DesignModel(DIP, Rig.load("thenar"))
+    canvas, _ = canvas_of(model)
+    knob = _knobs(model)[0]
+    step = {"type": "turn", "key": knob.key, "value": knob.low, "seq": 4}
+
+    async def talk(socket: WebSocketClientConnection) -> Any:
+        await socket.write_message(json.dumps(step))
+        return await socket.read_message()
+
+    meta, _ = unpacked(on_line(canvas._line, talk))
+    drawn = model.scene
+    assert (meta["seq"], model.values) == (4, {knob.key: knob.low})
+    whole = model.turn({knob.key: knob.low})
+    assert model.scene is drawn
+    assert whole.meta["time"]["n"] >= meta["time"]["n"]
+
+
+def _knobs(model: DesignModel) -> list[Any]:
+    from thermicon.notebooks.workbench.knobs import knobs_of
+
+    return [knob for knob in knobs_of(model.nominal) if not knob.options]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        json.dumps({"type": "text", "text": "cue 1", "seq": 1}),
+        json.dumps({"type": "drag", "handle": 0, "t": 1.0, "y": 30.0, "end": True, "seq": 1}),
+        json.dumps([1, 2]),
+        "[" * 5000,
+        "no JSON",
+        '{"type": "drag", "why": "' + "x" * MOST_BYTES + '"}',
+        b"\xff\xfe",
+    ],
+)
+def test_anything_else_ends_the_line_and_changes_nothing(message):
+    model = DesignModel(DIP, Rig.load("thenar"))
+    canvas, _ = canvas_of(model)
+
+    async def talk(socket: WebSocketClientConnection) -> Any:
+        await socket.write_message(message, binary=isinstance(message, bytes))
+        return await socket.read_message()
+
+    assert on_line(canvas._line, talk) is None
+    assert model.text == DIP
+
+
+def test_a_knob_that_does_not_exist_or_is_out_of_range_is_said_and_stays():
+    model = DesignModel(DIP, Rig.load("thenar"))
+    for key, value in (("nothing", 1.0), (_knobs(model)[0].key, 1e9), (_knobs(model)[0].key, "wide")):
+        frame = model.receive({"type": "turn", "key": key, "value": value, "seq": 2})
+        assert f"no slider goes to {key} = {value}" in frame.meta["notes"][0]
+    assert model.values == {}
+
+
+def test_without_the_token_nobody_gets_in():
+    line = DirectLine(lambda message: ({}, []))
+
+    async def go() -> None:
+        port, token = line.open()
+        try:
+            for path in ("", "x" * len(token), token[:-1], f"{token}/more"):
+                with pytest.raises(HTTPClientError, match="403"):
+                    await websocket_connect(f"ws://{HERE}:{port}/{path}")
+        finally:
+            line.close()
+
+    asyncio.run(go())
+    assert len(line.token) >= 32
+    assert DirectLine(line.answer).token != line.token
+
+
+def test_the_page_is_told_where_the_line_is_and_which_sliders_it_takes():
+    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+
+    async def go() -> None:
+        canvas.follow({"contact": "id-1"})
+        assert [message["type"] for message in sent] == ["frame"]  # nobody asked yet
+        canvas._receive(canvas, {"type": "line"}, [])
+        canvas.follow({"contact": "id-2"})
+
+    asyncio.run(go())
+    canvas.close()
+    lines = [message for message in sent if message["type"] == "line"]
+    assert [line["sliders"] for line in lines] == [{"contact": "id-1"}, {"contact": "id-2"}]
+    assert lines[0]["port"] == lines[1]["port"] > 0
+
+
+def test_a_kernel_that_may_open_no_port_goes_on_without(monkeypatch):
+    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+
+    def no_port(line: DirectLine) -> tuple[int, str]:
+        raise PermissionError("not allowed")
+
+    monkeypatch.setattr(DirectLine, "open", no_port)
+    canvas._receive(canvas, {"type": "line"}, [])
+    assert [message["type"] for message in sent] == ["frame"]
