@@ -3,6 +3,7 @@
 import unicodedata
 from dataclasses import dataclass
 
+from ..number_text import count_of
 from .cleaning import clean
 
 TITLES: dict[str, str] = {
@@ -166,7 +167,7 @@ class CueErrors(ValueError):
         parts = [error.render() for error in self.errors]
         if self.more:
             least = "at least " if self.more + len(self.errors) >= MOST_READ else ""
-            parts.append(f"... and {least}{self.more} more errors")
+            parts.append(f"... and {least}{count_of(self.more, 'more error')}")
         return "\n\n".join(parts)
 
     def _render_traceback_(self) -> list[str]:
