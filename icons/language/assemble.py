@@ -69,9 +69,8 @@ class _Assembler:
         self.version(parts, kinds)
         self.set_block(parts, kinds)
         self.trees = [part for part, kind in zip(parts, kinds, strict=True) if kind == "icon"]
-        self.index = {}
-        for place, tree in enumerate(self.trees):
-            self.index.setdefault(str(tree.children[0]), place)
+        for place, icon_tree in enumerate(self.trees):
+            self.index.setdefault(str(icon_tree.children[0]), place)
         made = [self.made(place) for place in range(len(self.trees))]
         drafts = [self.drafts[place] for place in range(len(self.trees))]
         self.names(drafts)

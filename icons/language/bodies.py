@@ -26,7 +26,8 @@ from ..model.statements import (
 from ..model.units import UNITS, Kind
 from ..model.value_limits import MOST_REPEATS
 from ..model.words import nearest
-from .build import Builder, Place, rule_of, short, span
+from .build import Builder, Place, rule_of, span
+from .failed_statement import short
 from .family_parameters import FamilyParameters, parameters_of
 from .source import Edit
 
