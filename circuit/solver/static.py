@@ -18,6 +18,9 @@ from .network import COLD, HOT, network_of
 from .prescribed import modes_of
 from .steady import holding_current_A, state_under_current, steady_state
 
+WARMEST_COLD_PLATE_K = 320.0
+"""αT/R at this temperature, above that of any display, bounds the search for the coldest level: more current heats."""
+
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     """Return the reasons why a cue is impossible on a rig, without simulating it.
@@ -116,7 +119,8 @@ def _holdable(rig: Rig, control: str) -> tuple[float, float]:
         state = state_under_current(network, current)
         return rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
 
-    coldest = _coldest(level, min(driver.current_max_A, rig.module.seebeck_V_per_K * 320 / rig.module.resistance_ohm))
+    most = rig.module.seebeck_V_per_K * WARMEST_COLD_PLATE_K / rig.module.resistance_ohm
+    coldest = _coldest(level, min(driver.current_max_A, most))
     coldest = _within(coldest, lambda current: volts(current) <= driver.voltage_limit_V)
     warmest = _within(
         driver.current_min_A, lambda current: _exists(rig, current) and -volts(current) <= driver.voltage_limit_V
