@@ -30,7 +30,7 @@ LATER_S = 600.0
 ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
 """Times of the rows of an ending: fine after the jump of the current, coarse later."""
 
-LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
+LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
 
 
 def follow_endings(
@@ -38,9 +38,8 @@ def follow_endings(
 ) -> dict[str, Array]:
     """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
-    The tallies are in the same state before.
-    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's, or one
-    for each corner; `sums` whether doses count.
+    The tallies are in the same state before. `state` is that at the end of the drive, at `end_s`; `last_A` its last
+    current, or the mean of a bridge's, or one for each corner; `sums` whether doses count.
     """
     after = {}
     last, zero, off = ENDINGS

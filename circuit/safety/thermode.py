@@ -19,7 +19,8 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.prescribed import FELT, SkinModes, modes_of
 from .corners import Corner
-from .endings import ENDING_S, LATER_S
+from .endings import ENDING_S, LATE_S
+from .endings import ROWS_S as ENDING_ROWS_S
 from .playmap import PlayMap, least_bound
 from .repeated import RECOVERED_K, back_after_s
 from .repeated import ROWS_S as RECOVERY_ROWS_S
@@ -27,8 +28,6 @@ from .tally import WATCHED, Tally
 
 LAST, LOST = "last set-point held", "control lost"
 ENDINGS = (LAST, LOST)
-ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
-LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
 
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 

@@ -101,7 +101,7 @@ def gate_shown(
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
         plays = _plays(ways[0], pause, limits_held.session_s)
         repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks)
-        every = [check for each in (*(tally_pair[0] for tally_pair in once), *again) for check in each]
+        every = [check for each in (*(single for single, _, _ in once), *again) for check in each]
         verdicts.append(
             Gate(
                 rig.name,
