@@ -15,7 +15,7 @@ from .form import (
     command_column,
     samples_of,
 )
-from .setpoint_csv import has_voltage, volts_of
+from .setpoint_csv import VOLTAGE, has_voltage, volts_of
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1
@@ -23,8 +23,7 @@ LARGEST = 2**31 - 1
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Channels of the group `thermicon`."""
-    voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
-    extra = (voltage,) if _is_voltage(delivery) else ()
+    extra = (VOLTAGE,) if _is_voltage(delivery) else ()
     code = Column("code", "", "the command as a whole number of the device's steps")
     return (command_column(delivery), code, *extra)
 
@@ -54,7 +53,7 @@ def write(delivery: DeliveredDrive) -> bytes:
     ]
     if _is_voltage(delivery):
         volts = volts_of(delivery.device, samples.command)
-        channels.append(ChannelObject(GROUP, "command_V", volts, {"unit_string": "V", **clock}))
+        channels.append(ChannelObject(GROUP, VOLTAGE.name, volts, {"unit_string": VOLTAGE.unit, **clock}))
     file = io.BytesIO()
     with TdmsWriter(file) as writer:
         writer.write_segment([root, group, *channels])
