@@ -114,8 +114,7 @@ def start_of(delivery: DeliveredDrive) -> Array | None:
 def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
     if device.driven_by != "duty" or isinstance(played, Setpoints):
         return None
-    low, high = device.interval("output range")
-    return steady_of(rig, float(played.command[0]), min(-low, high))
+    return steady_of(rig, float(played.command[0]), device.bridge_A)
 
 
 def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
