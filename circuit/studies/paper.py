@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TAIL_S = 4.0
+"""Time that a run goes on after the cue, for the skin to come back."""
 EMULATOR_A, EMULATOR_V = 2.5, 20.0
 """Limits that do not affect the paper's cue: its first instants need 2.4 A and 15.9 V."""
 THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
