@@ -16,7 +16,7 @@ from thermicon.icons import Icon, parse
 from ..rig.rig import Rig
 from .identify import NOISE_K, NOISE_V, with_channels
 from .keys import free_keys
-from .laboratory import synthetic_log
+from .laboratory import COLUMNS, synthetic_log
 from .problem import Problem
 from .runs import runs_of
 from .solve import covariance_of
@@ -30,7 +30,6 @@ IDENTIFIED = (
 )
 """Keys that the calibration drive was chosen for, all free at once."""
 
-COLUMNS = ("display_C", "voltage_V")
 RIGS = ("thenar", "forearm", "shani2021")
 RATE_HZ = 10.0
 """Rows per second of the logs that are compared."""

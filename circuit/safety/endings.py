@@ -27,7 +27,7 @@ IN_THE_END = "zero current in the end"
 LATER_S = 600.0
 """Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
 
-ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
+ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
 """Times of the rows of an ending: fine after the jump of the current, coarse later."""
 
 LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
@@ -44,14 +44,14 @@ def follow_endings(
     after = {}
     last, zero, off = ENDINGS
     for name, current in ((last, last_A), (zero, 0.0)):
-        values, _ = ensemble.hold(current, state, ROWS_S)
-        tallies[name].add(end_s + ROWS_S, values, sums=sums)
+        values, _ = ensemble.hold(current, state, ENDING_ROWS_S)
+        tallies[name].add(end_s + ENDING_ROWS_S, values, sums=sums)
         after[name] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:  # without power it is the same
         tallies[off].copy_from(tallies[zero])
     else:
-        values = without_power(ensemble, state, ROWS_S)[0]
-        tallies[off].add(end_s + ROWS_S, values, sums=sums)
+        values = without_power(ensemble, state, ENDING_ROWS_S)[0]
+        tallies[off].add(end_s + ENDING_ROWS_S, values, sums=sums)
     after[off] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:
         later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))

@@ -19,15 +19,13 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.prescribed import FELT, SkinModes, modes_of
 from .corners import Corner
-from .endings import ENDING_S, LATE_S
-from .endings import ROWS_S as ENDING_ROWS_S
+from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
 from .playmap import PlayMap, least_bound
-from .repeated import RECOVERED_K, back_after_s
-from .repeated import ROWS_S as RECOVERY_ROWS_S
+from .repeated import RECOVERED_K, RECOVERY_ROWS_S, back_after_s
 from .tally import WATCHED, Tally
 
 LAST, LOST = "last set-point held", "control lost"
-ENDINGS = (LAST, LOST)
+DISPLAY_ENDINGS = (LAST, LOST)
 
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
@@ -174,7 +172,7 @@ def tally_once(
     values, ended = under.play(course, under.steady(float(course.display_C[0])))
     played = Tally(limits, under.corners, f", {course.way}")
     played.add(course.rows_s, values, rates=rates)
-    tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
+    tallies = [played.fork(f"then {ending}") for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, tallies, rates=rates)
     return [played, *tallies], ended
 

@@ -6,10 +6,11 @@ from typing import Any
 
 from ..model.context import Metadata
 from ..model.family import Family
-from ..model.format import Holes, Path
+from ..model.format import Holes
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
+from ..model.slots import Path
 from ..model.statements import Play, Repeat, Return, Statement
 from ..model.units import decimal_text
 
