@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from thermicon.icons import Icon
 from thermicon.icons.model.corners import Corners
+from thermicon.icons.number_text import significant
 
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Thermode
@@ -166,9 +167,10 @@ def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
         rate = (to - level) / (later - time)
         limit = _steepest(rig, level, cooling=rate < 0)
         if abs(rate) > limit:
+            wanted, possible = significant(abs(rate), limit)
             reasons.append(
-                f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
-                f"is more than the {limit:.3g} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
+                f"icon {icon.name}: {wanted} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
+                f"is more than the {possible} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
             )
     return reasons
 
