@@ -26,8 +26,8 @@ class SafetyVerdict:
     findings: tuple[Check, ...]
 
     def __repr__(self) -> str:
-        passed = ", ".join(f"{check.quantity} {check.value:.4g} {check.unit}" for check in self.findings)
-        return f"SafetyVerdict({self.colour}{f': {passed}' if passed else ''})"
+        exceeded = ", ".join(f"{check.quantity} {check.figures[0]} {check.unit}" for check in self.findings)
+        return f"SafetyVerdict({self.colour}{f': {exceeded}' if exceeded else ''})"
 
     @property
     def colour(self) -> str:
