@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from thermicon.icons import Icon
 from thermicon.icons.model.corners import Corners
-from thermicon.icons.number_text import significant
+from thermicon.icons.number_text import decimals, significant
 
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Thermode
@@ -71,9 +71,10 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     low, high = _holdable(rig, control)
     for level in (corners.lowest, corners.highest):
         if not low - 1e-9 <= level <= high + 1e-9:
+            digits = decimals(level, low if level < low else high, 1)
             reasons.append(
-                f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.1f} … {high:.1f} °C that "
-                f"rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
+                f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.{digits}f} … {high:.{digits}f} "
+                f"°C that rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
             )
     if control == "display" and not reasons:
         reasons += _too_fast(icon, rig, corners)
@@ -91,9 +92,10 @@ def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
     for level in dict.fromkeys((base, corners.lowest, corners.highest)):
         needed = modes.display_holding_skin_C(level) if control == "skin" else level
         if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:
+            digits = decimals(needed, thermode.lowest_C if needed < thermode.lowest_C else thermode.highest_C, 1)
             reasons.append(
-                f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.1f} °C, outside the "
-                f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
+                f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.{digits}f} °C, outside "
+                f"the {thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
             )
     points = zip(corners.time_s, corners.value, strict=True)
     for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
