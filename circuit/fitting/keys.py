@@ -65,6 +65,7 @@ class FitKey:
 _SHIPPED = uncertainty_of({})
 _LAG = "a step of temperature on the sensor alone, such as dipping it into warm water"
 
+# Where no shipped uncertainty is named, `room` and `usual` are assumed, wide enough for any bench.
 _KEYS = {
     item.key: item
     for item in (

@@ -19,6 +19,7 @@ BEYOND = 2.0
 WORTH = 0.3
 """Share of the sum of squares that a freed key must take away to be named."""
 MOST_NAMED = 2
+"""Keys that are named at most: freeing several at once identifies none."""
 
 
 def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:

@@ -21,6 +21,8 @@ from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally
 
 ENDING_S = 60.0
+"""How long each ending is followed in full: until somebody has noticed."""
+
 ENDINGS = ("last value held", "zero current", "power off")
 IN_THE_END = "zero current in the end"
 
@@ -31,6 +33,7 @@ ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.
 """Times of the rows of an ending: fine after the jump of the current, coarse later."""
 
 LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
+"""Rows of zero current from then on."""
 
 
 def follow_endings(

@@ -29,6 +29,7 @@ RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) 
 """Times at which recovery is checked, up to the longest pause."""
 
 PAUSE_STEP_S = 0.1
+"""Safe pauses are searched, and reported, in steps of this."""
 
 
 class PauseError(InputError):

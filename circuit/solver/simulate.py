@@ -24,6 +24,7 @@ from .steady import check_sink, steady_state
 from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
+"""Rows of a trace at most: a gigabyte of its thirteen columns."""
 HOTTEST_C = 1000.0
 """Above this, solder melts and a number must be wrong."""
 

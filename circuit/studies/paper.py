@@ -252,6 +252,7 @@ class MissByLimit:
 
 
 LIMITS_A = (0.75, 1.0, 1.25, 1.5, 1.7, 1.85, 2.0, 2.2, 2.5)
+"""Current limits from below the rig's own, by the module's 1.85 A, to those of `emulator_rig`."""
 
 
 def miss_by_limit(rig: Rig | None = None, limits_A: Sequence[float] = LIMITS_A) -> MissByLimit:

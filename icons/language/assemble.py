@@ -24,6 +24,7 @@ from .recover import DEEPEST, read
 from .source import Edit, Finding, Source
 
 Body = tuple[Statement, ...]
+# Of all icons of a file, written out: two of the longest.
 MOST_CORNERS_A_FILE = 200_000
 
 REFUSES = "a total refuses the file and leaves no member out: change the range, or the total"

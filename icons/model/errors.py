@@ -78,6 +78,7 @@ TITLES: dict[str, str] = {
     "E231": "too many members",
     "E232": "icons that play each other",
 }
+# Characters of a line that an error shows.
 WIDEST = 110
 # Errors shown, and errors behind which reading stops: nobody corrects a thousand at once.
 MOST_ERRORS, MOST_READ = 100, 1000

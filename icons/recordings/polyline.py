@@ -14,6 +14,7 @@ import numpy as np
 from .course import SPARE, Array, Course, Path, course_of
 
 MOST_CORNERS = 500
+"""Corners of an icon that is made of a recording: more than anybody edits."""
 _MOST_DECIMALS = 12
 
 

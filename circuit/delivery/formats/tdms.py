@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import io
-from importlib.metadata import version
 
+from ...program import own_version
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -19,6 +19,7 @@ from .setpoint_csv import VOLTAGE, has_voltage, volts_of
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1
+"""Greatest code: they are written in 32 bits."""
 
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
@@ -45,7 +46,7 @@ def write(delivery: DeliveredDrive) -> bytes:
             f"{samples.scale.lowest:,} … {samples.scale.highest:,}: use csv"
         )
     clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
-    root = RootObject({"name": delivery.icon.name, "author": f"thermicon {version('thermicon')}"})
+    root = RootObject({"name": delivery.icon.name, "author": f"thermicon {own_version()}"})
     group = GroupObject(GROUP, {"device": delivery.device.name, "rig": delivery.rig.name})
     channels = [
         ChannelObject(GROUP, command.name, samples.command, {"unit_string": command.unit, **clock}),
