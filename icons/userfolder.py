@@ -9,7 +9,7 @@ import stat
 import sys
 from pathlib import Path
 
-HASH_BYTES = 32
+HASH_BYTES = 32  # of SHA-256
 WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 

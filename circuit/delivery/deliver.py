@@ -16,13 +16,11 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.load import refuse_load
 from ..rig.rig import Rig
-from ..solver.batch_inputs import bank_of, run_follow
 from ..solver.drive import Drive
 from ..solver.inverse import Design, design
 from ..solver.landing import refuse_landing
 from ..solver.pwm import steady_of
 from ..solver.simulate import duration_s, simulate_current
-from ..solver.steady import steady_state
 from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive, Narrowed
 from .device import Device
@@ -33,9 +31,6 @@ from .temperatures import deliver_temperatures, designed_until, follow_samples
 
 BRIDGE_ROUNDS = 3
 """Iterations between a bridge's duty and its hot plate; each leaves under a tenth of the previous error."""
-
-
-__all__ = ["Narrowed", "DeliveredDrive", "designed_until", "followed", "deliver", "start_of", "traces_until"]
 
 
 def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> DeliveredDrive:
@@ -119,8 +114,7 @@ def start_of(delivery: DeliveredDrive) -> Array | None:
 def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
     if device.driven_by != "duty" or isinstance(played, Setpoints):
         return None
-    low, high = device.interval("output range")
-    return steady_of(rig, float(played.command[0]), min(-low, high))
+    return steady_of(rig, float(played.command[0]), device.bridge_A)
 
 
 def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
@@ -178,14 +172,3 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         f", the design needs up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)
-
-
-def followed(rig: Rig, setpoints: Setpoints, lead_s: float, end_s: float) -> Drive:
-    """Return the current by which the display follows set-points from `lead_s` on; RigError without a steady state."""
-    rest, state = steady_state(rig, "display", float(setpoints.level_C[0]))
-    bank, lane, period = bank_of(rig), np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
-    count = int(np.ceil(end_s / period - 1e-9))
-    times: Array = np.arange(count + 1, dtype=np.float64) * period
-    target = setpoints.at(times[1:] - lead_s)
-    currents, _, _ = run_follow(bank, lane, lane, period, target[np.newaxis], False, bank.states([state]))
-    return Drive(times, [rest, *currents[0][1:], rest], held=True)

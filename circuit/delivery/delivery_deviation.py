@@ -36,13 +36,18 @@ class DeliveryDeviation:
         )
         return f"DeliveryDeviation({places})"
 
+    @property
+    def lost(self) -> tuple[Deviation, ...]:
+        """The deviation at each receptor where its rms is over the stated loss."""
+        limit = loss_limit("receptor difference")
+        return tuple(place for place in self.places if "receptor" in place.place and place.rms_K > limit)
+
     def losses(self) -> tuple[str, ...]:
         """A sentence for each receptor whose rms deviation is over the stated loss."""
         limit = loss_limit("receptor difference")
         return tuple(
             f"the {place.place} differs by {place.rms_K:.3f} K (rms) from the design, over the stated {limit:g} K"
-            for place in self.places
-            if "receptor" in place.place and place.rms_K > limit
+            for place in self.lost
         )
 
 

@@ -112,6 +112,12 @@ class Device:
         return self.interval(quantity)[1]
 
     @property
+    def bridge_A(self) -> float:
+        """Current in A of a bridge while it is on, either way: the nearer end of its output range."""
+        low, high = self.interval("output range")
+        return min(-low, high)
+
+    @property
     def unit(self) -> str:
         """Unit of what it puts out: V, A, 1 (duty) or °C."""
         return {"volts": "V", "amperes": "A", "duty": "1", "set-points": "°C", "temperatures": "°C"}[self.driven_by]

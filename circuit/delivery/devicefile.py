@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
@@ -141,7 +140,7 @@ def read_device_table(text: str, where: str) -> DeviceTable:
     try:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:
-        findings = [_in_words(error, document) for error in problem.errors(include_url=False)]
+        findings = [_in_words(error) for error in problem.errors(include_url=False)]
         raise DeviceError("\n".join(f"{where}: {finding}" for finding in findings)) from None
     faults = _faults(table)
     if faults:
@@ -239,7 +238,7 @@ def _interval_fault(record: RecordTable) -> str | None:
     return None
 
 
-def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
+def _in_words(error: ErrorDetails) -> str:
     key = ".".join(str(part) for part in error["loc"])
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
     subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key

@@ -8,11 +8,11 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterator
-from importlib.metadata import version
 from itertools import pairwise
 
 from ..arrays import Array
 from ..inputs import InputError
+from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.drive import Drive
@@ -120,7 +120,7 @@ def _quoted(name: str) -> str:
 
 def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     driver = rig.driver
-    yield from _comment(f"{title} on rig {rig.name}, written by thermicon {version('thermicon')}")
+    yield from _comment(f"{title} on rig {rig.name}, written by thermicon {own_version()}")
     if rig.title:
         yield from _comment(rig.title)
     nodes = {

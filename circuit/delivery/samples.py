@@ -148,8 +148,7 @@ def current_of(device: Device, rig: Rig, samples: Samples) -> Drive:
     """Return the current in A that flows when a device plays its samples, held from row to row."""
     command, times = samples.command, samples.time_s
     if device.driven_by == "duty":
-        low, high = device.interval("output range")
-        return switched(command, samples.rate_Hz, device.most("carrier frequency"), min(-low, high))
+        return switched(command, samples.rate_Hz, device.most("carrier frequency"), device.bridge_A)
     gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
     rows = samples.rows()
     return Drive(times[rows], command[rows] * gain, held=True)
@@ -181,9 +180,8 @@ def _means(drive: Drive, edges: Array) -> Array:
 
 def _command(device: Device, rig: Rig, current: Array, times: Array, plates: tuple[Array, Array, Array]) -> Array:
     if device.driven_by == "duty":
-        low, high = device.interval("output range")
         cold, hotter = (np.interp(times, plates[0], column) for column in plates[1:])
-        return duty_of(device.duty_rule, current, min(-low, high), rig.module, cold, hotter)
+        return duty_of(device.duty_rule, current, device.bridge_A, rig.module, cold, hotter)
     return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
 
 

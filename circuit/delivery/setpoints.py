@@ -109,7 +109,7 @@ def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[
     fastest, longest = device.most("ramp rate"), int(device.most("segment length"))
     begin, before = 0, round(levels[0] / step)
     segments: list[tuple[int, int]] = []
-    for (_, _), (time, level) in pairwise(zip(times, levels, strict=True)):
+    for time, level in zip(times[1:], levels[1:], strict=True):
         goal = round(level / step)
         least = max(1, math.ceil(abs(goal - before) * step / fastest / tick - 1e-9))
         until = max(round(time / tick), begin + least)  # what a ramp is late, the next segment makes up for

@@ -65,8 +65,7 @@ def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
     for corner in corners_of(delivery.rig):
         try:
             if device.driven_by == "duty":
-                low, high = device.interval("output range")
-                start = steady_of(corner.rig, float(played.command[0]), min(-low, high) * (1.0 + corner.gain_relative))
+                start = steady_of(corner.rig, float(played.command[0]), device.bridge_A * (1.0 + corner.gain_relative))
             else:
                 start = state_under_current(
                     network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative)

@@ -6,12 +6,12 @@ The same lumps as the netlist's; every layer's cells scale with its thickness, s
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib.metadata import version
 from itertools import pairwise
 
 import numpy as np
 
 from ..arrays import Array
+from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.landing import refuse_landing
@@ -54,7 +54,7 @@ def subcircuits(rig: Rig) -> str:
 
 
 def _header(rig: Rig) -> Iterator[str]:
-    yield from _comment(f"Module and skin of rig {rig.name}, written by thermicon {version('thermicon')}")
+    yield from _comment(f"Module and skin of rig {rig.name}, written by thermicon {own_version()}")
     if rig.title:
         yield from _comment(rig.title)
     yield "*"

@@ -32,7 +32,13 @@ EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
 """A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
 
 OFFSET_SDS = 3.0
+"""A sensor that is off by more than this many standard deviations of OFFSET_SD_K is named."""
+
 LEAST_OVERLAP = 0.5
+"""Share of the rows of a further clock that must lie within the run, once it is shifted."""
+
+SHIFT_ROOM_S = 5.0
+"""How far a clock may still move from where the correlation puts it."""
 
 
 def aligned(problem: Problem) -> Problem:
@@ -67,11 +73,11 @@ def aligned(problem: Problem) -> Problem:
 
 
 def replace_first(problem: Problem, first: Array) -> Problem:
-    """The problem with another point to begin from."""
+    """The problem with another point to begin from, and the clocks bounded about it."""
     low, high = problem.low.copy(), problem.high.copy()
     for place, item in enumerate(problem.nuisances, len(problem.keys)):
         if item.kind == "shift":
-            low[place], high[place] = first[place] - 5.0, first[place] + 5.0
+            low[place], high[place] = first[place] - SHIFT_ROOM_S, first[place] + SHIFT_ROOM_S
     return replace(problem, first=first, low=low, high=high)
 
 

@@ -16,7 +16,7 @@ from thermicon.icons import Icon, parse
 from ..rig.rig import Rig
 from .identify import NOISE_K, NOISE_V, with_channels
 from .keys import free_keys
-from .laboratory import synthetic_log
+from .laboratory import COLUMNS, synthetic_log
 from .problem import Problem
 from .runs import runs_of
 from .solve import covariance_of
@@ -30,9 +30,9 @@ IDENTIFIED = (
 )
 """Keys that the calibration drive was chosen for, all free at once."""
 
-COLUMNS = ("display_C", "voltage_V")
 RIGS = ("thenar", "forearm", "shani2021")
-OFFSET_SD_K, RATE_HZ = 0.1, 10.0
+RATE_HZ = 10.0
+"""Rows per second of the logs that are compared."""
 
 CANDIDATES = {
     "one step": "cool by 8 °C at 3 °C/s\n hold for 30 s\n return at 3 °C/s\n rest for 22 s",
@@ -80,7 +80,7 @@ def mean_deviation(icon: Icon, rigs: Sequence[str | Rig] = RIGS, keys: Sequence[
         log = synthetic_log(
             rig, seed=0, icon=icon, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=RATE_HZ
         )
-        problem = Problem.of(rig, free, runs_of([log], rig, False), offset_sd_K=OFFSET_SD_K)
+        problem = Problem.of(rig, free, runs_of([log], rig, False))
         problem = with_channels(problem, problem.first, COLUMNS, only=True)
         sigma = [NOISE_K if channel.temperature else NOISE_V for _, _, channel in problem.channels()]
         covariance = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -19,14 +20,11 @@ from .keys import FitError, FitKey, free_keys, value_of
 from .left_out import beyond_noise, left_out
 from .log import Log, LogError
 from .log_files import read_log
-from .problem import FREE_START, STEADY, STEADY_BEFORE, Problem
+from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem
 from .rig_file import LARGEST, reason_of, uncertainties
 from .rig_fit import ChannelFit, RigFit
 from .runs import runs_of
 from .solve import Solution, fits_better, solve
-
-OFFSET_SD_K = 0.1
-"""Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
 
 BOUND = 1e-3
 """A parameter within this share of its room from a bound is at the bound."""
@@ -142,8 +140,6 @@ def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
 
 def _explicit(rig: Rig, keys: Sequence[FitKey]) -> Rig:
     """The rig with its module given by parameters where one of them is free and it was given by data sheet or name."""
-    import json
-
     table = json.loads(rig.document).get("module", {})
     if not any(key.key.removeprefix("module.") in PARAMETERS for key in keys) or not {"datasheet", "name"} & set(table):
         return rig

@@ -79,7 +79,7 @@ def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
     below.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=color)
     most = max(4.5 * each.rms, 1e-4)
     below.set_ylim(-most, most)
-    words = each.column.rpartition("_")[0].replace("_", " ")
+    words = _words(each.column)
     above.set_title(f"{words}, {each.file}" if named else words, fontsize=10)
     above.set_ylabel("°C" if each.unit == "K" else "V", fontsize=9)
     below.set_ylabel(f"residual ({each.unit})", fontsize=9)
@@ -94,8 +94,12 @@ def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
 
 
 def _label(each: ChannelFit) -> str:
-    words = each.column.rpartition("_")[0].replace("_", " ")
-    return f"{words}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
+    return f"{_words(each.column)}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
+
+
+def _words(column: str) -> str:
+    """A column as people say it: its name without the unit."""
+    return column.rpartition("_")[0].replace("_", " ")
 
 
 def draw_measured(beside: Overlay, ax: Axes) -> None:
@@ -104,9 +108,7 @@ def draw_measured(beside: Overlay, ax: Axes) -> None:
         if not each.column.endswith("_C"):
             continue
         few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
-        words = each.column.rpartition("_")[0].replace("_", " ")
-        ax.plot(
-            each.time_s[few], each.measured[few], ".", ms=3.0, color=MEASURED_COLORS.get(each.column, PROBE),
-            label=f"{words}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K".replace("-", "−"),
-        )  # fmt: skip
+        label = f"{_words(each.column)}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K"
+        color = MEASURED_COLORS.get(each.column, PROBE)
+        ax.plot(each.time_s[few], each.measured[few], ".", ms=3.0, color=color, label=label.replace("-", "−"))
     ax.set_title(f"{beside.name}, shifted by {number(beside.shift_s, 3)} s", fontsize="medium")

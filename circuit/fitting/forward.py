@@ -6,6 +6,7 @@ thermistor of its controller, or else the plate itself.
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +21,7 @@ from ..solver.network import COLD, HOT, SKIN
 from ..solver.prescribed import shown
 from ..solver.simulate import rows_until, simulate_current
 from ..solver.trace import Trace
-from .runs import Run
+from .runs import MAD_TO_SD, Run
 
 RATE_HZ = 100.0
 SETTLED_A, MOST_TURNS = 1e-8, 40
@@ -120,7 +121,7 @@ def steady_level(current_A: Array) -> float:
     >>> steady_level(np.array([0.1, 0.1, 0.5, 0.5])), round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3)
     (0.1, 0.103)
     """
-    noise = 1.4826 * float(np.median(np.abs(np.diff(current_A)))) / np.sqrt(2.0)
+    noise = MAD_TO_SD * float(np.median(np.abs(np.diff(current_A)))) / np.sqrt(2.0)
     away = np.abs(current_A - current_A[0]) > STEADY_SPREAD * noise
     count = int(np.argmax(away)) if away.any() else len(current_A)
     return float(current_A[0]) if noise == 0.0 else float(np.mean(current_A[: max(1, count)]))
@@ -131,8 +132,6 @@ def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:
     named = next((probe.name for probe in rig.probes if probe.place == "display"), None)
     if named is not None or rig.controller is None or rig.controller.lag_s == 0.0:
         return rig, named
-    import json
-
     name = "controller_thermistor"
     others = json.loads(rig.document).get("probe", [])
     added = {"name": name, "place": "display", "lag_s": rig.controller.lag_s}

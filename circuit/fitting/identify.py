@@ -14,10 +14,12 @@ from .runs import Channel, Run
 from .solve import covariance_of
 
 T95 = 1.96
+"""Half of a 95 % interval in standard deviations, of a normal distribution."""
 NOISE_K, NOISE_V = 0.02, 0.005
 """Noise of a further channel that is only considered: a thermistor and a 16-bit voltage input."""
 
-CANDIDATES = ("display_C", "voltage_V", "hot_plate_C", "skin_C")
+FURTHER = ("display_C", "voltage_V", "hot_plate_C", "skin_C")
+"""Columns that a log without them may be advised to have."""
 CLOSE = 0.9
 """Correlation from which on two parameters are named as a pair that the log does not separate."""
 
@@ -121,7 +123,7 @@ def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: A
     logged = {channel.column for _, _, channel in problem.channels()}
     driven = {run.driven_by for run in problem.runs}
     thermode = problem.rig.thermode is not None
-    options = [name for name in CANDIDATES if name not in logged | driven and not (thermode and name != "skin_C")]
+    options = [name for name in FURTHER if name not in logged | driven and not (thermode and name != "skin_C")]
     gains = {name: expected_sd(with_channels(problem, theta, [name]), theta) for name in options}
     return {place: _cure(problem, place, gains, correlation) for place in wanting}
 

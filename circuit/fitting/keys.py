@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -64,6 +65,7 @@ class FitKey:
 _SHIPPED = uncertainty_of({})
 _LAG = "a step of temperature on the sensor alone, such as dipping it into warm water"
 
+# Where no shipped uncertainty is named, `room` and `usual` are assumed, wide enough for any bench.
 _KEYS = {
     item.key: item
     for item in (
@@ -179,8 +181,6 @@ def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
 
 def value_of(rig: Rig, key: str) -> float | None:
     """Return the value of a key that can be fitted, in the unit of the rig file; None where it is not given."""
-    import json
-
     if key.startswith("module.") and rig.pump is not None:
         return float(getattr(rig.module, key.partition(".")[2]))
     if match := _PROBE.fullmatch(key):

@@ -13,8 +13,8 @@ from ..rig.rig import Rig
 from ..solver.simulate import simulate
 from .identify import NOISE_K, NOISE_V
 from .log import Log
+from .problem import OFFSET_SD_K
 
-OFFSET_SD_K = 0.1
 COLUMNS = ("display_C", "voltage_V")
 DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"
 

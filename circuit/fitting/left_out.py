@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from .keys import fittable, free_keys, value_of
 from .problem import Problem
-from .runs import Channel
+from .runs import MAD_TO_SD, Channel
 from .solve import Solution
 
 BEYOND = 2.0
@@ -19,6 +19,7 @@ BEYOND = 2.0
 WORTH = 0.3
 """Share of the sum of squares that a freed key must take away to be named."""
 MOST_NAMED = 2
+"""Keys that are named at most: freeing several at once identifies none."""
 
 
 def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
@@ -30,7 +31,7 @@ def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
         inside = problem.inside(theta, r, channel)
         residual = (channel.values - problem.modelled(theta, r, c, found[r]))[inside]
         noise = noise_of(channel)
-        if residual.size and 1.4826 * float(np.median(np.abs(residual))) > BEYOND * noise:
+        if residual.size and MAD_TO_SD * float(np.median(np.abs(residual))) > BEYOND * noise:
             rms = float(np.sqrt(np.mean(residual**2)))
             unit = "K" if channel.temperature else "V"
             sentences.append(
@@ -60,7 +61,7 @@ def noise_of(channel: Channel) -> float:
     0.02
     """
     bends = np.diff(channel.values, 2)
-    own = 1.4826 * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
+    own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
     return float(max(own, channel.resolution / np.sqrt(12.0)))
 
 

@@ -32,7 +32,7 @@ def read_tdms(data: bytes, name: str) -> dict[str, Array]:
             if np.issubdtype(channel.dtype, np.number)
         }
     except Exception as problem:  # npTDMS raises whatever a broken file leads it to
-        raise FitError(f"{name}: cannot be read as TDMS ({problem or type(problem).__name__})") from None
+        raise FitError(f"{name}: cannot be read as TDMS ({str(problem) or type(problem).__name__})") from None
     if not channels:
         raise FitError(f"{name}: cannot be read as TDMS (no channel in it); save the log again")
     if not columns:

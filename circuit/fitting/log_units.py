@@ -19,6 +19,7 @@ SLOWEST_S, MILLI = 2.0, 1000.0
 """A log with rows farther apart than 2 s shows nothing of a display; as a rule its times are milliseconds."""
 
 MOST_A, MOST_V = 50.0, 200.0
+"""Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
 
 
 def unit_fault(column: str, values: Array) -> str | None:

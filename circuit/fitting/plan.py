@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 from thermicon.icons import Icon
 
 from ..rig.rig import Rig
-from .fit import OFFSET_SD_K
 from .identify import NOISE_K, NOISE_V, SHORT, expected_sd, half_width, is_identified, with_channels
 from .keys import FitKey, free_keys
 from .laboratory import calibration_icon, synthetic_log
-from .problem import Problem
+from .problem import OFFSET_SD_K, Problem
 from .runs import runs_of
 
 if TYPE_CHECKING:

@@ -20,6 +20,9 @@ from .forward import Prediction, Start, predict
 from .keys import FitError, FitKey, value_of
 from .runs import Channel, Run
 
+OFFSET_SD_K = 0.1
+"""Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
+
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
@@ -72,7 +75,7 @@ class Problem:
         runs: tuple[Run, ...],
         *,
         start_count: int = STEADY,
-        offset_sd_K: float = 0.1,
+        offset_sd_K: float = OFFSET_SD_K,
     ) -> Problem:
         """Return the problem of fitting keys of a rig to runs, beginning at the rig's own values."""
         values = np.array([_begin(rig, key) for key in keys])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -148,8 +149,6 @@ def _rounded_up(value: float) -> float:
     >>> _rounded_up(0.02313)
     0.024
     """
-    import math
-
     digits = 1 - math.floor(math.log10(value)) if value > 0 else 2
     scale = 10.0**digits
     return float(round(math.ceil(value * scale - 1e-9) / scale, digits))

@@ -165,11 +165,14 @@ class RigFit:
         Raises
         ------
         FitError
-            For another ending.
+            For another ending, and a path that cannot be written.
         """
         from .keys import FitError
 
         where = Path(path)
         if where.suffix != ".toml":
             raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
-        where.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
+        try:
+            where.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
+        except OSError as problem:
+            raise FitError(f"{where}: cannot be written ({problem.strerror or problem})") from None

@@ -17,6 +17,9 @@ MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
 SAME_SHARE = 0.05
 """Share of the drive's range within which both sides of a gap count as the same."""
 
+MAD_TO_SD = 1.4826
+"""Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
+
 SHORTEST_S = 5.0
 MOST_OF_LIMIT = 20.0
 """A current of more than 20 times the driver's limit is in another unit."""

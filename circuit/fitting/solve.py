@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import Array
 from .keys import FitError
 from .problem import Problem
+from .runs import MAD_TO_SD
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
 """Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
@@ -118,7 +119,7 @@ def spreads(problem: Problem, theta: Array) -> tuple[float, ...]:
     parts = parts_of(problem, problem.residuals(theta, ones))
     return tuple(
         max(
-            1.4826 * float(np.median(np.abs(part - np.median(part)))),
+            MAD_TO_SD * float(np.median(np.abs(part - np.median(part)))),
             channel.resolution / np.sqrt(12.0),
             LEAST_SD[channel.temperature],
         )

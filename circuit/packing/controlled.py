@@ -15,6 +15,7 @@ import numpy as np
 from thermicon.icons.number_text import signed
 
 from ..delivery.delivered_drive import DeliveredDrive
+from ..delivery.formats.form import samples_of
 from ..delivery.samples import Samples
 from ..safety.checks import Check, colour_of, findings_of, worst_of
 from ..safety.demands import Demands, SingleFault
@@ -52,12 +53,6 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
         )
         judged.append(replace(with_module, demands=_demands(with_module, module, delivery, under)))
     return tuple(judged)
-
-
-def samples_of(delivery: DeliveredDrive) -> Samples:
-    """The samples of a drive whose device plays samples."""
-    assert isinstance(delivery.played, Samples)
-    return delivery.played
 
 
 def _held(delivery: DeliveredDrive) -> DisplayCourse:

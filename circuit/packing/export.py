@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from thermicon.icons import Icon
+from thermicon.icons.number_text import count_of
 
 from ..delivery.device import Device
 from ..delivery.formats import Format, load_format
@@ -66,11 +67,11 @@ class Export:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        count = f"{len(self.prepared)} icon{'s' * (len(self.prepared) != 1)}"
+        count = count_of(len(self.prepared), "icon")
         size = sum(len(content) for content in self.files.values())
-        summary = (
-            f"{len(self.files)} files, {size / 1e3:.1f} kB" if self.files else f"REFUSED: {len(self.refused)} causes"
-        )
+        summary = f"REFUSED: {count_of(len(self.refused), 'cause')}"
+        if self.files:
+            summary = f"{count_of(len(self.files), 'file')}, {size / 1e3:.1f} kB"
         return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {summary})"
 
     @property

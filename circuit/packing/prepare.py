@@ -52,8 +52,8 @@ class Verdict(Protocol):
         """What the hardware must prevent, as the sidecar and the players hold it."""
 
 
-Gate = Callable[[DeliveredDrive], Verdict]
-"""A function that judges one delivered cue."""
+Judge = Callable[[DeliveredDrive], Verdict]
+"""A function that judges one delivered cue, as `worst_case` does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ def prepare(
     device: Device,
     form: Format,
     *,
-    gate: Gate | None = None,
+    gate: Judge | None = None,
     tail_s: float = 0.0,
     pause_s: float | None = None,
 ) -> Prepared:

@@ -121,10 +121,9 @@ def needed_A(icon: Icon, rig: Rig) -> float | None:
 def lost_text(deviation: DeliveryDeviation) -> str:
     """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
     limit = loss_limit("receptor difference")
-    lost = [place for place in deviation.places if "receptor" in place.place and place.rms_K > limit]
-    if not lost:
+    if not deviation.lost:
         return ""
-    first, *others = sorted(lost, key=lambda place: -place.rms_K)
+    first, *others = sorted(deviation.lost, key=lambda place: -place.rms_K)
     also = "".join(f" (the {place.place} by {place.rms_K:.3f} K)" for place in others)
     return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
 

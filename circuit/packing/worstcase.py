@@ -13,13 +13,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..delivery.delivered_drive import DeliveredDrive
+from ..delivery.formats.form import samples_of
 from ..delivery.setpoints import Setpoints
 from ..delivery.thermode import display_of, lag_of
 from ..safety.gate import Gate, gate_set
 from ..safety.thermode import DisplayCourse
 from ..safety.thermode_gate import gate_shown
 from ..solver.drive import Drive
-from .controlled import gate_controlled, samples_of
+from .controlled import gate_controlled
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"
 
@@ -64,8 +65,7 @@ def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = No
 def _bridged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
     """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
     device, rig = deliveries[0].device, deliveries[0].rig
-    low, high = device.interval("output range")
-    peak, averaged = min(-low, high), device.most("carrier frequency") >= RIPPLES_BELOW_HZ
+    peak, averaged = device.bridge_A, device.most("carrier frequency") >= RIPPLES_BELOW_HZ
     drives = []
     for delivery in deliveries:
         samples = samples_of(delivery)

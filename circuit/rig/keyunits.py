@@ -31,6 +31,7 @@ _UNITS_SHORT = {
     "W": "W",
     "Hz": "Hz",
     "s": "s",
+    "min": "min",
     "min_CEM43": "min CEM43",
 }
 
@@ -50,8 +51,8 @@ def name_of(key: str) -> str:
 def unit_of(key: str) -> str:
     """Return the unit that ends a key's name, written as people write it.
 
-    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("contact.area_cm2"), unit_of("skin.site")
-    ('m²·K/W', 'cm²', '')
+    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("safety.session_min"), unit_of("skin.site")
+    ('m²·K/W', 'min', '')
     """
     for unit in sorted(_UNITS, key=len, reverse=True):
         if key.endswith("_" + unit):

@@ -36,6 +36,8 @@ MOST_RESIDUAL = 0.10
 """Share of the printed Qmax by which three figures may miss it without a warning."""
 LEAST_APART_K = 1.0
 """Two sheets closer than this in mean module temperature cannot show its influence."""
+SAME_FACE = 0.01
+"""Share by which a contact in cm² may differ from the face of a module by rounding alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +99,7 @@ def unlike_before(
         )
     if larger := beyond_the_face(name, area_cm2):
         sentences += larger
-    elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < 0.99 * build.face_cm2):
+    elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < (1.0 - SAME_FACE) * build.face_cm2):
         face = "not on record" if build.face_cm2 is None else f"{build.face_cm2:g} cm²"
         sentences.append(
             f"module {name}: its face is {face}, and contact.area_cm2 stays the {area_cm2:g} cm² of the rig; set it to "
@@ -114,7 +116,7 @@ def unlike_before(
 def beyond_the_face(name: str, area_cm2: float) -> list[str]:
     """Return a sentence where more than the face of a shipped module is in contact; none where its face is unknown."""
     face_cm2 = build_of(name).face_cm2
-    if face_cm2 is None or area_cm2 <= 1.01 * face_cm2:
+    if face_cm2 is None or area_cm2 <= (1.0 + SAME_FACE) * face_cm2:
         return []
     return [
         f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {face_cm2:g} cm²; set "

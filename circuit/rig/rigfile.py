@@ -315,9 +315,7 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        findings = [
-            line for error in problem.errors(include_url=False) for line in _in_words(error, document).splitlines()
-        ]
+        findings = [line for error in problem.errors(include_url=False) for line in _in_words(error).splitlines()]
         raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
 
 
@@ -366,7 +364,7 @@ def unknown_key(key: str) -> str:
     return f"{key}: unknown key; {did_you_mean(key, known if dot and place not in known else beside)}"
 
 
-def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
+def _in_words(error: ErrorDetails) -> str:
     key = ".".join(str(part) for part in error["loc"])
     unit = unit_of(key)
     value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
@@ -388,7 +386,7 @@ def _in_words(error: ErrorDetails, document: Mapping[str, Any]) -> str:
         return f"{subject}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
     if kind == "finite_number":
         return f"{subject}: must be a finite number{f' in {unit}' if unit else ''}"
-    if kind in ("float_type", "int_type", "float_parsing"):
+    if kind in ("float_type", "int_type"):
         return f"{subject}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
     if kind == "literal_error":
         return f"{subject}: must be {context.get('expected')}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 
-from thermicon.icons.number_text import signed
+from thermicon.icons.number_text import significant
 
 LEVEL = 1e-6
 """Within this distance, in its unit, the extreme counts as reached: a held level has no unique latest row."""
@@ -36,11 +36,20 @@ class Check:
         """Whether the run stays within the limit."""
         return self.since_s is None
 
+    @property
+    def figures(self) -> tuple[str, str]:
+        """Value and limit as people read them: in four digits, or in as many as show that the limit is exceeded."""
+        value, limit = f"{self.value:.4g}", f"{self.limit:.4g}"
+        if not self.passed:
+            value, limit = significant(self.value, self.limit, least=4)
+        return value.replace("-", "−"), limit.replace("-", "−")
+
     def __str__(self) -> str:
         unit = "" if self.unit == "1" else f" {self.unit}"
         where = f", with {self.scenario}" if self.scenario else ""
-        reached = f"{self.quantity} reaches {signed(self.value, '.4g')}{unit} at {self.time_s:.2f} s{where}"
-        side, limit = "above" if self.upper else "below", f"{signed(self.limit, '.4g')}{unit}"
+        value, limit = (f"{figure}{unit}" for figure in self.figures)
+        reached = f"{self.quantity} reaches {value} at {self.time_s:.2f} s{where}"
+        side = "above" if self.upper else "below"
         if self.since_s is None:
             return f"{reached}, not {side} the {self.severity} limit of {limit}{self.note} ({self.source})"
         return (
@@ -99,9 +108,9 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     else:
         cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
     others = [
-        f"{check.quantity} {signed(check.value, '.4g')}{'' if check.unit == '1' else ' ' + check.unit} "
-        f"(limit {signed(check.limit, '.4g')})"
+        f"{check.quantity} {value}{'' if check.unit == '1' else ' ' + check.unit} (limit {limit})"
         for check in hard[1:]
+        for value, limit in (check.figures,)
     ]
     more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
     return f"{more}; use {', '.join(cures)}" if cures else more

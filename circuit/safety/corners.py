@@ -24,6 +24,7 @@ from ..solver.steady import state_under_current
 GAINS_BETWEEN = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Shares of the gain's uncertainty where the coldest gain may lie between the ends: within 0.02 K of it."""
 NEARLY = 0.97
+"""Share of the greatest current at which the display is compared with that at the greatest: a step towards less."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,16 +21,19 @@ from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally
 
 ENDING_S = 60.0
+"""How long each ending is followed in full: until somebody has noticed."""
+
 ENDINGS = ("last value held", "zero current", "power off")
 IN_THE_END = "zero current in the end"
 
 LATER_S = 600.0
 """Zero current adds to the dose for 10 min, where the classes of contact of IEC 60601-1 Table 24 end."""
 
-ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
+ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
 """Times of the rows of an ending: fine after the jump of the current, coarse later."""
 
-LATE_S = np.concatenate([[ENDING_S], np.geomspace(ENDING_S, LATER_S, 60)[1:]])
+LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
+"""Rows of zero current from then on."""
 
 
 def follow_endings(
@@ -38,21 +41,20 @@ def follow_endings(
 ) -> dict[str, Array]:
     """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
 
-    The tallies are in the same state before.
-    `state` is that at the end of the drive, at `end_s`; `last_A` its last current, or the mean of a bridge's, or one
-    for each corner; `sums` whether doses count.
+    The tallies are in the same state before. `state` is that at the end of the drive, at `end_s`; `last_A` its last
+    current, or the mean of a bridge's, or one for each corner; `sums` whether doses count.
     """
     after = {}
     last, zero, off = ENDINGS
     for name, current in ((last, last_A), (zero, 0.0)):
-        values, _ = ensemble.hold(current, state, ROWS_S)
-        tallies[name].add(end_s + ROWS_S, values, sums=sums)
+        values, _ = ensemble.hold(current, state, ENDING_ROWS_S)
+        tallies[name].add(end_s + ENDING_ROWS_S, values, sums=sums)
         after[name] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:  # without power it is the same
         tallies[off].copy_from(tallies[zero])
     else:
-        values = without_power(ensemble, state, ROWS_S)[0]
-        tallies[off].add(end_s + ROWS_S, values, sums=sums)
+        values = without_power(ensemble, state, ENDING_ROWS_S)[0]
+        tallies[off].add(end_s + ENDING_ROWS_S, values, sums=sums)
     after[off] = values[WATCHED.index("skin_C"), :, -1]
     if ensemble.ideal:
         later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))

@@ -151,27 +151,23 @@ class Ensemble:
         start, end = switching(intervals.start_A, self.bridge_A * self.gain)
         return Intervals(intervals.edges_s, intervals.row_of, start, end)
 
-    def hold(
-        self, current_A: float | Array, state: State, times_s: Array, rigs: Index | None = None
-    ) -> tuple[Array, State]:
+    def hold(self, current_A: float | Array, state: State, times_s: Array) -> tuple[Array, State]:
         """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
 
         Times begin with 0. An array has the current of each corner.
         """
-        which = self.lanes if rigs is None else rigs
         if self.ideal:
             modes = self.modes(current_A)
-            values = modes.run(which, state.nodes_C, times_s, WATCHED)
-            return values, State(modes.after(which, state.nodes_C, float(times_s[-1])), state.sink)
-        return self._stepped(current_A, state, times_s, which)
+            values = modes.run(self.lanes, state.nodes_C, times_s, WATCHED)
+            return values, State(modes.after(self.lanes, state.nodes_C, float(times_s[-1])), state.sink)
+        return self._stepped(current_A, state, times_s)
 
-    def rest(self, current_A: float, state: State, time_s: float, rigs: Index | None = None) -> State:
+    def rest(self, current_A: float, state: State, time_s: float) -> State:
         """States after a constant current has been held for a time in s."""
-        which = self.lanes if rigs is None else rigs
         if self.ideal:
-            return State(self.modes(current_A).after(which, state.nodes_C, time_s), state.sink)
+            return State(self.modes(current_A).after(self.lanes, state.nodes_C, time_s), state.sink)
         times = np.append(np.arange(0.0, time_s - 1e-9, min(1.0, time_s)), time_s)
-        return self._stepped(current_A, state, times, which)[1]
+        return self._stepped(current_A, state, times)[1]
 
     def modes(self, current_A: float | Array) -> ConstantCurrent:
         """Modes of all corners under a constant current, or the mean of a bridge's."""
@@ -184,13 +180,13 @@ class Ensemble:
             self._modes[current_A] = modes
         return modes
 
-    def _stepped(self, current_A: float | Array, state: State, times_s: Array, which: Index) -> tuple[Array, State]:
+    def _stepped(self, current_A: float | Array, state: State, times_s: Array) -> tuple[Array, State]:
         rows = len(times_s) - 1
         currents = held_currents(
             self.gain * current_A, rows, None if self.bridge_A is None else self.bridge_A * self.gain
         )
         intervals = Intervals(times_s, np.arange(len(times_s)), currents[0], currents[1])
-        return run_on(self.bank, which, which, intervals, state, WATCHED, few_alone=True)
+        return run_on(self.bank, self.lanes, self.lanes, intervals, state, WATCHED, few_alone=True)
 
 
 def row_of(drive: Drive | LaneDrives) -> float:

@@ -9,8 +9,6 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
-
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
@@ -325,5 +323,13 @@ def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
     late = check.time_s - verdict.duration_s
     when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
     side = "≤" if check.upper else "≥"
-    limit = f"{side} {signed(check.limit, '.4g')}{unit} {check.severity}"
-    return mark, check.quantity, f"{signed(check.value, '.4g')}{unit}", limit, when, check.scenario, check.source
+    value, limit = check.figures
+    return (
+        mark,
+        check.quantity,
+        f"{value}{unit}",
+        f"{side} {limit}{unit} {check.severity}",
+        when,
+        check.scenario,
+        check.source,
+    )

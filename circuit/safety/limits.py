@@ -5,7 +5,7 @@ This is not a medical or ethical clearance, and a hardware cut-off is required.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,8 +26,8 @@ class SafetyVerdict:
     findings: tuple[Check, ...]
 
     def __repr__(self) -> str:
-        passed = ", ".join(f"{check.quantity} {check.value:.4g} {check.unit}" for check in self.findings)
-        return f"SafetyVerdict({self.colour}{f': {passed}' if passed else ''})"
+        exceeded = ", ".join(f"{check.quantity} {check.figures[0]} {check.unit}" for check in self.findings)
+        return f"SafetyVerdict({self.colour}{f': {exceeded}' if exceeded else ''})"
 
     @property
     def colour(self) -> str:
@@ -91,10 +91,8 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     return SafetyVerdict(findings_of(checks_of(trace.limits or Limits.shipped(), trace.time_s, columns)))
 
 
-def checks_of(
-    limits: Limits, time_s: Array, columns: Mapping[str, Array], scenarios: Sequence[str] = ("",)
-) -> tuple[Check, ...]:
-    """Check runs (lanes, rows) of the WATCHED columns against every rule: for each, the worst lane."""
-    tally = Tally(limits, scenarios)
+def checks_of(limits: Limits, time_s: Array, columns: Mapping[str, Array]) -> tuple[Check, ...]:
+    """Check a run (1, rows) of the WATCHED columns against every rule."""
+    tally = Tally(limits, ("",))
     tally.add(time_s, np.stack([columns[name] for name in WATCHED]))
     return tally.checks()

@@ -25,10 +25,11 @@ RECOVERED_K = 0.1
 LONGEST_PAUSE_S = 600.0
 """Display and skin have recovered within 0.1 K of rest; a pause longer than 10 min is another session."""
 
-ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
+RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
 """Times at which recovery is checked, up to the longest pause."""
 
 PAUSE_STEP_S = 0.1
+"""Safe pauses are searched, and reported, in steps of this."""
 
 
 class PauseError(InputError):
@@ -176,12 +177,15 @@ def plays_in(cycle: Cycle, session_s: float) -> int:
 
 def pause_rows(pause_s: float) -> Array:
     """Times in s of the rows of a pause after its beginning, its end the last."""
-    return np.append(ROWS_S[(ROWS_S > 0) & (pause_s - 1e-6 > ROWS_S)], pause_s) if pause_s > 0 else np.empty(0)
+    if pause_s <= 0:
+        return np.empty(0)
+    inside = (RECOVERY_ROWS_S > 0) & (pause_s - 1e-6 > RECOVERY_ROWS_S)
+    return np.append(RECOVERY_ROWS_S[inside], pause_s)
 
 
 def recovery_s(ensemble: Ensemble, rest_A: float, start: State, ended: State) -> float | None:
     """Time in s after a play until display and skin are within 0.1 K of where they began, in every corner."""
-    values, _ = ensemble.hold(rest_A, ended, ROWS_S)
+    values, _ = ensemble.hold(rest_A, ended, RECOVERY_ROWS_S)
     began, _ = ensemble.hold(rest_A, start, np.array([0.0, 1e-3]))
     which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
     away = np.abs(values[which] - began[which][:, :, :1]).max(axis=(0, 1)) > RECOVERED_K
@@ -190,15 +194,15 @@ def recovery_s(ensemble: Ensemble, rest_A: float, start: State, ended: State) ->
 
 
 def back_after_s(away: npt.NDArray[np.bool_]) -> float | None:
-    """Time in s of the row of ROWS_S from which on nothing is away any more; None where something still is at the end.
+    """Time in s of the row of RECOVERY_ROWS_S from which on nothing is away any more; None where something still is.
 
-    >>> back_after_s(ROWS_S < 0.25)
+    >>> back_after_s(RECOVERY_ROWS_S < 0.25)
     0.3...
     """
     if away[-1]:
         return None
     late = np.flatnonzero(away)
-    return float(ROWS_S[late[-1] + 1]) if len(late) else 0.0
+    return float(RECOVERY_ROWS_S[late[-1] + 1]) if len(late) else 0.0
 
 
 def skin_C(ensemble: Ensemble, state: State) -> Array:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from ..arrays import Array, Index
+from ..arrays import Array
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .ensemble import Ensemble, row_of
@@ -43,15 +43,15 @@ class Cycle:
     pause_s: float
     played: PlayMap | None = None
 
-    def after(self, state: State, lanes: Index | None = None) -> State:
-        """States before the next play, for those before this one; `lanes`: which corners these are."""
-        if self.played is not None and lanes is None:
+    def after(self, state: State) -> State:
+        """States before the next play, for those before this one."""
+        if self.played is not None:
             played = State(self.played.after(state.nodes_C), state.sink)
         else:
-            played = self.ensemble.end_of(self.drive, state, lanes)
+            played = self.ensemble.end_of(self.drive, state)
         if self.pause_s <= 0:
             return played
-        return self.ensemble.rest(self.rest_A, played, self.pause_s, lanes)
+        return self.ensemble.rest(self.rest_A, played, self.pause_s)
 
     def whole(self, played: PlayMap) -> PlayMap:
         """A play as a map, and the pause after it."""
@@ -145,12 +145,8 @@ def _joined(state: State) -> Array:
 
 
 def _parted(joined: Array, like: State) -> State:
-    nodes = _nodes(like)
+    nodes = like.nodes_C.shape[1]
     return State(np.ascontiguousarray(joined[:, :nodes]), np.ascontiguousarray(joined[:, nodes:]))
-
-
-def _nodes(state: State) -> int:
-    return int(state.nodes_C.shape[1])
 
 
 def _change(moved: Array) -> Array:

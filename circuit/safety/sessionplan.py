@@ -20,6 +20,7 @@ LONGEST_S, LONGEST_GAP_S = 10_800.0, 3_600.0
 """A session of up to 3 h fits into the memory of a laptop; longer ones are split, as people need a break."""
 
 ORDER_MB = 1.0
+"""Largest file of an order: 200 characters for each of the most plays."""
 
 
 class SessionError(InputError):

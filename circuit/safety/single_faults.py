@@ -27,10 +27,14 @@ SAME_S = 1e-9
 """Instants closer than this differ by rounding only."""
 HANG_ROWS_S = np.concatenate([np.arange(500) * 0.01, 5.0 + np.arange(551) * 0.1])
 AFTER_ROWS_S = np.concatenate([np.arange(100) * 0.01, 1.0 + np.arange(291) * 0.1])
-"""A watchdog acts earlier than the time to a limit by this share."""
+"""Rows of a stuck current, and of 30 s without any after it was cut: fine after a jump, coarse later."""
 MARGIN = 0.8
+"""A watchdog acts after this share of the time to a limit."""
+LEAST_WATCHDOG_S = 0.05
+"""A quicker watchdog is not demanded, but a cut-off on the measured temperature: assumed, a host is no quicker."""
 LONGEST_REST_S = 600.0
 REACTIONS_S = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
+"""Reaction times of cut-offs that are tried, the slowest first."""
 LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
 TEST_A, TEST_S = 0.3, 2.0
@@ -56,9 +60,9 @@ class Faulty:
         worst, beyond = _passed(self.limits, values)
         first = HANG_S if not beyond.any() else float(HANG_ROWS_S[int(np.argmax(beyond.any(axis=0)))])
         after = first if first >= HANG_S else MARGIN * first
-        while after > 0.05 and first < HANG_S and not self._safe_after(state, amps, rigs, after):
+        while after > LEAST_WATCHDOG_S and first < HANG_S and not self._safe_after(state, amps, rigs, after):
             after *= 0.5
-        after = round(after, 2) if after > 0.05 else 0.0
+        after = round(after, 2) if after > LEAST_WATCHDOG_S else 0.0
         text = f"the current hangs for {HANG_S:g} s: {worst}"
         prevented = f"a watchdog that cuts the current after {after:g} s without a message from the host"
         if after == 0.0:

@@ -149,9 +149,9 @@ class Tally:
         place = next(k for k, rule in enumerate(self.limits.rules) if rule.quantity == quantity)
         return np.asarray(self._sums[self._rules.rule_of[place]])
 
-    def worst_lanes(self, severity: str = "hard") -> tuple[int, ...]:
-        """Lanes that are worst by some rule of a severity, each once."""
-        return tuple(dict.fromkeys(self._worst()[self._present & self._of(severity)].tolist()))
+    def worst_lanes(self) -> tuple[int, ...]:
+        """Lanes that are worst by some hard rule, each once."""
+        return tuple(dict.fromkeys(self._worst()[self._present & self._rules.hard].tolist()))
 
     def beyond(self) -> Array:
         """How far each rule is exceeded in each lane (rules, lanes), as `checks.beyond` of its check."""
@@ -162,10 +162,8 @@ class Tally:
 
     def passes(self, severity: str = "hard") -> bool:
         """Whether no lane exceeds a limit of a severity."""
-        return bool(np.isnan(self._since_s[self._of(severity)]).all())
-
-    def _of(self, severity: str) -> Flags:
-        return self._rules.hard if severity == "hard" else ~self._rules.hard
+        of_severity = self._rules.hard if severity == "hard" else ~self._rules.hard
+        return bool(np.isnan(self._since_s[of_severity]).all())
 
     def _limits(self) -> Array:
         """The limit of every rule in each lane (rules, lanes)."""

@@ -19,16 +19,13 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.prescribed import FELT, SkinModes, modes_of
 from .corners import Corner
-from .endings import ENDING_S, LATER_S
+from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
 from .playmap import PlayMap, least_bound
-from .repeated import RECOVERED_K, back_after_s
-from .repeated import ROWS_S as RECOVERY_ROWS_S
+from .repeated import RECOVERED_K, RECOVERY_ROWS_S, back_after_s
 from .tally import WATCHED, Tally
 
 LAST, LOST = "last set-point held", "control lost"
-ENDINGS = (LAST, LOST)
-ENDING_ROWS_S = np.concatenate([np.arange(200) * 0.01, 2.0 + np.arange(180) * 0.1, 20.0 + np.arange(41) * 1.0])
-LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
+DISPLAY_ENDINGS = (LAST, LOST)
 
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
@@ -175,7 +172,7 @@ def tally_once(
     values, ended = under.play(course, under.steady(float(course.display_C[0])))
     played = Tally(limits, under.corners, f", {course.way}")
     played.add(course.rows_s, values, rates=rates)
-    tallies = [played.fork(f"then {ending}") for ending in ENDINGS]
+    tallies = [played.fork(f"then {ending}") for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, tallies, rates=rates)
     return [played, *tallies], ended
 

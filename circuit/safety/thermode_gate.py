@@ -26,7 +26,7 @@ from .repeated import (
 from .single_faults import BEYOND_K, MARGIN
 from .tally import Tally
 from .thermode import (
-    ENDINGS,
+    DISPLAY_ENDINGS,
     DisplayCourse,
     Under,
     add_endings,
@@ -86,7 +86,7 @@ def gate_shown(
             recoveries.append(under.recovery_s(course, ended))
             minute = np.array([ENDING_S])
             last = under.hold(float(course.display_C[-1]), ended, minute), under.let_go(ended, minute)
-            after = {name: float(values[0, 0, 0]) for name, values in zip(ENDINGS, last, strict=True)}
+            after = {name: float(values[0, 0, 0]) for name, values in zip(DISPLAY_ENDINGS, last, strict=True)}
         known = [time for time in recoveries if time is not None]
         once.append((worst_of(judged), max(known) if len(known) == len(recoveries) else None, after))
     pause = pause_s
@@ -101,14 +101,14 @@ def gate_shown(
     for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
         plays = _plays(ways[0], pause, limits_held.session_s)
         repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks)
-        every = [check for each in (*(tally_pair[0] for tally_pair in once), *again) for check in each]
+        every = [check for each in (*(single for single, _, _ in once), *again) for check in each]
         verdicts.append(
             Gate(
                 rig.name,
                 ways[0].end_s,
                 rig.uncertainty,
                 limits_held,
-                len(under.corners) * len(ways) * len(ENDINGS),
+                len(under.corners) * len(ways) * len(DISPLAY_ENDINGS),
                 worst_of([checks, repeated_checks]),
                 checks,
                 after,
@@ -160,7 +160,7 @@ def _cycle_checks(
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
-    endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in ENDINGS]
+    endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, endings, sums=False, rates=rates[1])
     return [tally.checks(), *(ending.checks() for ending in endings)]
 

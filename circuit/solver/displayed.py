@@ -15,13 +15,13 @@ import numpy as np
 
 from thermicon.icons import Icon
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..rig.parts import Thermode
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .inverse import baseline_C, steps_at, target_at
 from .network import skin_network_of
-from .prescribed import FELT, Index, SkinModes, modes_of, modes_on, shown
+from .prescribed import FELT, SkinModes, modes_of, modes_on, shown
 from .probes import joined, readings_of, sensed
 from .trace import Outcome, Trace, judge
 
@@ -181,15 +181,15 @@ def displays_on(
     felt = [place for place, probe in enumerate(probes) if probe in FELT]
     chosen = [FELT.index(probes[place]) for place in felt]
     values = np.full((len(probes), len(rigs), len(icons), len(rows)), np.nan)
-    finest = float(np.diff(rows).min(initial=0.01))
-    shared = [design_display(icon, nominal, float(rows[-1]), min(finest, 0.01)) for icon in icons]
+    finest = float(np.diff(rows).min(initial=FINEST_S))
+    shared = [design_display(icon, nominal, float(rows[-1]), finest) for icon in icons]
     step, displays = shared[0].step_s, np.array([plan.display_C for plan in shared])
     times: Array = np.arange(displays.shape[1], dtype=np.float64) * step
     anew = [k for k, icon in enumerate(icons) if tracking == "ideal" and icon.context.control == "skin"]
     aligned = len(rows) <= len(times) and bool(np.abs(times[: len(rows)] - rows).max() < 1e-9)
     for r, rig in enumerate(rigs):
         for k in anew:
-            displays[k] = design_display(icons[k], rig, float(rows[-1]), min(finest, 0.01)).display_C
+            displays[k] = design_display(icons[k], rig, float(rows[-1]), finest).display_C
         read = modes_of(rig).run_many(displays, step, chosen)
         if aligned:
             values[felt, r] = read[:, :, : len(rows)]

@@ -18,6 +18,7 @@ from ..inputs import InputError, quoted, read_text
 
 COLUMNS = ("time_s", "current_A")
 MOST_MB, LONGEST_CELL = 200, 60
+"""Largest drive file, some ten million rows, and characters of a cell that a message quotes."""
 
 SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
 """Closest rows in s, far below the switching time of any driver and far above rounding; longest drive in s,

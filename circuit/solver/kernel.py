@@ -38,16 +38,21 @@ from .plate import (
     DEEP_C,
     HIGHEST_A,
     HOT_J_PER_K,
+    INTEGRAL,
     LOWEST_A,
     PAST_MOST_COOLING,
+    POWER,
     RESISTANCE,
+    REST_POWER,
     SINK_AIR_W_PER_K,
     SINK_C,
     SINK_J_PER_K,
     SINK_KI,
     SINK_KP,
+    SINK_NUMBERS,
     SINK_POWER_W,
     SINK_W_PER_K,
+    TEMPERATURE,
 )
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
@@ -59,8 +64,8 @@ SHORTEST_STEP_S = 0.25e-3
 JUMP_A = 0.02
 """After a jump of the current, and at the start, steps begin at the shortest and grow with the time since."""
 
-CLOSE_A = 1e-10
-"""Tolerance of the search for a current."""
+CLOSE_A, ANY_A = 1e-10, 1e9
+"""Tolerance of the search for a current, and what it gives where no current is enough: `limited` cuts that."""
 
 KEEP, LINK, BACK, SLOPE, WEIGHT = range(5)
 """Rows of a factored half of the skin, see `factor`."""
@@ -68,11 +73,6 @@ KEEP, LINK, BACK, SLOPE, WEIGHT = range(5)
 COLD_SHARE, MEET, HOT_STORE, COLD_STORE, SINK_SHARE = range(5)
 """Factors of a step that belong to no single lump: weight of the cold plate in the first lump, factor where the halves
 meet, C/(δ/2) of both plates in W/K, and weight of the hot plate in the heat sink (0 where the sink is ideal)."""
-
-TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
-"""State of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
-
-SINK_NUMBERS = 4
 
 FREE, MOST_CURRENT, LEAST_CURRENT, VOLTAGE, MODULE = range(5)
 """What limits a current: nothing, the driver's highest or lowest current, its voltage, the module's best cooling."""
@@ -315,10 +315,11 @@ def wanted(target, skin_control, share, z0, elim0, g0, period, hot, cold, sink, 
         near, across, ohm, warm, cool = ahead
         base, total = hot_store * hot + out * sink + across * aim + warm, hot_store + out + near
         heat += cool - (near - across) * aim
-        amperes = current_for_heat(heat, aim, base, total, alpha, ohm, across, 1e9, guess, CLOSE_A)
+        amperes = current_for_heat(heat, aim, base, total, alpha, ohm, across, ANY_A, guess, CLOSE_A)
         return limited(amperes, hot, cold, sink, p)
     base, total = hot_store * hot + out * sink + leak * aim, hot_store + out + leak
-    return limited(current_for_heat(heat, aim, base, total, alpha, ohm, leak, 1e9, guess, CLOSE_A), hot, cold, sink, p)
+    amperes = current_for_heat(heat, aim, base, total, alpha, ohm, leak, ANY_A, guess, CLOSE_A)
+    return limited(amperes, hot, cold, sink, p)
 
 
 @compiled

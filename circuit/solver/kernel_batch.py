@@ -17,10 +17,7 @@ from ..rig.module import ZERO_C_IN_K
 from .kernel import (
     JUMP_A,
     LONGEST_STEP_S,
-    POWER,
     SHORTEST_STEP_S,
-    SINK_NUMBERS,
-    TEMPERATURE,
     compiled,
     regulate_sink,
     settle,
@@ -47,10 +44,13 @@ from .plate import (
     CONDUCTANCE,
     DEEP_C,
     HOT_J_PER_K,
+    POWER,
     RESISTANCE,
     SINK_AIR_W_PER_K,
     SINK_J_PER_K,
+    SINK_NUMBERS,
     SINK_W_PER_K,
+    TEMPERATURE,
 )
 
 KEEP, GAIN, LINK, ELIM = range(4)

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..compiled import kernel
-from .plate import CONDUCTANCE, DEEP_C, LEG_J_PER_K, RESISTANCE
+from .plate import CONDUCTANCE, DEEP_C, INTEGRAL, LEG_J_PER_K, POWER, RESISTANCE, REST_POWER, TEMPERATURE
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 
@@ -127,7 +127,7 @@ def legs_ahead(p, leg, period_leg, ahead):
 def begin_sink(warm, lane, sink):
     """Start a passive heat sink at its own temperature, `warm` (lanes,) in °C; it has no power of its own at rest."""
     if warm is not None:
-        sink[0], sink[1], sink[2], sink[3] = warm[lane], 0.0, 0.0, 0.0
+        sink[TEMPERATURE], sink[INTEGRAL], sink[POWER], sink[REST_POWER] = warm[lane], 0.0, 0.0, 0.0
 
 
 LANES = 32
@@ -242,4 +242,5 @@ def block_sinks(warm, block, sink):
     """Start the passive heat sinks of a block at their own temperatures, `warm` (lanes,) in °C."""
     if warm is not None:
         for lane in range(LANES):
-            sink[lane, 0], sink[lane, 1], sink[lane, 2], sink[lane, 3] = warm[block[lane]], 0.0, 0.0, 0.0
+            sink[lane, TEMPERATURE], sink[lane, INTEGRAL] = warm[block[lane]], 0.0
+            sink[lane, POWER], sink[lane, REST_POWER] = 0.0, 0.0

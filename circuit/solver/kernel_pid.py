@@ -11,8 +11,6 @@ import numpy as np
 from .kernel import (
     FREE,
     LONGEST_STEP_S,
-    SINK_NUMBERS,
-    TEMPERATURE,
     advance,
     compiled,
     factor,
@@ -23,7 +21,7 @@ from .kernel import (
 )
 from .kernel_legs import begin_sink, factor_legs, load_legs
 from .network import COLD, HOT, SKIN
-from .plate import DEEP_C
+from .plate import DEEP_C, SINK_NUMBERS, TEMPERATURE
 
 LAG_S, KP, KI, KD = range(4)
 """Places in a rig's gains: lag of the thermistor s, kp A/K, ki A/(K·s), kd A·s/K."""

@@ -11,9 +11,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.skin import Column
 from .plate import (
@@ -69,7 +68,7 @@ class Network:
     capacity_J_per_K: Array
     conductance_W_per_K: Array
     perfusion_W_per_K: Array
-    probe_start: npt.NDArray[np.int64]
+    probe_start: Index
     probe_weight: Array
     plates: Array
     legs: int = 0
@@ -167,7 +166,7 @@ def _network(rig: Rig, column: Column, plates: Array) -> Network:
     )
 
 
-def _probes(rig: Rig, resistance: Array) -> tuple[npt.NDArray[np.int64], Array]:
+def _probes(rig: Rig, resistance: Array) -> tuple[Index, Array]:
     """Weights of each recorded quantity on three neighbouring states; resistances from the cold plate down, m²·K/W."""
     place = np.concatenate([[0.0], np.cumsum(resistance)])  # of cold plate, lumps, deep node
     contact = rig.contact.resistance_m2K_per_W
@@ -187,7 +186,7 @@ def places_of(rig: Rig) -> Array:
     return np.concatenate([[0.0], np.cumsum(resistance)])
 
 
-def stacked(rows: Sequence[Weights]) -> tuple[npt.NDArray[np.int64], Array]:
+def stacked(rows: Sequence[Weights]) -> tuple[Index, Array]:
     """Starts (k,) and weights (k, 3) of several readings, in the form that the kernel expects."""
     return np.array([row[0] for row in rows], dtype=np.int64), np.array([row[1] for row in rows]).reshape(-1, 3)
 

@@ -31,6 +31,11 @@ PAST_MOST_COOLING = 18
 
 PLATE_NUMBERS = 19
 
+TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
+"""Places in the state of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
+
+SINK_NUMBERS = 4
+
 
 def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: float) -> float:
     """Hot-plate temperature in °C at a current in A: T_h = (base + αI·273.15 K + I²R/2) / (total − αI)."""

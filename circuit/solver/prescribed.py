@@ -11,16 +11,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
-from ..arrays import Array
+from ..arrays import Array, Index
 from ..rig.rig import Rig
 from .network import COLD, HOT, RECORDED, SKIN, Network, skin_network_of
 
 FELT = RECORDED[RECORDED.index("display_C") :]
 """What a run under a prescribed display records: RECORDED without the hot plate, which a thermode does not have."""
-
-Index = npt.NDArray[np.int64]
 
 SMALL = 1e-6
 """Below this λ·Δt the series replaces quotients that would lose digits."""

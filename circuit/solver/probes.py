@@ -21,6 +21,7 @@ SLOWEST_ROWS_S = 0.01
 """A probe with memory (a lag, or skin of its own) is stepped at least this finely, whatever the rows."""
 
 MOST_VALUES = 200_000_000
+"""Values of all probes at most: 1.6 GB while they are computed."""
 
 INSULATED_VALUES = 48
 """A probe on insulated skin takes about as long as this many others: it has some 200 modes."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.number_text import significant
 
 from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K, Peltier
@@ -23,6 +24,7 @@ from .steady import check_sink, steady_state
 from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
+"""Rows of a trace at most: a gigabyte of its thirteen columns."""
 HOTTEST_C = 1000.0
 """Above this, solder melts and a number must be wrong."""
 
@@ -295,15 +297,17 @@ def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str,
     excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
     if excess_A.max() > 1e-9:
         most, since = int(np.argmax(excess_A)), float(rows[int(np.argmax(excess_A > 1e-9))])
+        limit = driver.current_max_A if current[most] > 0 else driver.current_min_A
         sentences.append(
-            f"the drive needs {current[most]:.3g} A at {rows[most]:.2f} s; this driver gives "
+            f"the drive needs {significant(float(current[most]), limit)[0]} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
     needed = np.abs(voltage) - driver.voltage_limit_V
     if needed.max() > 1e-6:
         most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
+        limit = float(np.copysign(driver.voltage_limit_V, voltage[most]))
         sentences.append(
-            f"the drive needs {voltage[most]:.3g} V at {rows[most]:.2f} s; this driver gives at most "
-            f"{driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
+            f"the drive needs {significant(float(voltage[most]), limit)[0]} V at {rows[most]:.2f} s; this driver gives "
+            f"at most {driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
         )
     return tuple(sentences)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 from thermicon.icons import Icon
 from thermicon.icons.model.corners import Corners
+from thermicon.icons.number_text import decimals, significant
 
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Thermode
@@ -17,6 +18,9 @@ from .inverse import baseline_C
 from .network import COLD, HOT, network_of
 from .prescribed import modes_of
 from .steady import holding_current_A, state_under_current, steady_state
+
+WARMEST_COLD_PLATE_K = 320.0
+"""αT/R at this temperature, above that of any display, bounds the search for the coldest level: more current heats."""
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
@@ -67,9 +71,10 @@ def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
     low, high = _holdable(rig, control)
     for level in (corners.lowest, corners.highest):
         if not low - 1e-9 <= level <= high + 1e-9:
+            digits = decimals(level, low if level < low else high, 1)
             reasons.append(
-                f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.1f} … {high:.1f} °C that "
-                f"rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
+                f"icon {icon.name}: {level:g} °C on the {control} is outside the {low:.{digits}f} … {high:.{digits}f} "
+                f"°C that rig {rig.name} can hold; use a smaller change or a higher driver.current_limit_A"
             )
     if control == "display" and not reasons:
         reasons += _too_fast(icon, rig, corners)
@@ -87,9 +92,10 @@ def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
     for level in dict.fromkeys((base, corners.lowest, corners.highest)):
         needed = modes.display_holding_skin_C(level) if control == "skin" else level
         if not thermode.lowest_C - 1e-9 <= needed <= thermode.highest_C + 1e-9:
+            digits = decimals(needed, thermode.lowest_C if needed < thermode.lowest_C else thermode.highest_C, 1)
             reasons.append(
-                f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.1f} °C, outside the "
-                f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
+                f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.{digits}f} °C, outside "
+                f"the {thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
             )
     points = zip(corners.time_s, corners.value, strict=True)
     for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
@@ -116,7 +122,8 @@ def _holdable(rig: Rig, control: str) -> tuple[float, float]:
         state = state_under_current(network, current)
         return rig.module.voltage_V(current, float(state[COLD]), float(state[HOT]))
 
-    coldest = _coldest(level, min(driver.current_max_A, rig.module.seebeck_V_per_K * 320 / rig.module.resistance_ohm))
+    most = rig.module.seebeck_V_per_K * WARMEST_COLD_PLATE_K / rig.module.resistance_ohm
+    coldest = _coldest(level, min(driver.current_max_A, most))
     coldest = _within(coldest, lambda current: volts(current) <= driver.voltage_limit_V)
     warmest = _within(
         driver.current_min_A, lambda current: _exists(rig, current) and -volts(current) <= driver.voltage_limit_V
@@ -162,9 +169,10 @@ def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
         rate = (to - level) / (later - time)
         limit = _steepest(rig, level, cooling=rate < 0)
         if abs(rate) > limit:
+            wanted, possible = significant(abs(rate), limit)
             reasons.append(
-                f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
-                f"is more than the {limit:.3g} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
+                f"icon {icon.name}: {wanted} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s "
+                f"is more than the {possible} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
             )
     return reasons
 

@@ -142,7 +142,7 @@ def holding_current_A(network: Network, control: str, level_C: float) -> float:
 
 
 def check_sink(rig: Rig, state_C: Array) -> None:
-    """Raise RigError where a heat sink with its own controller lacks the power to hold a state (n + 3,) in °C."""
+    """Raise RigError where a heat sink with its own controller lacks the power to hold a state (nodes,) in °C."""
     sink, controller = rig.heat_sink, rig.heat_sink.controller
     if controller is None:
         return
@@ -171,7 +171,7 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     current_A : float
         The holding current in A.
     state_C : Array
-        Temperatures (n + 3,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`.
+        Temperatures (nodes,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`.
 
     Raises
     ------

@@ -53,6 +53,7 @@ class Mesh:
 SHIPPED = Mesh("shipped")
 CONVERGED = Mesh("converged", 5e-6, 0.02)
 HALVED = Mesh("converged, halved", 2.5e-6, 0.01)
+"""What meshes are compared with, and one twice as fine, which says how far that is from converged."""
 
 
 def usual_meshes(rig: Rig) -> tuple[Mesh, ...]:

@@ -15,9 +15,10 @@ from ..rig.rigfile import RigError
 from ..solver.inverse import baseline_C
 from ..solver.simulate import simulate
 
-SLOWEST = 64.0
-SMALLEST = 1.0 / 64.0
+FARTHEST = 64.0
+"""Factor by which a cue is slowed down, or made smaller, at most; assumed."""
 STEPS = 14
+"""Bisections in the logarithm of the factor: ln 64 / 2^14 is below the three digits that are returned."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +73,8 @@ def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     if icon.context.control == "current" or _reached(icon, rig):
         return None
     base = baseline_C(icon, rig)
-    slower = _least(lambda by: _reached(changed(icon, base, slower=by), rig), SLOWEST)
-    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), rig), 1.0 / SMALLEST)
+    slower = _least(lambda by: _reached(changed(icon, base, slower=by), rig), FARTHEST)
+    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), rig), FARTHEST)
     if slower is None and smaller is None:
         return None
     if smaller is None or (slower is not None and slower <= smaller):

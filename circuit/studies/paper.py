@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 TAIL_S = 4.0
+"""Time that a run goes on after the cue, for the skin to come back."""
 EMULATOR_A, EMULATOR_V = 2.5, 20.0
 """Limits that do not affect the paper's cue: its first instants need 2.4 A and 15.9 V."""
 THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
@@ -251,6 +252,7 @@ class MissByLimit:
 
 
 LIMITS_A = (0.75, 1.0, 1.25, 1.5, 1.7, 1.85, 2.0, 2.2, 2.5)
+"""Current limits from below the rig's own, by the module's 1.85 A, to those of `emulator_rig`."""
 
 
 def miss_by_limit(rig: Rig | None = None, limits_A: Sequence[float] = LIMITS_A) -> MissByLimit:

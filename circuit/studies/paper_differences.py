@@ -12,6 +12,7 @@ from ..solver.simulate import simulate
 from ..solver.steady import steady_state
 from .meshstudy import Mesh, mesh_study
 from .paper import (
+    TAIL_S,
     ControlledCue,
     Thermistors,
     coldest_display_C,
@@ -125,10 +126,10 @@ def _current(rig: Rig) -> PaperDifference:
 
 
 def _directions(rig: Rig, cue: ControlledCue) -> PaperDifference:
-    one_way = simulate(cooling_step("skin"), rig.with_(**{"driver.current_min_A": 0}), tail_s=4.0).outcome
+    one_way = simulate(cooling_step("skin"), rig.with_(**{"driver.current_min_A": 0}), tail_s=TAIL_S).outcome
     assert one_way is not None
     hot = printed().one("surface stays below").central
-    warm = simulate(cooling_step("skin"), rig, tail_s=4.0).display_C.max()
+    warm = simulate(cooling_step("skin"), rig, tail_s=TAIL_S).display_C.max()
     return PaperDifference(
         "directions of current",
         False,

@@ -1,22 +1,22 @@
 """A cue set as JSON, for other programs, and back without loss; the schema is ``data/cue.schema.json``."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
 from ..model.context import Metadata
 from ..model.family import Family
+from ..model.format import Holes
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
-from ..model.statements import Hold, Play, Repeat, Return, Statement
+from ..model.slots import Path
+from ..model.statements import Play, Repeat, Return, Statement
 from ..model.units import decimal_text
 
+# Characters of a line; what is longer takes several.
 _WIDE = 110
 _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
-Path = tuple[int, ...]
-Holes = Mapping[tuple[Path, str], str]
 
 
 def to_json(icons: IconSet) -> str:
@@ -125,8 +125,6 @@ def _statement(part: Statement, holes: Holes, owner: Icon | Family, path: Path =
     if kind == "wave":
         kind = values.pop("shape")
     kind = {"current": "drive"}.get(kind, kind)
-    if isinstance(part, Hold):
-        kind = "hold"
     return {"do": kind, **{name: value for name, value in values.items() if _SAME_AS_LEFT_OUT.get(name) != value}}
 
 

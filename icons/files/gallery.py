@@ -29,7 +29,7 @@ class UnknownSet(KeyError):
 
 @dataclass(frozen=True, slots=True)
 class Shipped:
-    """What the library tells of a set: what it is called and for, where it comes from, how many icons it has.
+    """What the library says of a set: what it is called and for, where it comes from, how many icons it has.
 
     Members of families count, and are not made.
     """
@@ -43,14 +43,14 @@ class Shipped:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Library(Mapping[str, IconSet]):
-    """Shipped sets by name, with pictures in a notebook; ``entries`` tells of each what to know of it."""
+    """Shipped sets by name, with pictures in a notebook; ``entries`` says of each what it is."""
 
     sets: tuple[tuple[str, IconSet], ...]
 
     @property
     def entries(self) -> tuple[Shipped, ...]:
         """Name, title, intent, source and number of icons of every set."""
-        return tuple(_told(name, icons) for name, icons in self.sets)
+        return tuple(_shipped(name, icons) for name, icons in self.sets)
 
     def to_frame(self) -> pd.DataFrame:
         """Return a table with a row a set and the columns name, icons, title, intent, source."""
@@ -121,7 +121,7 @@ def library() -> Library:
     return Library(tuple((name, load_library(name)) for name in library_names()))
 
 
-def _told(name: str, icons: IconSet) -> Shipped:
+def _shipped(name: str, icons: IconSet) -> Shipped:
     means = (icons.metadata.means, *(entry.metadata.means for entry in icons.entries))
     intent = icons.metadata.means or "; ".join(dict.fromkeys(filter(None, means)))
     known = (icons.metadata.by, icons.metadata.doi)

@@ -16,6 +16,7 @@ from ..model.units import decimal_text
 
 PAUSE_S = 10
 """Between two icons of a file, in s: the player adds up what it plays at one time, so they follow one another."""
+# Perceptions of a file in the profile Main at level 1; ticks per second.
 MOST_ICONS = 128
 _COARSEST, _FINEST = 1000, 48_000
 EXPERIMENTAL = "experimental: the unit of Temperature in ISO/IEC 23090-31 was not available to check"

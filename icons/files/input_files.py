@@ -4,13 +4,13 @@ import stat
 from pathlib import Path
 from typing import Literal
 
-Kind = Literal["folder", "device", "pipe", "socket"]
+FileKind = Literal["folder", "device", "pipe", "socket"]
 
 
 class NotRegular(Exception):
     """What is at a path cannot be read as a file; ``kind`` says what it is."""
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: FileKind) -> None:
         super().__init__(f"this is a {kind}, not a file")
         self.kind = kind
 
@@ -49,7 +49,7 @@ def read_limited(path: Path, most_bytes: int) -> bytes:
     return data
 
 
-def _kind(mode: int) -> Kind | None:
+def _kind(mode: int) -> FileKind | None:
     if stat.S_ISREG(mode):
         return None
     if stat.S_ISDIR(mode):

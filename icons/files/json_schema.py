@@ -23,6 +23,7 @@ from pydantic_core import PydanticCustomError
 from ..model.context import name_fault, text_fault
 from ..model.parameter import unit_fault
 from ..model.shapes import Heading, Shape, Start
+from ..model.statements import Bound
 from ..model.units import LARGEST, SMALLEST, UNITS, Kind
 from ..model.value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, MOST_REPEATS, SHORTEST_S, Control, fault
 
@@ -229,7 +230,7 @@ class TotalTable(Table):
 
     do: Literal["total"]
     duration_s: Time = Field(description="the time in s")
-    bound: Literal["exactly", "at most", "at least"] = "exactly"
+    bound: Bound = "exactly"
 
 
 class PlayTable(Table):

@@ -24,6 +24,7 @@ from .recover import DEEPEST, read
 from .source import Edit, Finding, Source
 
 Body = tuple[Statement, ...]
+# Of all icons of a file, written out: two of the longest.
 MOST_CORNERS_A_FILE = 200_000
 
 REFUSES = "a total refuses the file and leaves no member out: change the range, or the total"
@@ -69,9 +70,8 @@ class _Assembler:
         self.version(parts, kinds)
         self.set_block(parts, kinds)
         self.trees = [part for part, kind in zip(parts, kinds, strict=True) if kind == "icon"]
-        self.index = {}
-        for place, tree in enumerate(self.trees):
-            self.index.setdefault(str(tree.children[0]), place)
+        for place, icon_tree in enumerate(self.trees):
+            self.index.setdefault(str(icon_tree.children[0]), place)
         made = [self.made(place) for place in range(len(self.trees))]
         drafts = [self.drafts[place] for place in range(len(self.trees))]
         self.names(drafts)

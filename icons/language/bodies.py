@@ -8,13 +8,12 @@ from ..model.context import Metadata
 from ..model.expand import HOLE
 from ..model.icon import Icon
 from ..model.parameter import Parameter
-from ..model.shapes import Pulse, Shape, Start, Step, Wave
+from ..model.shapes import Heading, Pulse, Shape, Start, Step, Wave
 from ..model.slots import Path, Slot, value_fault
 from ..model.statements import (
     Bound,
     Broken,
     Current,
-    Direction,
     Hold,
     Play,
     Ramp,
@@ -25,8 +24,10 @@ from ..model.statements import (
     Total,
 )
 from ..model.units import UNITS, Kind
+from ..model.value_limits import MOST_REPEATS
 from ..model.words import nearest
-from .build import Builder, Place, rule_of, short, span
+from .build import Builder, Place, rule_of, span
+from .failed_statement import short
 from .family_parameters import FamilyParameters, parameters_of
 from .source import Edit
 
@@ -137,7 +138,7 @@ class _Scope:
         by, to, amperes = values.get("by_K"), values.get("to_C"), values.get("to_A")
         rate, time, by_A = values.get("rate"), values.get("time"), values.get("by_A")
         at = builder.at(span(tree))
-        direction = cast(Direction, words.get("DIRECTION", "change"))
+        direction = cast(Heading, words.get("DIRECTION", "change"))
         match rule:
             case "change" | "shift":
                 return Ramp(direction, by, to, rate, time, at)
@@ -239,10 +240,11 @@ class _Scope:
                 count = int(value)
         elif head.type == "NUMBER":
             digits = str(head).removeprefix("+")
-            count = int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= 10 else 0
-            if not 1 <= count <= 1_000_000_000:
+            most_digits = len(str(MOST_REPEATS))
+            count = int(digits) if digits.isascii() and digits.isdigit() and len(digits) <= most_digits else 0
+            if not 1 <= count <= MOST_REPEATS:
                 large = digits.isascii() and digits.isdigit() and digits.strip("0") != ""
-                wrong = "too large: at most 1,000,000,000" if large else "not a positive whole number"
+                wrong = f"too large: at most {MOST_REPEATS:,}" if large else "not a positive whole number"
                 what = f'"{short(head)}" is {wrong}'
                 self.builder.add("E207", span(head), what, "a repeat has a count from 1, such as: repeat 3 { ... }")
                 count = 1

@@ -9,6 +9,7 @@ from ..model.errors import TITLES
 from ..model.units import Kind, to_si
 from ..model.value_limits import fault
 from ..model.words import EXAMPLES, nearest
+from .failed_statement import short
 from .source import Edit, Finding, Source
 
 Place = tuple[int, int]
@@ -145,8 +146,3 @@ def span(item: Any) -> Place:
 def rule_of(item: Any) -> str:
     """Return the name of a tree's rule, or "" for a token."""
     return str(getattr(item, "data", ""))
-
-
-def short(text: object) -> str:
-    """Return a text as messages quote it."""
-    return str(text) if len(str(text)) <= 30 else str(text)[:29] + "…"

@@ -9,8 +9,6 @@ from .diagnose_word import connective, extra, joined, pace, unit_twice, word
 from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding
 
-__all__ = ["VOCABULARY", "diagnose"]
-
 _CURLY = re.compile(r"[”“»«’‘'](?!\w)")
 _NAME_HELP = "a name has letters, digits and hyphens and begins with a letter, such as cooling-step"
 

@@ -132,7 +132,7 @@ def _behind_step(case: FailedStatement) -> Finding | None:
 def _behind_wave(case: FailedStatement) -> Finding | None:
     bad, last = case.bad, case.pieces[-1]
     if bad.text == "starting" and case.find("cut") == case.index - 1:
-        behind = case.said(case.index)
+        behind = case.text_from(case.index)
         cure = Edit(case.pieces[case.index - 1].start, last.end, f"{behind} cut")
         return at(bad, "E214", '"starting" comes before "cut"', EXAMPLES["sine"], cure)
     if bad.kind != "word" or "CUT" not in case.accepts or (bad.text in VOCABULARY[case.where] and case.next()):
@@ -213,7 +213,7 @@ def _joined(case: FailedStatement, words: list[str]) -> list[Edit]:
     if bad.text in ("warm", "cool") and case.first == "change":
         cures.append(Edit(case.pieces[0].start, bad.start, ""))
     if bad.text in ("warm", "cool") and case.first in WAVES:
-        cures.append(Edit(bad.start, case.pieces[-1].end, f"{case.said(case.index + 1)} starting {bad.text}"))
+        cures.append(Edit(bad.start, case.pieces[-1].end, f"{case.text_from(case.index + 1)} starting {bad.text}"))
     if "DIRECTION" in case.accepts and (meant := STARTS.get(bad.text.casefold())):
         cures.append(swap(bad, meant))
     later = next((piece for piece in case.rest if piece.text in words), None)

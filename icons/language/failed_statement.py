@@ -66,9 +66,9 @@ class FailedStatement:
         """Return the place of a word in the statement, or None."""
         return next((place for place, piece in enumerate(self.pieces) if piece.text == word), None)
 
-    def said(self, start: int, end: int | None = None) -> str:
-        """Return pieces as text with single spaces between them."""
-        return " ".join(piece.text for piece in self.pieces[start:end])
+    def text_from(self, start: int) -> str:
+        """Return the pieces from a place on as text with single spaces between them."""
+        return " ".join(piece.text for piece in self.pieces[start:])
 
 
 def at(piece: Piece, code: str, what: str, help: str = "", *cures: Edit) -> Finding:
@@ -94,9 +94,9 @@ def swap(piece: Piece, text: str) -> Edit:
     return Edit(piece.start, piece.end, text)
 
 
-def short(text: str) -> str:
+def short(text: object) -> str:
     """Return a text as messages quote it."""
-    return text if len(text) <= 30 else text[:29] + "…"
+    return str(text) if len(str(text)) <= 30 else str(text)[:29] + "…"
 
 
 def either(words: list[str]) -> str:

@@ -8,8 +8,9 @@ from typing import Any
 from ..model.family import FEWER, MOST_MEMBERS
 from ..model.parameter import Parameter, span_fault
 from ..model.units import UNITS, exact_number
-from .build import Builder, Place, rule_of, short, span
+from .build import Builder, Place, rule_of, span
 from .diagnose_family import THREE_DOTS
+from .failed_statement import short
 from .source import Edit
 
 _LIST_HELP = 'values are a list, "[1, 3] °C", or a range, "1..3 step 0.5 °C"'

@@ -20,7 +20,7 @@ _SETTINGS = tuple(word for word in VOCABULARY["set"] if word not in _METADATA)
 KEYWORDS = frozenset((*VOCABULARY["file"], *_METADATA, *_SETTINGS, *VOCABULARY["icon"], *CLAUSES))
 SPELLINGS = tuple(sorted({unit for units in UNITS.values() for unit in units if unit}, key=len, reverse=True))
 
-# Both as in the grammar, against which a test holds them.
+# Both as in the grammar; a test compares them.
 NUMBER = r"[+\-\u2212]?([0-9]+(\.(?!\.)[0-9]*)?|\.[0-9]+)([eE][+\-\u2212]?[0-9]+)?"
 NAME = r"[^\W\d_](?:[^\W_]|-)*(?:_[^\W\d_](?:[^\W_]|-)*=-?[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)*"
 _each: Callable[..., Any] = bygroups

@@ -8,7 +8,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..model.errors import MOST_ERRORS, MOST_READ
-from .diagnose import VOCABULARY, diagnose
+from ..model.words import VOCABULARY
+from .diagnose import diagnose
 from .failed_statement import FailedStatement
 from .grammar_tables import grammar
 from .source import Edit, Finding, Piece, Source
@@ -21,7 +22,9 @@ _OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
 _BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
 _CELL = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?")
 _NAMED = re.compile(r"icon\s+([^\W\d][\w-]*)")
+# Characters of a line that are looked at: a file may be one endless line.
 _WIDE = 2000
+# How files of other formats begin, in lower case.
 _FORMATS = {
     "%pdf-": "this is a PDF document",
     "{\\rtf": "this is a document of a word processor (RTF)",
@@ -314,7 +317,7 @@ class _Reader:
             self.unclosed(end)
             self.feed(*["RBRACE"] * len(self.blocks), at=end)
 
-    # -- telling --------------------------------------------------------------------------------------------------
+    # -- reporting ------------------------------------------------------------------------------------------------
 
     def unclosed(self, at: int) -> None:
         _, start, brace = self.blocks[0]

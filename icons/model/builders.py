@@ -1,13 +1,13 @@
 """Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C and A."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from .builder_arguments import documented, given, number, one_of
+from .shapes import Heading
 from .statements import (
     Bound,
     Current,
-    Direction,
     Hold,
     Play,
     Ramp,
@@ -285,13 +285,13 @@ def total(duration: float, bound: Bound = "exactly") -> Total:
     >>> total(10, "at most") == Total(10, "at most")
     True
     """
-    if bound not in ("exactly", "at most", "at least"):
+    if bound not in get_args(Bound):
         raise ValueError(f'total(bound={bound!r}): "exactly", "at most" or "at least" is needed')
     return Total(given("total", "duration", duration, "time"), bound)
 
 
 def _change(
-    call: str, direction: Direction, by: float | None, to: float | None, at: float | None, over: float | None
+    call: str, direction: Heading, by: float | None, to: float | None, at: float | None, over: float | None
 ) -> Ramp:
     one_of(call, {"by": by, "to": to})
     one_of(call, {"at": at, "over": over})

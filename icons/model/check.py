@@ -11,6 +11,7 @@ from .statements import Broken, Current, Leaf, Play, Ramp, Repeat, Rest, Return,
 from .units import decimal_text, exact
 from .value_limits import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S, Control
 
+# Of one icon, written out: 28 a second for the hour that it may last.
 MOST_CORNERS = 100_000
 # A bare thenar eminence rests near 32 °C; taken where neither the set nor the caller says what baseline is.
 ASSUMED_BASELINE_C = 32.0

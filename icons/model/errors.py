@@ -3,6 +3,7 @@
 import unicodedata
 from dataclasses import dataclass
 
+from ..number_text import count_of
 from .cleaning import clean
 
 TITLES: dict[str, str] = {
@@ -77,6 +78,7 @@ TITLES: dict[str, str] = {
     "E231": "too many members",
     "E232": "icons that play each other",
 }
+# Characters of a line that an error shows.
 WIDEST = 110
 # Errors shown, and errors behind which reading stops: nobody corrects a thousand at once.
 MOST_ERRORS, MOST_READ = 100, 1000
@@ -166,7 +168,7 @@ class CueErrors(ValueError):
         parts = [error.render() for error in self.errors]
         if self.more:
             least = "at least " if self.more + len(self.errors) >= MOST_READ else ""
-            parts.append(f"... and {least}{self.more} more errors")
+            parts.append(f"... and {least}{count_of(self.more, 'more error')}")
         return "\n\n".join(parts)
 
     def _render_traceback_(self) -> list[str]:

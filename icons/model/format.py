@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .shapes import Pulse, Step, Wave
+from .slots import Path
 from .statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Statement, Total
 from .units import Kind, quantity
 from .value_limits import Control
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from .icon import Icon
     from .iconset import IconSet
 
-Path = tuple[int, ...]
 Holes = Mapping[tuple[Path, str], str]
 _GOALS: tuple[tuple[str, Kind], ...] = (
     ("by_K", "change"),

@@ -14,7 +14,10 @@ TOLERANCE = 1e-3
 """How far (K, or A under control current) a straight piece may lie from a sine, unless the caller says otherwise."""
 
 Point = tuple[Fraction, Fraction]
+# Phases and values of a sine are fractions of this; a whole number of periods is one to this precision.
 _FINE = 10**9
+# A quarter of a sine has no more corners than this, however small the tolerance.
+_MOST_CORNERS = 20_000
 # Phases behind which a wave that starts upwards has been at its crest and in its trough.
 _CREST: dict[Shape, Fraction] = {
     **dict.fromkeys(("sine", "triangle"), Fraction(1, 4)),
@@ -91,10 +94,10 @@ def reach(leaf: Leaf, level: Fraction, rest: Fraction) -> tuple[Fraction, Fracti
     return min(levels), max(levels)
 
 
-def piece_count(leaf: Leaf, tolerance: float = TOLERANCE) -> int:
-    """Return how many straight pieces and steps a statement has, at most."""
+def piece_count(leaf: Leaf) -> int:
+    """Return how many straight pieces and steps a statement has at most, a sine within `TOLERANCE`."""
     if isinstance(leaf, Wave):
-        return math.ceil(periods_of(leaf)) * _period_corners(leaf.shape, _ratio(leaf, tolerance))
+        return math.ceil(periods_of(leaf)) * _period_corners(leaf.shape, _ratio(leaf, TOLERANCE))
     return 3 if isinstance(leaf, Pulse) else 1
 
 
@@ -143,7 +146,7 @@ def _quarter_sine(ratio: float) -> list[Point]:
         phases = _bends(count)
         values = [math.sin(phase) + (ratio / 2 if 0 < n < count else 0.0) for n, phase in enumerate(phases)]
         values = [min(value, 1.0) for value in values]
-        if _worst(phases, values) <= ratio or count >= 20_000:
+        if _worst(phases, values) <= ratio or count >= _MOST_CORNERS:
             break
         count += max(1, count // 8)
     return [
@@ -197,6 +200,7 @@ def _wave_points(wave: Wave, tolerance: float) -> Iterator[Point]:
 
 def _period_corners(shape: Shape, ratio: float) -> int:
     """Corners of one period, at most; those of a sine grow with the root of the amplitude over the tolerance."""
+    # In theory 4 · 1.2 / √(12 · ratio) = 1.4 / √ratio; counts that grow by eighths make it 1.65 / √ratio and a few.
     return math.ceil(2.1 / math.sqrt(ratio)) + 8 if shape == "sine" else len(one_period(shape, 0.0))
 
 

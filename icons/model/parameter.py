@@ -7,6 +7,7 @@ from fractions import Fraction
 from .context import name_fault
 from .units import UNITS, Kind, decimal_text, exact_number
 
+# Of one parameter: no family has more members.
 MOST_VALUES = 100_000
 
 

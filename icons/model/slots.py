@@ -55,7 +55,7 @@ def slot_fault(template: tuple[Statement, ...], slot: Slot, parameter: Parameter
     if value != parameter.si(0, kind):
         return f"the template has {slot.field} = {value!r}, not the first value"
     try:
-        for place in telling_places(parameter):
+        for place in representative_places(parameter):
             value = parameter.si(place, kind)
             changed: dict[str, Any] = {slot.field: int(value) if kind == "count" else value}
             replace(part, **changed)
@@ -64,7 +64,7 @@ def slot_fault(template: tuple[Statement, ...], slot: Slot, parameter: Parameter
     return None
 
 
-def telling_places(parameter: Parameter) -> Sequence[int]:
+def representative_places(parameter: Parameter) -> Sequence[int]:
     """Return places of values that stand for all: as a span rises evenly, its ends and those about 0 do."""
     if parameter.span is None:
         return range(len(parameter))
@@ -78,7 +78,7 @@ def value_fault(parameter: Parameter, kind: Kind) -> tuple[str, str] | None:
         unit = f"{parameter.name} is in {parameter.unit}" if parameter.unit else f"{parameter.name} has no unit"
         return "E104", f"{unit}; {KIND_WORDS[kind]} is needed here"
     return next(
-        (found for place in telling_places(parameter) if (found := fault(parameter.si(place, kind), kind))), None
+        (found for place in representative_places(parameter) if (found := fault(parameter.si(place, kind), kind))), None
     )
 
 

@@ -1,15 +1,14 @@
 """What an icon is made of: frozen statements in SI floats that prove themselves; shapes stand in ``shapes``."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
-from .shapes import Pulse, Step, Wave
+from .shapes import Heading, Pulse, Step, Wave
 from .value_limits import MOST_REPEATS, Span, prove_given, prove_number, prove_one_of
 
 if TYPE_CHECKING:
     from .icon import Icon
 
-Direction = Literal["warm", "cool", "change"]
 Bound = Literal["exactly", "at most", "at least"]
 
 
@@ -24,7 +23,7 @@ class Ramp:
     Ramp(direction='cool', by_K=6.0, to_C=None, rate_K_per_s=3.0, duration_s=None)
     """
 
-    direction: Direction
+    direction: Heading
     by_K: float | None = None
     to_C: float | None = None
     rate_K_per_s: float | None = None
@@ -32,7 +31,7 @@ class Ramp:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.direction not in ("warm", "cool", "change"):
+        if self.direction not in get_args(Heading):
             raise ValueError(f'Ramp.direction must be "warm", "cool" or "change", not {self.direction!r}')
         prove_one_of(self, "by_K", "to_C")
         prove_one_of(self, "rate_K_per_s", "duration_s")
@@ -123,7 +122,7 @@ class Total:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if self.bound not in ("exactly", "at most", "at least"):
+        if self.bound not in get_args(Bound):
             raise ValueError(f'Total.bound must be "exactly", "at most" or "at least", not {self.bound!r}')
         prove_given(self, "duration_s", "time")
 

@@ -13,6 +13,7 @@ LOWEST_C, HIGHEST_C = -10.0, 60.0
 HIGHEST_A = 20.0
 SHORTEST_S, LONGEST_S = 1e-6, 3600.0
 MOST_REPEATS = 1_000_000_000
+_RANGE = f"{LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
 
 
 def fault(value: float, kind: Kind) -> tuple[str, str] | None:
@@ -26,15 +27,15 @@ def fault(value: float, kind: Kind) -> tuple[str, str] | None:
     if kind == "count" and not (value == int(value) and 1 <= value <= MOST_REPEATS):
         return "E207", f"{decimal_text(value)} is not a positive whole number"
     if kind == "absolute" and not LOWEST_C <= value <= HIGHEST_C:
-        return "E219", f"{decimal_text(value)} °C is outside the −10 to 60 °C that the language allows"
+        return "E219", f"{decimal_text(value)} °C is outside the {_RANGE} that the language allows"
     if kind == "current" and abs(value) > HIGHEST_A:
-        return "E219", f"{decimal_text(value)} A is outside the ±20 A that the language allows"
+        return "E219", f"{decimal_text(value)} A is outside the ±{HIGHEST_A:g} A that the language allows"
     if kind == "change" and value == 0:
         return "E202", "a change must not be zero"
     if kind == "difference" and value <= 0:
         return "E202", "a change has a positive size; its direction is in the word"
     if kind in ("difference", "change") and abs(value) > HIGHEST_C - LOWEST_C:
-        return "E219", f"{decimal_text(value)} °C is more than the whole −10 to 60 °C that the language allows"
+        return "E219", f"{decimal_text(value)} °C is more than the whole {_RANGE} that the language allows"
     if kind in ("rate", "current_rate") and value <= 0:
         return "E204", "a rate is positive; the direction is in the word"
     if kind == "time" and value <= 0:

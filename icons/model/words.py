@@ -2,12 +2,15 @@
 
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import get_args
 
 from ..near_words import nearest_words
+from .shapes import Shape
 from .units import UNITS, Kind, decimal_text, exact_number
+from .value_limits import Control
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
-WAVES = ("sine", "square", "triangle", "sawtooth")
+WAVES: tuple[str, ...] = get_args(Shape)
 _STATEMENTS = (
     "cool",
     "warm",
@@ -30,7 +33,7 @@ VOCABULARY: dict[str, tuple[str, ...]] = {
     "repeat": _STATEMENTS,
     "header": _KEYS,
 }
-CONTROLS = ("skin", "display", "current")
+CONTROLS: tuple[str, ...] = get_args(Control)
 
 NOT_YET: dict[str, str] = {
     "on": "a display with several elements cannot be addressed; write one icon for the one element",

@@ -6,11 +6,12 @@ from importlib.metadata import version
 
 from ..model.family import Family
 from ..model.family_check import Summary
-from ..model.format import Holes, Path, Wording
+from ..model.format import Holes, Wording
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter
 from ..model.shapes import Pulse, Step, Wave
+from ..model.slots import Path
 from ..model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from ..model.units import Kind, decimal_text, quantity
 from ..model.value_limits import Control

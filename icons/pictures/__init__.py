@@ -1,1 +1,1 @@
-"""Curves as figures and small pictures; what is drawn is known by its type only."""
+"""Icons as figures and small pictures; what is drawn is imported for its type alone."""

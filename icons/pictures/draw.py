@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
-from .curve_style import COLOURS, COOL, STAY, WARM, chosen, directions, evenly
+from .curve_style import COLOURS, chosen, directions, evenly
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..model.family import Family
     from ..model.icon import Icon
     from ..model.iconset import IconSet
-
-__all__ = ["COOL", "STAY", "WARM", "plot_family", "plot_icon", "plot_icons", "plot_set"]
 
 MOST_DRAWN, MOST_NAMED = 24, 8
 # Eight colours for icons by name, safe for common kinds of colour vision; dashes distinguish them in grey.

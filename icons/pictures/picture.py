@@ -91,8 +91,8 @@ def _grid(icons: IconSet) -> str:
     cell = _Cell(232, 158, 12, min(1, max(len(curves.lines) for curves in all_curves)))
     width = max(columns * cell.width, 560)
     title = icons.title or icons.name or "unnamed set"
-    told = " · ".join(filter(None, facts))
-    parts = [words(10, 20, title, 15, width - 20, bold=True), words(10, 37, told, 11, width - 20, colour=_QUIET)]
+    subtitle = " · ".join(filter(None, facts))
+    parts = [words(10, 20, title, 15, width - 20, bold=True), words(10, 37, subtitle, 11, width - 20, colour=_QUIET)]
     for place, curves in enumerate(all_curves):
         row, column = divmod(place, columns)
         x, y = column * cell.width, 46 + row * cell.height
@@ -273,9 +273,9 @@ def document(width: int, height: int, label: str, parts: Sequence[str]) -> str:
     )
 
 
-def words(x: float, y: float, said: str, size: int, room: float, bold: bool = False, colour: str = "#111") -> str:
+def words(x: float, y: float, text: str, size: int, room: float, bold: bool = False, colour: str = "#111") -> str:
     """Return a line of text, cut to its room at an estimate of its width; a pointer at rest on it shows all of it."""
-    whole = plain(said)
+    whole = plain(text)
     cut = _cut(whole, room / (size * (0.62 if bold else 0.55)))
     full = f"<title>{escape(whole)}</title>" if cut != whole else ""
     weight = ' font-weight="600"' if bold else ""

@@ -14,6 +14,7 @@ import numpy as np
 from .course import SPARE, Array, Course, Path, course_of
 
 MOST_CORNERS = 500
+"""Corners of an icon that is made of a recording: more than anybody edits."""
 _MOST_DECIMALS = 12
 
 
@@ -86,7 +87,12 @@ def _inside(course: Course) -> Path:
         path = course.fit(course.time[cuts])
         if course.holds(path):
             return path
-        more = np.union1d(cuts, course.worst(path))
+        worst = course.worst(path)
+        more = np.union1d(cuts, worst)
+        if len(more) == len(cuts):  # the worst readings are corners already: halve the pieces beside them
+            at = np.searchsorted(cuts, worst)
+            beside = np.stack([cuts[np.maximum(at - 1, 0)], cuts[np.minimum(at + 1, len(cuts) - 1)]])
+            more = np.union1d(cuts, (beside + worst) // 2)
         if len(more) == len(cuts):
             break
         cuts = more

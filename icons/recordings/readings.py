@@ -24,6 +24,8 @@ CONTROL_OF: dict[str, Control | None] = {
 """Columns that a recording may have, and what the icon then controls; None where the column does not tell."""
 
 MOST_ROWS, MOST_MB = 1_000_000, 200
+"""Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
+# Columns that a message lists.
 _FEW = 8
 # Comments, and the line by which spreadsheets tell one another the separator.
 _ASIDE = ("#", "sep=")

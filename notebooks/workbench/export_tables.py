@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import number, percent, signed
+from thermicon.icons.number_text import number, percent
 
 from ..cli.export import CAUTION, steps_of
 from ..pages.blocks import fragment
@@ -79,14 +79,14 @@ def gate_html(icon: Prepared) -> str:
 
 def _check(check: Check, source_number: int) -> dict[str, object]:
     """What the template prints for one rule."""
-    unit = "" if check.unit == "1" else f" {check.unit}"
+    unit, (worst, limit) = "" if check.unit == "1" else f" {check.unit}", check.figures
     kind = "" if check.passed else "bad" if check.severity == "hard" else "amber"
     return {
         "kind": kind,
         "mark": {"": "ok", "bad": "RED", "amber": "amber"}[kind],
         "quantity": check.quantity,
-        "worst": f"{signed(check.value, '.4g')}{unit}",
-        "limit": f"{'≤' if check.upper else '≥'} {signed(check.limit, '.4g')}{unit} {check.severity}",
+        "worst": f"{worst}{unit}",
+        "limit": f"{'≤' if check.upper else '≥'} {limit}{unit} {check.severity}",
         "source": check.source,
         "source_number": source_number,
         "time": f"{check.time_s:.2f} s",

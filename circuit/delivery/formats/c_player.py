@@ -50,8 +50,7 @@ def command_for(delivery: DeliveredDrive, current_A: float) -> float:
     if device.driven_by == "volts":
         return current_A / delivery.rig.driver.transconductance_A_per_V
     if device.driven_by == "duty":
-        low, high = device.interval("output range")
-        return min(1.0, current_A / min(-low, high))
+        return min(1.0, current_A / device.bridge_A)
     return current_A
 
 

@@ -13,14 +13,15 @@ from ..device import Device
 from .csv_table import marks_of
 from .form import PLAYS_TEMPERATURES, Column, Format, command_column, samples_of
 
+VOLTAGE = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
+
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, set-point, its voltage where the device states a gain, event."""
-    voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
     return (
         Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next"),
         command_column(delivery),
-        *((voltage,) if has_voltage(delivery.device) else ()),
+        *((VOLTAGE,) if has_voltage(delivery.device) else ()),
         Column("event", "", "what the icon prescribes from this row on; the last row marks the end"),
     )
 

@@ -7,8 +7,9 @@ from ..setpoints import Setpoints
 from .form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
 
 ZONES = "11111"
-ABOVE_K = 1.0
-"""The greatest temperature of a stimulation (Om) is set this far above the highest set-point."""
+ABOVE_K, MOST = 1.0, 600
+"""The greatest temperature of a stimulation (Om) is set this far above the highest set-point, up to the 60 °C that the
+instrument reaches, in tenths of a degree."""
 
 
 TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
@@ -34,7 +35,7 @@ def write(delivery: DeliveredDrive) -> bytes:
     segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
     commands = [
         f"N{setpoints.baseline:03d}",
-        f"Om{min(greatest, 600):03d}",
+        f"Om{min(greatest, MOST):03d}",
         f"Uw{ZONES}{len(setpoints.segments):03d}{segments}",
         f"Ue{ZONES}",
         "L",

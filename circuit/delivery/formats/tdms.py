@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import io
-from importlib.metadata import version
 
+from ...program import own_version
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -15,16 +15,16 @@ from .form import (
     command_column,
     samples_of,
 )
-from .setpoint_csv import has_voltage, volts_of
+from .setpoint_csv import VOLTAGE, has_voltage, volts_of
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1
+"""Greatest code: they are written in 32 bits."""
 
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Channels of the group `thermicon`."""
-    voltage = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
-    extra = (voltage,) if _is_voltage(delivery) else ()
+    extra = (VOLTAGE,) if _is_voltage(delivery) else ()
     code = Column("code", "", "the command as a whole number of the device's steps")
     return (command_column(delivery), code, *extra)
 
@@ -46,7 +46,7 @@ def write(delivery: DeliveredDrive) -> bytes:
             f"{samples.scale.lowest:,} … {samples.scale.highest:,}: use csv"
         )
     clock = {"wf_start_offset": 0.0, "wf_increment": 1.0 / samples.rate_Hz, "wf_samples": len(samples.codes)}
-    root = RootObject({"name": delivery.icon.name, "author": f"thermicon {version('thermicon')}"})
+    root = RootObject({"name": delivery.icon.name, "author": f"thermicon {own_version()}"})
     group = GroupObject(GROUP, {"device": delivery.device.name, "rig": delivery.rig.name})
     channels = [
         ChannelObject(GROUP, command.name, samples.command, {"unit_string": command.unit, **clock}),
@@ -54,7 +54,7 @@ def write(delivery: DeliveredDrive) -> bytes:
     ]
     if _is_voltage(delivery):
         volts = volts_of(delivery.device, samples.command)
-        channels.append(ChannelObject(GROUP, "command_V", volts, {"unit_string": "V", **clock}))
+        channels.append(ChannelObject(GROUP, VOLTAGE.name, volts, {"unit_string": VOLTAGE.unit, **clock}))
     file = io.BytesIO()
     with TdmsWriter(file) as writer:
         writer.write_segment([root, group, *channels])

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, RigFit, fit, simulate
+from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.icons import load_library
@@ -210,6 +211,8 @@ def test_a_module_given_by_data_sheet_becomes_parameters(log: Log, thenar: Rig, 
     path = tmp_path / "rig.toml"
     found.save(path)
     assert Rig.load(path).module.seebeck_V_per_K == pytest.approx(named.module.seebeck_V_per_K, rel=0.01)
+    with pytest.raises(FitError, match=r"absent.rig\.toml: cannot be written \(No such file or directory\)"):
+        found.save(tmp_path / "absent" / "rig.toml")
 
 
 def test_residuals_that_are_alike_widen_the_intervals(true_rig: Rig, thenar: Rig, log: Log) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from nptdms import ChannelObject, RootObject, TdmsWriter
+from nptdms import ChannelObject, RootObject, TdmsFile, TdmsWriter
 
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.log import Log, LogError
@@ -118,6 +118,17 @@ def tdms(**channels: Any) -> bytes:
     with TdmsWriter(file) as writer:
         writer.write_segment([RootObject(), *objects])
     return file.getvalue()
+
+
+def test_a_reader_that_fails_without_a_word_is_named(
+    saved: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fails(_: io.BytesIO) -> TdmsFile:
+        raise IndexError
+
+    monkeypatch.setattr(TdmsFile, "read", fails)
+    with pytest.raises(FitError, match=r"rig\.tdms: cannot be read as TDMS \(IndexError\)"):
+        read_log(saved(tdms(current_A=np.zeros(40)), "rig.tdms"))
 
 
 def test_waveforms_of_tdms_share_a_clock(saved: Callable[..., Path]) -> None:

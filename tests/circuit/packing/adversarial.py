@@ -11,7 +11,7 @@ import numpy as np
 from thermicon.circuit import Device, Prepared, Rig, RigError, prepare
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.packing.prepare import Gate, prepare_set
+from thermicon.circuit.packing.prepare import Judge, prepare_set
 from thermicon.icons import CueErrors, Icon, parse
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
@@ -170,7 +170,7 @@ def some_pause(rng: np.random.Generator) -> float | None:
     return 0.0 if kind < 0.5 else float(round(np.exp(rng.uniform(np.log(0.3), np.log(400))), 1))
 
 
-def some_case(rng: np.random.Generator, number: int, folder: Path, gate: Gate | None = None) -> Case | None:
+def some_case(rng: np.random.Generator, number: int, folder: Path, gate: Judge | None = None) -> Case | None:
     """A case by chance; None for one that the rig or the device cannot have at all."""
     ways = SLOW if rng.random() < SHARE_OF_SLOW else WAYS
     device_name, form_name = ways[rng.integers(len(ways))]

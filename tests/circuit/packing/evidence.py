@@ -24,7 +24,7 @@ from tests.circuit.packing.replay import Held, Player, Skin, Worst, in_any_order
 from thermicon.circuit import Prepared
 from thermicon.circuit.delivery.formats import Format, FormatError, load_format
 from thermicon.circuit.packing.pack import pack
-from thermicon.circuit.packing.prepare import Gate
+from thermicon.circuit.packing.prepare import Judge
 
 PER_PART = 100
 LOOKED_AT = 6
@@ -96,7 +96,7 @@ def as_shown(rig: Json, course: Course, pauses: list[float], rng: np.random.Gene
     shown(skin, levels, course.step_s / fine, pauses, (), worst, rates=False, held=True)
 
 
-def run_part(part: int, count: int = PER_PART, gate: Gate | None = None, look: int = LOOKED_AT) -> Told:
+def run_part(part: int, count: int = PER_PART, gate: Judge | None = None, look: int = LOOKED_AT) -> Told:
     """Judge the drives of a part, and replay all that is written, and some of what is not."""
     found, number = Told(), 0
     with tempfile.TemporaryDirectory() as folder:

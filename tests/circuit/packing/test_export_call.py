@@ -37,7 +37,8 @@ def test_refusals_are_data_and_nothing_is_written(tmp_path: Path) -> None:
     result = export([WARM, HOT], RIG, "dac-16")
     assert result.files == {}
     assert {(name, cause.kind) for name, cause in result.refused} >= {("hot", "unsafe")}
-    assert "REFUSED" in repr(result)
+    causes = "1 cause" if len(result.refused) == 1 else f"{len(result.refused)} causes"
+    assert repr(result).endswith(f": REFUSED: {causes})")
     with pytest.raises(ExportError, match="hot: NOT SAFE"):
         export([WARM, HOT], RIG, "dac-16", folder=tmp_path / "run")
     assert list(tmp_path.iterdir()) == []

@@ -85,6 +85,7 @@ def test_a_tightened_limit_holds_for_simulate_too() -> None:
             r"most 10 K/s",
         ),
         ("thermal_dose_min_CEM43 = -1", r"= -1 min CEM43: must be greater than 0 min CEM43"),
+        ("session_min = -1", r"= -1 min: must be greater than 0 min"),
         (
             "display_lowest_C = 30\ndisplay_highest_C = 29",
             r"safety\.display_lowest_C = 30 °C: is not below safety\.display_highest_C = 29 °C; leave some room",

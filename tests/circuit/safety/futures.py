@@ -9,7 +9,7 @@ import numpy as np
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, ROWS_S, without_power
+from thermicon.circuit.safety.endings import ENDING_ROWS_S, ENDING_S, ENDINGS, without_power
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import Drive
@@ -62,7 +62,7 @@ def play_out(
         skip = 1 if times else 0
         times.append(rows[skip:])
         parts.append(values[:, :, skip:])
-    after = np.append(ROWS_S[ending_s - 1e-9 > ROWS_S], ending_s)
+    after = np.append(ENDING_ROWS_S[ending_s - 1e-9 > ENDING_ROWS_S], ending_s)
     cue, end = np.concatenate(parts, axis=2), float(drive.time_s[-1])
     endings = [ensemble.hold(float(drive.current_A[-1]), state, after)[0], ensemble.hold(0.0, state, after)[0]]
     endings.append(endings[1] if ensemble.ideal else without_power(ensemble, state, after)[0])

@@ -2,7 +2,7 @@
 
 import json
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -21,7 +21,7 @@ from thermicon.circuit import (
     steady_state,
 )
 from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.safety.checks import findings_of
+from thermicon.circuit.safety.checks import Check, findings_of, more_and_cure
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
@@ -205,6 +205,16 @@ def test_text_and_dictionary_tell_all() -> None:
         "quantity", "severity", "value", "limit", "unit", "time_s", "since_s", "source", "note", "upper", "scenario",
         "passed", "text",
     }  # fmt: skip
+
+
+def test_a_limit_that_is_just_exceeded_reads_as_exceeded() -> None:
+    check = Check("skin surface", "hard", 42.003, 42.0, "°C", 1.0, 1.0, "source")
+    assert str(check).startswith(
+        "skin surface reaches 42.003 °C at 1.00 s, above the hard limit of 42 °C from 1.00 s on"
+    )
+    other = replace(check, quantity="display", value=-0.0004, limit=0.0, upper=False)
+    assert "display −0.0004 °C (limit 0)" in more_and_cure([check, other])
+    assert replace(check, value=41.9999999, since_s=None).figures == ("42", "42")
 
 
 def test_it_is_deterministic(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -68,6 +68,11 @@ def test_a_drive_past_the_driver_only_warns() -> None:
     assert trace.current_A.max() == 3.0
 
 
+def test_a_drive_just_past_the_driver_reads_as_more_than_it_gives() -> None:
+    trace = simulate_current(Drive([0, 1, 2], [0, 1.5004, 1.5004]), Rig.load("thenar"))
+    assert trace.beyond[0].startswith("the drive needs 1.5004 A at")
+
+
 def test_a_run_that_is_not_physical_is_refused() -> None:
     with pytest.raises(
         RigError, match=r"leaves the physical range .* under 1e\+05 A; use less current, or check the rig"

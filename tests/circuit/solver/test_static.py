@@ -32,6 +32,16 @@ def test_a_level_beyond_the_rig_and_one_within() -> None:
     assert check_static(icon("cool to 20 °C at 0.2 °C/s"), hot_sink) == ()
 
 
+def test_what_is_just_beyond_the_rig_reads_as_beyond() -> None:
+    weak = THENAR.with_(**{"driver.current_limit_A": 0.3})
+    (message,) = check_static(icon("cool to 15.88 °C at 0.2 °C/s"), weak)
+    assert "15.88 °C on the display is outside the 15.90 … " in message
+    (message,) = check_static(icon("cool by 6 °C at 5.927 °C/s"), THENAR)
+    assert "5.927 °C/s of cooling at 0 s is more than the 5.926 °C/s that" in message
+    (message,) = check_static(icon("cool to 0.08 °C at 3 °C/s"), Rig.load("tcs2"))
+    assert "0.08 °C on the display needs a display of 0.08 °C, outside the 0.1 … 60 °C of thermode tcs2" in message
+
+
 def test_a_rate_beyond_the_rig_is_one_that_the_run_misses() -> None:
     fast = icon("cool by 6 °C at 8 °C/s\nhold for 1 s")
     (message,) = check_static(fast, THENAR)

@@ -115,6 +115,12 @@ def test_an_endless_line_is_shown_in_part() -> None:
     assert "…" in error.render()
 
 
+@pytest.mark.parametrize(("more", "said"), [(1, "and 1 more error"), (2, "and 2 more errors")])
+def test_errors_that_are_not_shown_are_counted(more: int, said: str) -> None:
+    (error,) = errors_of("cue 1\nicon x { hold for 4 }")
+    assert str(CueErrors((error,), more)).endswith(f"... {said}")
+
+
 @pytest.mark.slow
 def test_of_many_errors_a_hundred_are_shown() -> None:
     with pytest.raises(CueErrors, match="and 50 more errors") as caught:

@@ -119,6 +119,24 @@ def test_the_first_value_can_be_prescribed() -> None:
     assert farthest(time, value + 0.03, found) <= 0.05
 
 
+@pytest.mark.parametrize(
+    ("lengths", "levels", "seed"),
+    [
+        ((289, 164, 221, 247, 112, 99, 115, 247), (277, 368, 368, 319, 353, 353, 355, 326, 275), 6509),
+        ((193, 80, 133, 86, 218, 141, 194, 157), (250, 336, 334, 334, 334, 334, 334, 360, 236), 2292),
+    ],
+)
+def test_a_piece_whose_worst_reading_is_a_corner_is_cut_elsewhere(
+    lengths: tuple[int, ...], levels: tuple[int, ...], seed: int
+) -> None:
+    corners: Corners = (tuple(np.cumsum([0, *lengths]) / 100), tuple(level / 10 for level in levels))
+    time, value = sampled(corners, 200)
+    value = value + np.random.default_rng(seed).uniform(-0.45, 0.45, len(value))
+    found = fit_corners(time, value, 0.5)
+    assert farthest(time, value, found) <= 0.5 * (1 + 1e-9)
+    assert len(found[0]) <= len(corners[0]) + 2, "cutting every piece that is at fault gave hundreds"
+
+
 @st.composite
 def recordings(draw: st.DrawFn) -> tuple[Corners, Array, Array, float]:
     """A random course of up to eight pieces, read at a steady rate, with noise below the tolerance."""
