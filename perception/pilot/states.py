@@ -21,7 +21,7 @@ from ..arrays import Array
 from ..inference.posterior import Posterior
 from ..inference.priors import Prior
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import LABORATORIES, PosteriorDraws
+from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
@@ -146,7 +146,7 @@ class LaboratoryPrior:
         memory = np.array(
             [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]
         ).reshape(len(some), len(self.memory))
-        spread = constants[:, self.draws.names.index(LABORATORIES)]
+        spread = constants[:, self.draws.names.index(BETWEEN_LABORATORIES)]
         return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
 
     def _places(self, some: Laboratories) -> Array:
