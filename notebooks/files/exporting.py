@@ -140,7 +140,8 @@ def compare_felt(
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
-    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered, run_end_s
+    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered
+    from thermicon.perception.identification.run_end import run_end_s
 
     everyone = [one.delivery for one in ready]
     for icon in rest:
