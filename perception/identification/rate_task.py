@@ -33,7 +33,7 @@ TAIL_S = 10.0
 LOG_NOISE = (math.log(1e-3), math.log(20.0))
 """Logs of the least and largest noise that is tried for episodes."""
 MOST_STATED = 1000.0
-"""A larger ratio of conditions is not stated: where sensory noise alone is nearly enough, it is a matter of rounding."""
+"""A larger ratio of conditions is not stated: where sensory noise alone is nearly enough, it only rounding decides."""
 
 
 def memory_noise(known: Table, observer: Observer) -> list[Record]:
