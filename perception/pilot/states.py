@@ -30,10 +30,12 @@ from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import ObserverParameter, latin
 
 LEAST_VARIANCE = 1e-12
+"""Directions in which draws vary less, such as a constant that is the same in all, are left as they are."""
 OFFSETS = tuple(f"sensitivity of the laboratory, {channel}" for channel in CHANNELS)
 OUTERMOST = 1e-9
 """Shares of an interval of memory stay this far within it, so that their normal scores are finite."""
 SEEDS = 2**31
+"""Seeds of people lie below this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +100,6 @@ class LaboratoryPrior:
                 f"{model.name} has no posterior draws, from which laboratories are made: give a table of draws (.csv)"
             )
         return cls(model.posterior, norm, model.records)
-
-    @property
-    def dimensions(self) -> int:
-        """Number of coordinates."""
-        return self._held + self._free + len(CHANNELS)
 
     @property
     def _held(self) -> int:

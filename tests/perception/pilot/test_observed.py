@@ -46,7 +46,7 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
     prior = LaboratoryPrior(draws, "episodes")
     some = prior.first(len(draws), 3)
     assert np.allclose(prior.constants(some), draws.draws, rtol=1e-9)
-    assert np.abs(np.cov(some.place.T) - np.eye(prior.dimensions)).max() < 0.2
+    assert np.abs(np.cov(some.place.T) - np.eye(len(prior.names))).max() < 0.2
     values = prior.values(some)
     share = values[:, prior.names.index("share of the scatter of ratings")]
     assert 0.0 <= share.min() < 0.01 and 0.99 < share.max() <= 1.0
