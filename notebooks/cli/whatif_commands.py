@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
+"""As in `thermicon.perception.observer.draws_file`, repeated here to avoid its imports."""
+
 MOST_STEPS = 100_000
 
 
