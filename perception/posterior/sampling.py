@@ -90,7 +90,7 @@ def sample(
     Parameters
     ----------
     posterior, seed
-        What is sampled; the same seed gives the same draws.
+        What is sampled; the same seed gives the same draws on the same computer, whose rounding they depend on.
     start
         Its maximum, where known.
     keep

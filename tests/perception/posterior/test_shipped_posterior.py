@@ -93,7 +93,10 @@ def parted(text: str) -> tuple[list[str], list[str]]:
 
 @pytest.mark.slow
 def test_calibrate_makes_the_shipped_draws_from_their_seed(tmp_path: Path) -> None:
-    """Six minutes of processor time. The order of the shipped rows is older: a row that once was first is second."""
+    """Six minutes of processor time, on a computer that rounds as that of the shipped draws does.
+
+    The order of the shipped rows is older: a row that once was first is second.
+    """
     made = tmp_path / "draws.csv"
     command = [sys.executable, "-m", "thermicon.notebooks", "calibrate", "--seed", "0", "-o", made]
     subprocess.run(command, check=True, capture_output=True)
