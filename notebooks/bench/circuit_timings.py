@@ -22,7 +22,7 @@ from .measure import Timing, timed
 from .peers import (
     CORNERS,
     END_S,
-    ROWS_Hz,
+    RATE_HZ,
     find_ngspice,
     ngspice_command,
     plain,
@@ -56,11 +56,11 @@ def circuit_sections(rig: Rig, short: bool) -> tuple[Section, ...]:
     one = [*entries, *(Entry(name, took, took.processor_s / ours, "one call") for name, took in peers)]
     many = [batch, *(Entry(name, took, took.processor_s / lane, "a lane of the batch") for name, took in peers)]
     nodes = network_of(rig).nodes
-    about = f"A current with five ramps over {END_S:g} s on rig {rig.name}, {nodes} nodes, {ROWS_Hz} rows per second."
+    about = f"A current with five ramps over {END_S:g} s on rig {rig.name}, {nodes} nodes, {RATE_HZ} rows per second."
     return (
         Section("One cue", about, tuple(one)),
         Section(f"A batch of {LANES}", "The same with another area and another current in every lane.", tuple(many)),
-        roofline_section(entries[0].timing, batch.timing, nodes, round(END_S * ROWS_Hz)),
+        roofline_section(entries[0].timing, batch.timing, nodes, round(END_S * RATE_HZ)),
         Section("Inverse and people", f"{LANES} lanes, and six-icons on {PEOPLE} people.", tuple(_others(rig))),
     )
 
@@ -72,7 +72,7 @@ def circuit_curves(rig: Rig) -> tuple[Curve, ...]:
     meshes = [rig.with_(**{"skin.elements": [count] * layers}) for count in per_layer]
     by_nodes = [timed(_call(mesh, 1.0), most=5, budget_s=0.5) for mesh in meshes]
     by_length = [timed(_call(rig, times), most=5, budget_s=0.5) for times in (0.5, 1.0, 2.0, 4.0)]
-    steps = tuple(round(END_S * times * ROWS_Hz) for times in (0.5, 1.0, 2.0, 4.0))
+    steps = tuple(round(END_S * times * RATE_HZ) for times in (0.5, 1.0, 2.0, 4.0))
     return (
         Curve("One cue over nodes", "nodes", tuple(network_of(mesh).nodes for mesh in meshes), tuple(by_nodes)),
         Curve("One cue over steps", "steps of 10 ms", steps, tuple(by_length)),
@@ -89,7 +89,7 @@ def _call(rig: Rig, longer: float) -> Callable[[], object]:
 def _batch(rig: Rig) -> Timing:
     rigs, scale = _varied(rig, LANES)
     bank, lanes = Bank.of([network_of(each) for each in rigs]), np.arange(LANES)
-    rows = np.arange(round(END_S * ROWS_Hz) + 1) / ROWS_Hz
+    rows = np.arange(round(END_S * RATE_HZ) + 1) / RATE_HZ
     intervals = cut(rows, CORNERS.time_s, CORNERS.current_A * scale[:, None], held=False)
     first = float(CORNERS.current_A[0])
     start = bank.states([state_under_current(network_of(r), first * by) for r, by in zip(rigs, scale, strict=True)])
@@ -116,7 +116,7 @@ def _others(rig: Rig) -> list[Entry]:
     icons = list(load_library("six-icons"))
     icon, bank, lanes = icons[0], Bank.of([network_of(rig)] * LANES), np.arange(LANES)
     base, zero = rig.skin.rest_C, np.zeros(LANES, dtype=np.int64)
-    rows = np.arange(round(END_S * ROWS_Hz) + 1) / ROWS_Hz
+    rows = np.arange(round(END_S * RATE_HZ) + 1) / RATE_HZ
     start = bank.states([steady_state(rig, "display", base)[1]] * LANES)
     corners, plan = icon.corners(base), design(icon, rig, END_S)
     target = np.interp(rows[1:], corners.time_s, corners.value)[None]

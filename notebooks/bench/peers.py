@@ -19,7 +19,7 @@ from thermicon.circuit.solver.steady import state_under_current
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-END_S, ROWS_Hz = 30.0, 100
+END_S, RATE_HZ = 30.0, 100
 CORNERS = Drive([0, 2, 4, 8, 10, 30], [0.1, 1.1, 0.3, 0.4, -0.5, 0.1])
 """Half a minute of ramps of the current, which every program simulates."""
 RTOL = 1e-4
@@ -97,7 +97,7 @@ def scipy_run(rig: Rig, drive: Drive = CORNERS) -> Array:
 
     start = state_under_current(network, float(drive.current_A[0]))[:-1]
     band = diags([1.0, 1.0, 1.0], [-1, 0, 1], shape=(len(start), len(start)))
-    rows = np.linspace(0.0, END_S, round(END_S * ROWS_Hz) + 1)
+    rows = np.linspace(0.0, END_S, round(END_S * RATE_HZ) + 1)
     # Steps no longer than the shortest piece of the drive: a longer one could pass over a corner unseen.
     found = solve_ivp(
         slope, (0.0, END_S), start, method="BDF", t_eval=rows, rtol=RTOL, atol=RTOL, jac_sparsity=band, max_step=1.0

@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from .ranking import Request
 
 LEAST_DRAWS, MOST_DRAWS = 20, 20_000
+"""The least as in `thermicon.perception.pilot.observed`, repeated here to avoid its imports."""
+
 MOST_LENGTH, MOST_SIZES = 1000, 12
 KEEP_IT = "With --keep lab.toml, rank, search and the workbench can predict for this laboratory."
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +21,7 @@ from ..figures.figure_look import (
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
 from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
 from ..text.messages import (
+    DEFAULT_RIG,
     check_bounds,
     check_changes,
     check_draws,
@@ -39,6 +41,7 @@ from ..text.options import (
     ReportPage,
     RigName,
     Tracking,
+    check_norm_option,
     check_tracking,
 )
 from .ranking import check_figures, check_report
@@ -47,6 +50,8 @@ from .search_result import FoundSet, Ranked
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception import Goal
+
+USUAL_EVALUATIONS, USUAL_PEOPLE = 2000, 200
 
 
 def search_command(
@@ -70,10 +75,10 @@ def search_command(
         typer.Option(
             "--evaluations", metavar="N", help="Number of icons to try; more take longer and may find a better set."
         ),
-    ] = 2000,
+    ] = USUAL_EVALUATIONS,
     people: Annotated[
         int, typer.Option("--people", metavar="N", help="Number of virtual people for the final scores.")
-    ] = 200,
+    ] = USUAL_PEOPLE,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the search and of the virtual people.")] = 0,
     tracking: Tracking = None,
     norm: NormName = "episodes",
@@ -120,10 +125,7 @@ def search_command(
     if objective is not None and objective not in OBJECTIVES:
         raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
     check_tracking(tracking)
-    from thermicon.perception.observer.channels import NORMS
-
-    if norm not in NORMS:
-        raise usage(f"{norm!r} is not one of {', '.join(NORMS)}", "--norm")
+    check_norm_option(norm)
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
     check_report(report)
@@ -170,7 +172,22 @@ def search_command(
     how = Ranked(people, seed, tracking, norm, drawn, None if must is None else tuple(must), most_time, most_energy)
     made = FoundSet.ranked(found, icons, where, model, how, wanted)
     if report is not None or figure is not None:
-        made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
+        options = {
+            "choose": choose,
+            "objective": objective,
+            "evaluations": None if evaluations == USUAL_EVALUATIONS else evaluations,
+            "people": None if people == USUAL_PEOPLE else people,
+            "seed": seed or None,
+            "tracking": tracking,
+            "norm": None if norm == "episodes" else norm,
+            "observer": None if observer is None else observer.name,
+            "goal": goal,
+            "must": must,
+            "most-time": most_time,
+            "most-energy": most_energy,
+            "parameters": parameters,
+        }
+        made.write(where, report, figure, command_text(file, where, rig, options), look)
     made.show(icons.title, where.name)
 
 
@@ -180,10 +197,20 @@ def _objective(goal: Goal | None) -> str:
     return wanted[0] if wanted else "worst"
 
 
-def _command(files: list[str], rig: Rig, choose: int | None, objective: str, goal: str | None) -> str:
-    """The command in short, for the report."""
-    words = ["thermicon", "search", *(Path(file).name for file in files)]
-    words += [] if rig.name == "thenar" else ["--rig", rig.name]
-    words += [] if choose is None else ["--choose", str(choose)]
-    words += ["--objective", objective] + ([] if goal is None else ["--goal", goal])
+def command_text(file: str, rig: Rig, asked: str | None, options: Mapping[str, object]) -> str:
+    """The command that reproduces a search, without its outputs; files are named without their folders.
+
+    ``asked`` is the rig as it was asked for, a name or a file; ``options`` that are None are left out.
+
+    >>> from thermicon.circuit import Rig
+    >>> command_text("/home/a/two icons.cue", Rig.load("thenar"), None, {"seed": 4, "goal": None, "must": ["a", "b"]})
+    "thermicon search 'two icons.cue' --seed 4 --must a --must b"
+    """
+    words = ["thermicon", "search", Path(file).name]
+    name = rig.name if asked is None else Path(asked).name
+    words += [] if name == DEFAULT_RIG else ["--rig", name]
+    words += [word for change in rig.changes for word in ("--set", change)]
+    for option, value in options.items():
+        values = [] if value is None else value if isinstance(value, list) else [value]
+        words += [word for each in values for word in (f"--{option}", str(each))]
     return shlex.join(words)

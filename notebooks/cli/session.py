@@ -23,6 +23,7 @@ from ..figures.figure_look import (
 )
 from ..text.messages import check_bounds, check_changes, load_rig, note, usage
 from ..text.options import Changes, OneFile, RigName
+from .export import CAUTION
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Session, SessionPlan
@@ -35,12 +36,6 @@ LONGEST_GAP_S = 3600.0
 RANDOM_REPEATS, ORDER_REPEATS = 8, 1
 MOST_SHOWN = 60
 """Plays in the table; all of them are in the JSON."""
-
-
-CAUTION = (
-    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
-    "works without software"
-)
 
 
 @dataclass(frozen=True, slots=True)

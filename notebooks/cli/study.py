@@ -10,15 +10,12 @@ import typer
 from thermicon.icons.number_text import number
 
 from ..text.messages import REFUSED, note, progress_bar
+from .export import CAUTION
 
 if TYPE_CHECKING:
     from ..study.build import Plan
 
 KEPT = "give another folder with -o, such as -o study-2"
-CAUTION = (
-    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
-    "works without software"
-)
 
 
 def study_command(

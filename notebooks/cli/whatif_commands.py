@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
+"""As in `thermicon.perception.observer.draws_file`, repeated here to avoid its imports."""
+
 MOST_STEPS = 100_000
 
 
@@ -314,8 +316,9 @@ def calibrate_command(
     """Infer all constants of the observer together: sample their posterior and write 1,000 draws as a table.
 
     Evidence and priors are the shipped ones. Chains run until every constant has converged (R-hat below 1.01, bulk
-    effective sample size above 600) or --steps is reached. What did not converge is refused without --force. The same
-    seed gives the same draws, however many workers there are and however often the run was interrupted.
+    effective sample size above 600) or --steps is reached. What did not converge is refused without --force. On one
+    computer the same seed gives the same draws, however many workers there are and however often the run was
+    interrupted; elsewhere rounding may differ, and then the draws are others of the same posterior.
     """
     check_bounds(
         ("--seed", seed, 0, 2**32 - 1),

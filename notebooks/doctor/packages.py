@@ -135,9 +135,9 @@ def unmet(name: str, extra: str = "") -> Iterator[Unmet]:
     extra
         The name of one of its extras.
 
-    Returns
-    -------
-    Iterator of Unmet
+    Yields
+    ------
+    Unmet
         Each requirement that is not met once, in the order of the walk.
 
     Raises

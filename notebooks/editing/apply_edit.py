@@ -26,7 +26,7 @@ class CannotApply(ValueError):
 def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     """Return the text in which an icon is as edited; comments, and all that is not edited, stay as they are written.
 
-    ``old`` and ``new`` are the lines that the edit tells. Raises CannotApply where the text has changed since, where a
+    ``old`` and ``new`` are the lines that show the edit. Raises CannotApply where the text has changed since, where a
     family writes the icon, or where the edit is more than one number or repeat.
 
     >>> from thermicon.icons import parse

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from .cue_check import read_text
@@ -108,8 +108,6 @@ def only(text: str, chosen: tuple[str, ...]) -> str:
     >>> only("cue 1\\nicon a { hold for 1 s }\\n# b\\nicon b { hold for 2 s }\\n", ("a",))
     'cue 1\\nicon a { hold for 1 s }\\n'
     """
-    from dataclasses import replace
-
     icons = read_text(text).icons
     if icons is None:
         raise CannotEdit("the text has errors: mend them first")

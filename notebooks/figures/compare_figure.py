@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .differences import Aligned, quantity, unit_of_difference
-from .overview import COOL, GREY, INK, WARM
+from .overview import BROAD, COOL, GREY, INK, WARM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,7 +19,6 @@ COLORS = {"cold_receptor_C": COOL, "warm_receptor_C": WARM}
 LEAST = 0.005
 """The panel of differences shows at least this much to both sides, in its own unit."""
 
-BROAD = "#b9bec4"
 ACROSS = 3
 
 

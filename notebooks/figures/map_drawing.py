@@ -60,7 +60,7 @@ def map_svg(found: PerceptualMap) -> str:
 
 
 def distinct(names: Sequence[str]) -> list[str]:
-    """Names short enough to stand beside a picture; as much of each stays as tells it from the others.
+    """Names short enough to stand beside a picture; as much of each stays as distinguishes it.
 
     >>> distinct(["ramp_extent=-2_rate=3_count=1", "ramp_extent=2_rate=3_count=1", "dip"])[2]
     'dip'

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .observed_figure import BROAD, draw_sets, legend_of
-from .overview import COOL, INK, WARM
+from .observed_figure import draw_sets, legend_of
+from .overview import BROAD, COOL, INK, WARM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .overview import COOL, INK, WARM
+from .overview import BROAD, COOL, INK, WARM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
-BROAD = "#b9bec4"
 MOST_PAIRS, MOST_ICONS, LONGEST = 8, 16, 18
 Three = tuple[float, float, float]
 

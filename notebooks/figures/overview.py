@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from thermicon.perception import Percept, Ranking
 
 COOL, WARM = "#2166ac", "#e08214"
+BROAD = "#b9bec4"
+"""A broad line below a thin one: the first of two, or what was predicted before."""
 FLAT = 0.75
 """Height of a cell to its width, where two heat maps stand below one another."""
 INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"

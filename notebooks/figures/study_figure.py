@@ -28,6 +28,9 @@ HATCHES = ("", "//", "..", "xx")
 MOST_ROWS, MOST_NUMBERED = 40, 40
 """Participants that are drawn, and plays up to which every one has its number written in it."""
 
+NEAR_K = 4.0
+"""Limits of the skin that are nearer than this to what is drawn get a line."""
+
 
 def study_figure(
     courses: Sequence[Course], shown: Course, plays: Sequence[PlannedPlay], pace: Pace, session: Session | None
@@ -199,7 +202,7 @@ def _skin(plays: Sequence[PlannedPlay], session: Session | None, ax: Axes) -> No
         ax.plot(time / 60.0, skin, color=INK, lw=0.9)
     low, high = ax.get_ylim()
     for rule in session.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - 4.0 < rule.limit < high + 4.0:
+        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
             hard = rule.severity == "hard"
             ax.axhline(
                 rule.limit, color=LIMIT, lw=1.4 if hard else 0.9, ls="-" if hard else (0, (4, 3)),

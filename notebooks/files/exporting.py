@@ -19,9 +19,6 @@ if TYPE_CHECKING:
 
 FORMAT = "csv"
 
-AFTER_S = 10.0
-"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
-
 MOST_COMPARED = 60
 """In a larger set, d′ is computed only among the exported icons; beyond this number, not at all."""
 
@@ -140,7 +137,8 @@ def compare_felt(
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.perception import judge_delivered
-    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered, run_end_s
+    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered
+    from thermicon.perception.identification.run_end import TAIL_S, run_end_s
 
     everyone = [one.delivery for one in ready]
     for icon in rest:
@@ -148,7 +146,7 @@ def compare_felt(
             everyone.append(deliver(icon, rig, device, tail_s=tail_s))
         except InputError as problem:
             warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
-    end = max(delivery.end_s for delivery in everyone) + AFTER_S
+    end = max(delivery.end_s for delivery in everyone) + TAIL_S
     run_end = run_end_s(duration_s(delivery.icon, rig) for delivery in everyone)
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[delivery] for delivery in everyone]
     if len(groups) > 1:

@@ -105,7 +105,7 @@ def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = Fal
 
     Every file is written under a hidden name, flushed to the disk, and renamed when all are. What exists already is an
     error before anything is written, unless ``replace``. A process that is killed may leave some of them; for a folder
-    that must never be mixed there is ``exportfolder.publish``.
+    that must never be mixed there is ``export_folder.publish``.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:

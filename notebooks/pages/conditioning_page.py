@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from thermicon.perception.inference.onset_stages import OnsetStages
+from thermicon.perception.inference.results import UNMOVED_SD
 from thermicon.perception.inference.table_text import UNITS, number, signed, span
 from thermicon.perception.observer.variants import VARIANTS
 from thermicon.perception.validation.comparisons import experiment_title
 from thermicon.perception.validation.conditioning import (
     EDGE,
-    KEPT,
     AblatedMechanism,
     ConditionedRow,
     Conditioning,
@@ -94,7 +94,7 @@ def missed_text(each: ConditionedRow) -> str:
 def unmoved_text(known: Conditioning) -> str:
     """Name the constants that the evidence did not move."""
     names = ", ".join(each.constant.name for each in known.unmoved)
-    return f"Not moved (SD left above {KEPT:g}), as good as assumed: {names or 'none'}."
+    return f"Not moved (SD left above {UNMOVED_SD:g}), as good as assumed: {names or 'none'}."
 
 
 def edge_text(known: Conditioning) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.near_words import did_you_mean
 
 from .judging import Judged, Progress, judge_drives, judge_sessions
-from .keys import Study
+from .keys import MOST_ASKED, Study
 from .levels import level_icons
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import StudyError, parse_study, study_hash, study_text
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
 ProgressBar = Callable[[str], AbstractContextManager[Progress | None]]
+
+MOST_SUGGESTED = 2000
+"""In a larger set, the names of families are suggested in place of those of their members."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +78,14 @@ def read_materials(source: str | Path) -> Materials:
     icons = level_icons(study.threshold, rig) if study.threshold else read_cue(_beside(stimuli.set or "", folder))
     if not stimuli.icons:
         check_counts(study, len(icons))
-    known = [icon.name for icon in icons] if len(icons) <= 2000 else []
     for name in stimuli.icons:
-        if name not in known:
+        if icons.find(name) is None:
+            known = [icon.name for icon in (icons if len(icons) <= MOST_SUGGESTED else icons.entries)]
             raise StudyError(f"{source}: stimuli.icons: there is no icon {name}; {did_you_mean(name, known)}")
-    if not stimuli.icons and len(icons) > 30:
-        raise StudyError(f"{source}: the set has {len(icons):,} icons, and a person can be asked for 30; name some")
+    if not stimuli.icons and len(icons) > MOST_ASKED:
+        raise StudyError(
+            f"{source}: the set has {len(icons):,} icons, and a person can be asked for {MOST_ASKED}; name some"
+        )
     chosen = tuple(icons[name] for name in stimuli.icons) if stimuli.icons else tuple(icons)
     check_counts(study, len(chosen))
     contents = {

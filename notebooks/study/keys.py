@@ -16,6 +16,8 @@ Key = Annotated[Line, Field(pattern=r"^[a-z0-9]+$", max_length=20)]
 """The name of a key as PsychoPy calls it: space, escape, q."""
 
 MOST_PARTICIPANTS, MOST_BLOCKS, MOST_REPETITIONS = 500, 100, 500
+MOST_ASKED = 30
+"""Icons that a person can be asked to name."""
 Order = Literal["balanced", "williams", "random", "shuffled"]
 
 
@@ -30,7 +32,8 @@ class Stimuli(Table):
 
     set: Annotated[Name | None, Field(description="cue file, or the name of a shipped set")] = None
     icons: Annotated[
-        list[Name], Field(max_length=30, description="names of the icons to play; all of the set without this key")
+        list[Name],
+        Field(max_length=MOST_ASKED, description="names of the icons to play; all of the set without this key"),
     ] = []
     rig: Annotated[Name, Field(description="rig file, or the name of a shipped rig")] = "thenar"
     rig_changes: Annotated[

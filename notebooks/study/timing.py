@@ -20,13 +20,11 @@ if TYPE_CHECKING:
 
     from .keys import Timing
 
-AFTER_S = 10.0
-"""How long perception follows every icon after the longest has ended, as ``rank`` does."""
-
 GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 180.0, 240.0, 300.0, 420.0, 600.0)
 """Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""
 
 LONGEST_LANDING_S = 1800.0
+"""A hand that has not settled by then has no landing: the study is refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +72,13 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
     from thermicon.circuit import duration_s
     from thermicon.perception.identification.carry_over import carry_over
+    from thermicon.perception.identification.run_end import TAIL_S
+    from thermicon.perception.observer.channels import NORMS, USUAL_NORM
 
-    end_s = max(duration_s(icon, rig) for icon in icons) + AFTER_S
+    end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S
     left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
-    d_prime = left.apart[0] / left.noise[0]
+    norm = NORMS.index(USUAL_NORM)
+    d_prime = left.apart[norm] / left.noise[norm]
     before, after = divmod(int(d_prime.argmax()), len(icons))
     return float(d_prime.max()), (icons[before].name, icons[after].name)
 

@@ -33,6 +33,9 @@ def show_constants(sampled: Sampled) -> None:
 
 def worst_text(sampled: Sampled) -> str:
     """Diagnostics of the constant that has converged least."""
+    from thermicon.perception.posterior.diagnostics import ESS, R_HAT
+
     found = sampled.diagnostics
     place = found.names.index(found.worst)
-    return f"R-hat {found.r_hat[place]:.3f}, limit 1.01; effective sample size {found.ess[place]:.0f}, limit 400"
+    size = f"effective sample size {found.ess[place]:.0f}, limit {ESS:g}"
+    return f"R-hat {found.r_hat[place]:.3f}, limit {R_HAT:g}; {size}"

@@ -16,9 +16,12 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.request import Selection
 
 OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
+"""As in `thermicon.perception.selection.subset_identification`, repeated here to avoid its imports."""
+
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 MOST_EXCLUDED = 5
 ONE_BY_ONE = 50
+"""People whose own best choice is looked for, as in `thermicon.perception.selection.choose`."""
 
 ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K icons.")]
 ObjectiveName = Annotated[

@@ -79,14 +79,6 @@ def pair_reasons(
     return tuple(found)
 
 
-def largest_difference(a: Percept, b: Percept, observer: Observer | None = None) -> tuple[float, float, Channel]:
-    """Largest smoothed difference (d′ before memory noise), its time (s) and the channel that carries most of it."""
-    trace = difference_trace(a, b, observer)
-    size = np.hypot(trace[0], trace[1])
-    k = int(size.argmax())
-    return float(size[k]), k * a.dt_s, CHANNELS[int(np.abs(trace[:, k]).argmax())]
-
-
 def _direction(a: Trace, b: Trace) -> Reason:
     values: dict[str, float] = {}
     parts = []

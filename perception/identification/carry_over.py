@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import NORMS, TRACE_NORMS, Norm
+from ..observer.channels import NORMS, TRACE_NORMS, USUAL_NORM, Norm
 from ..observer.observer import Observer
 from ..sensation.percept import perceive_many, uniform_clock
 from .distance import identification_noise, percept_distances
@@ -42,7 +42,7 @@ class CarryOver:
 
     def __repr__(self) -> str:
         icons = "1 icon" if len(self.names) == 1 else f"{len(self.names)} icons"
-        most = f"up to {self.apart[0].max():.3g} d′ of sensation"
+        most = f"up to {self.apart[NORMS.index(USUAL_NORM)].max():.3g} d′ from memory"
         return f"CarryOver({icons}, {self.gap_s:g} s apart: {most})"
 
     def over(self, places: Sequence[int]) -> Array:

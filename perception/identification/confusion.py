@@ -165,17 +165,6 @@ def embed(distances: Array) -> tuple[Array, Array]:
     return points, np.divide(bent, size, out=np.zeros_like(bent), where=size > 0)
 
 
-def equal_proportion_correct(d: float, icons: int) -> float:
-    """Proportion correct for equally distant icons, PC = ∫φ(x − d)Φ(x)^(m−1)dx, with d = d′/√2.
-
-    >>> round(equal_proportion_correct(2.78, 6), 2)
-    0.91
-    """
-    x = np.linspace(-9.0, 9.0 + d, 4001)
-    density = np.exp(-0.5 * (x - d) ** 2) / math.sqrt(2.0 * math.pi)
-    return float(np.trapezoid(density * _cumulative(x) ** (icons - 1), x))
-
-
 def normalised(rows: Array) -> Array:
     """Rows divided by their sums, so that they add to 1 to the last bit that counts."""
     scaled: Array = rows / rows.sum(axis=-1, keepdims=True)

@@ -119,7 +119,7 @@ def judge_delivered(
     observer
         The person (None: the nominal one).
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
 
     Returns
     -------

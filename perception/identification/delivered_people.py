@@ -7,8 +7,6 @@ what scales with the icon, and wrong by about a tenth of the change otherwise, s
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -21,13 +19,13 @@ from ..observer.people import draw_people
 from ..sensation.features import receptor_C
 from .delivered import DeliveredChange
 from .population import ReceptorTemperatures, population_detection
+from .run_end import RATE_HZ, run_end_s
 
 if TYPE_CHECKING:
     from thermicon.circuit import DeliveredDrive, Trace
 
 PEOPLE, SEED = 200, 0
 """The people of `rank` unless it is asked for others, so that both show the same number."""
-TAIL_S, RATE_HZ = 10.0, 100.0
 
 
 def detected_as_delivered(
@@ -43,8 +41,8 @@ def detected_as_delivered(
     """Probability that a person drawn at random reports an icon, as designed (as in `rank`) and as delivered.
 
     `designed` and `delivered` are its traces on the nominal rig, on the clock of the file. `end_s` is when the run of
-    the set ends (None: 10 s after this icon). Raises `RigError` where the
-    skin of a person cannot be held at the icon's baseline.
+    the set ends (None: 10 s after this icon). Raises `RigError` where the skin of a person cannot be held at the
+    icon's baseline.
 
     >>> from thermicon.circuit import Device, Rig, deliver
     >>> from thermicon.icons import read_cue
@@ -71,15 +69,6 @@ def detected_as_delivered(
         float(population_detection(each, crowd, observer).probability.mean()) for each in (as_designed, as_delivered)
     )
     return DeliveredChange(before, after)
-
-
-def run_end_s(durations_s: Iterable[float]) -> float:
-    """When `rank` ends the run of a set: 10 s after its longest icon, on a whole row, s.
-
-    >>> run_end_s([4.0, 2.5])
-    14.0
-    """
-    return math.ceil((max(durations_s) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
 
 
 def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, at_s: Array) -> Array:

@@ -31,6 +31,9 @@ from .episodes import Episodes, episode_distances
 
 TAIL_S = 10.0
 LOG_NOISE = (math.log(1e-3), math.log(20.0))
+"""Logs of the least and largest noise that is tried for episodes."""
+MOST_STATED = 1000.0
+"""A larger ratio of conditions is not stated: where sensory noise alone is nearly enough, it only rounding decides."""
 
 
 def memory_noise(known: Table, observer: Observer) -> list[Record]:
@@ -45,10 +48,11 @@ def memory_noise(known: Table, observer: Observer) -> list[Record]:
         ends = [_root_mean_square(values) for values in found]
         every = [v for values in found for v in values]
         spread = max(max(values) / max(min(values), 1e-9) for values in found)
+        ratio = f"{spread:.3f}" if spread <= MOST_STATED else f"above {MOST_STATED:g}"
         conditions = (
             f"skin-surface coolings at {rates[0]:g} and {rates[1]:g} K/s over {spans[0]:g} and {spans[1]:g} K against "
             f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
-            f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
+            f"largest over smallest condition {ratio}, all {min(every):.3f} to {max(every):.3f}"
         )
         made = memory_record(norm, observer, _root_mean_square(ends), min(ends), max(ends))
         records.append(replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions))

@@ -11,14 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..observer.mechanisms import MECHANISMS, Without
+from ..observer.mechanisms import ALL_OFF, MECHANISMS, Without
 from ..observer.variants import VARIANTS, Model, Variable
 from .maximum import Maximum, maximise
 from .posterior import Posterior
 
 Progress = Callable[[int, int, str], None]
-ALL = "all of them"
-"""Name of the run without any of the mechanisms."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +54,7 @@ def runs(variants: Sequence[tuple[Variable, Model]] = VARIANTS) -> Iterator[tupl
     variable, model = variants[0]
     for mechanism in MECHANISMS:
         yield variable, model, mechanism.name, frozenset({mechanism.name})
-    yield variable, model, ALL, frozenset(mechanism.name for mechanism in MECHANISMS)
+    yield variable, model, ALL_OFF, frozenset(mechanism.name for mechanism in MECHANISMS)
 
 
 def ablate(

@@ -88,7 +88,7 @@ class Evidence:
             if (row.experiment, row.statistic, row.channel) == (experiment, statistic, channel):
                 return row
         near = did_you_mean(statistic, {row.statistic for row in self.statistics if row.experiment == experiment})
-        raise RecordError(f"evidence.csv: experiment {experiment!r} has no statistic {statistic!r} ({channel}){near}")
+        raise RecordError(f"evidence.csv: experiment {experiment!r} has no statistic {statistic!r} ({channel}): {near}")
 
     def experiment(self, key: str) -> Experiment:
         """One experiment by its key."""

@@ -23,12 +23,15 @@ LN10 = math.log(10.0)
 
 STRIP_CM2 = 1.96
 TWO_STRIPS_CM2 = 3.58
+"""Areas of contact: one strip of E1 to E3, and two of 7.4 × 24.2 mm of E4 and E5."""
 RAMPS: dict[Channel, tuple[float, float]] = {"cold": (-5.0, -26.0), "warm": (4.81, 14.0)}
 """Rate in K/s as it really ran, and how far the reaction-time ramps went, K."""
-YOUNG_YEARS = {"E1": 28.0, "E3": 24.5, "E4": 30.0, "E5": 27.0}
+MEAN_AGE_YEARS = {"E1": 28.0, "E3": 24.5, "E4": 30.0, "E5": 27.0}
 """Mean age of the people whose rows are used; that of E1 and E5 is the middle of the range."""
 ANTICIPATION_K = 0.2
+"""Earlier presses of E3 were left out (evidence.toml)."""
 LIMIT_K = 12.0
+"""Where ramps of E3 end here: far above every threshold."""
 
 
 def predict(laboratory: Laboratory) -> Predictions:
@@ -46,7 +49,7 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         corners = ((size / rate, size),)
         drive, samples = laboratory.drive("forearm", channel, 31.0, corners, 6.0), samples_of(corners, 6.0)
         for strips in (1, 5):
-            gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"])
+            gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"])
             times = laboratory.answers_s(drive, samples, channel, gain, site="forearm", choice=True)
             times = np.minimum(times, 7.0)
             log_medians[channel, strips] = np.log(np.median(times, axis=1))
@@ -73,7 +76,7 @@ def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     for channel in CHANNELS:
         corners = ((LIMIT_K, sign_of(channel) * LIMIT_K),)
         drive, samples = laboratory.drive("forearm", channel, 32.0, corners, LIMIT_K), samples_of(corners, LIMIT_K)
-        gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", YOUNG_YEARS["E3"])
+        gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", MEAN_AGE_YEARS["E3"])
         pressed_K = np.minimum(laboratory.answers_s(drive, samples, channel, gain, site="forearm"), LIMIT_K + 1.0)
         logs = np.log(np.where(pressed_K > ANTICIPATION_K, pressed_K, np.nan))
         person = np.nanmean(logs, axis=1)
@@ -92,7 +95,7 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E4: was it cold (warm)? The size at one half and the width of each person's psychometric function."""
     thresholds = []
     for channel in CHANNELS:
-        gain = laboratory.gain(channel, TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E4"])
+        gain = laboratory.gain(channel, TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E4"])
         reported = []
         for size in SIZES_K[channel].tolist():
             top_s = size / DETECTION_K_PER_S
@@ -137,8 +140,8 @@ PREPULSE_K_PER_S, HELD_S, FOREPERIOD_S, COOLED_K = 2.5, 0.75, 0.25, 14.0
 def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E5: cooling at 1 K/s after a warm pulse; press at the first change, then say which it was."""
     values = laboratory.values
-    gain = laboratory.gain("cold", TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E5"])
-    warm_gain = laboratory.gain("warm", TWO_STRIPS_CM2, "E4", "forearm", YOUNG_YEARS["E5"])
+    gain = laboratory.gain("cold", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
+    warm_gain = laboratory.gain("warm", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
     lowest = 0.0
     for level, peak in enumerate(PEAKS_C, start=1):
         rise_s = (peak - 32.0) / PREPULSE_K_PER_S
@@ -215,7 +218,9 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     for channel, (rate, size) in RATED.items():
         end_s = size / rate + 0.7
         peak = max(float(laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], end_s).max()), FEEBLE)
-        one, five = (peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", YOUNG_YEARS["E1"]) for n in (1, 5))
+        one, five = (
+            peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]) for n in (1, 5)
+        )
         exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
         yield ("E2", "rating_mean_5strip", channel), math.log(unit) + exponent * math.log(max(five, 1e-6))
         yield ("E2", "rating_area_exponent_group", channel), exponent * math.log(five / one) / math.log(5.0)

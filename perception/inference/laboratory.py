@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.delays import LEG_M_PER_S, Conduction
-from ..observer.mechanisms import Without
+from ..observer.mechanisms import DEPTH_MM, Without
 from ..observer.observer import load_thresholds
 from ..observer.people import YOUNG_YEARS
 from ..observer.transducer import Transducer
 from ..observer.variants import Model, Variable
+from ..sensation.receptors import NO_LIMIT_C
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
 from .crowd import SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
@@ -33,7 +34,9 @@ RAMP_GROWTH, HOLD_GROWTH = 0.03, 0.1
 LEAST_ROWS = 600
 """Samples of a response to a ramp that are computed at once: most stimuli take no more."""
 FEEBLE = 1e-9
-SURFACE_DEPTH_M: dict[Channel, float] = {"cold": 0.15e-3, "warm": 0.30e-3}
+"""Least drive whose logarithm is taken."""
+SURFACE_DEPTH_M: dict[Channel, float] = {channel: 1e-3 * depth for channel, depth in DEPTH_MM.items()}
+"""Depths where the mechanism of depth is off."""
 
 
 Samples = NDArray[np.int64]
@@ -176,7 +179,7 @@ class Laboratory:
     def _limit(self, channel: Channel) -> float:
         """Limit of quality in °C; so far away that it does nothing where it is off, and for heat flow."""
         if self.variable == "heat flow" or f"{channel} limit" in self.without:
-            return -1e6 * sign_of(channel)
+            return -NO_LIMIT_C * sign_of(channel)
         return self.values[f"{channel} limit"]
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:

@@ -17,10 +17,10 @@ from ..arrays import Array
 from .experiments import Predictions
 from .maximum import STEP, Maximum, maximise
 from .posterior import Posterior
+from .priors import WITHIN_95
 from .rows import Row, load_rows
 
 Progress = Callable[[int, int, str], None]
-WITHIN_95 = 1.959964
 
 
 @dataclass(frozen=True, slots=True)

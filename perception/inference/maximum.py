@@ -18,6 +18,7 @@ import numpy as np
 from ..arrays import Array
 from .experiments import Predictions
 from .posterior import Posterior
+from .priors import WITHIN_95
 
 STEP = 0.04
 """Half the width of a central difference, in SDs of the prior: wide enough to see over the grain of few people."""
@@ -48,7 +49,7 @@ class Maximum:
         spread: Array = np.sqrt(np.diag(self.covariance))
         return spread
 
-    def interval(self, name: str, half_width: float = 1.959964) -> tuple[float, float]:
+    def interval(self, name: str, half_width: float = WITHIN_95) -> tuple[float, float]:
         """Interval of one constant in its own unit; 95 % unless another number of SDs is given."""
         place = self.posterior.priors.names.index(name)
         prior, sd = self.posterior.priors.each[place], float(self.sd[place])

@@ -16,7 +16,9 @@ import numpy as np
 from ..arrays import Array
 
 Scale = Literal["linear", "log", "logit"]
-WIDTH_95 = 2.0 * 1.959964
+WITHIN_95 = 1.959964
+"""Half the central 95 % of a normal distribution, in SDs."""
+WIDTH_95 = 2.0 * WITHIN_95
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from io import StringIO
-from pathlib import Path
 from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
@@ -22,6 +21,8 @@ from .evidence import DATA
 from .prior_file import load_priors
 from .rows import load_rows
 
+UNMOVED_SD = 0.9
+"""A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
 
 
@@ -125,12 +126,6 @@ def to_csv(rows: Sequence[Any]) -> str:
 def inputs_digest() -> str:
     """Hash of everything that was conditioned on, rows and priors; the first line of every table ends with it."""
     return hashlib.sha256(repr((load_rows(), load_priors())).encode()).hexdigest()[:16]
-
-
-def digest_of(path: Path) -> str:
-    """The inputs that a table says it was made from."""
-    with path.open(encoding="utf-8") as file:
-        return file.readline().rpartition(" ")[2].strip()
 
 
 def read_rows(name: str, kind: Any) -> Iterable[Any]:

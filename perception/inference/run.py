@@ -13,9 +13,10 @@ from tqdm import tqdm
 from ..observer.variants import VARIANTS
 from .ablation import Ablated, ablate
 from .evidence import DATA
-from .leave_out import WITHIN_95, LeftOut, leave_each_out
+from .leave_out import LeftOut, leave_each_out
 from .maximum import Maximum, maximise
 from .posterior import Posterior
+from .priors import WITHIN_95
 from .results import (
     ABLATION,
     CONSTANTS,

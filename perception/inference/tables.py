@@ -10,17 +10,15 @@ from collections.abc import Callable, Mapping, Sequence
 from thermicon.circuit.records import Record
 
 from ..observer.channels import MEMORY_NORMS
-from ..observer.mechanisms import find_mechanism
+from ..observer.mechanisms import ALL_OFF, find_mechanism
 from ..observer.observer import load_thresholds, observer_records
 from ..observer.people import people_records
 from .evidence import load_evidence
-from .leave_out import WITHIN_95
-from .results import AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
+from .priors import WITHIN_95
+from .results import UNMOVED_SD, AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
 from .rows import PEOPLE_WRIST, load_rows
 from .table_text import UNITS, markdown, number, signed, span
 
-NARROWED = 0.9
-"""A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),
     "sensation": ("sensitivity", "summation", "transducer", "compression"),
@@ -88,8 +86,8 @@ def offsets_table() -> str:
 def unmoved_sentence() -> str:
     """Constants of which the evidence says next to nothing."""
     rows = sorted(load_constants(), key=lambda each: each.name)
-    names = [each.name for each in rows if each.narrowed > NARROWED and each.unit != "SD"]
-    return f"{len(names)} constants keep more than {100 * NARROWED:.0f} % of their prior's SD: {', '.join(names)}."
+    names = [each.name for each in rows if each.narrowed > UNMOVED_SD and each.unit != "SD"]
+    return f"{len(names)} constants keep more than {100 * UNMOVED_SD:.0f} % of their prior's SD: {', '.join(names)}."
 
 
 def ablation_table() -> str:
@@ -117,7 +115,7 @@ def _ran(row: AblatedRow) -> str:
 
 
 def _replaced(row: AblatedRow) -> str:
-    return "" if not row.without or row.without == "all of them" else find_mechanism(row.without).replaced_by
+    return "" if not row.without or row.without == ALL_OFF else find_mechanism(row.without).replaced_by
 
 
 def left_out_table() -> str:

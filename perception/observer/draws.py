@@ -1,7 +1,7 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
 The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
-where the evidence does not separate two of them, they trade off from draw to draw. Memory is no part of the inference
+where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the inference
 and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of memory.
 """
 
@@ -26,8 +26,8 @@ from .memory_constants import noise_name
 from .observer import Observer, variant_records
 from .variants import Model, Variable, check_variant, source_of
 
-LABORATORIES = "sensitivity between laboratories"
-ONE = 1e-3
+BETWEEN_LABORATORIES = "sensitivity between laboratories"
+NEGLIGIBLE = 1e-3
 """Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
 INFERRED = "inferred from published evidence"
 """How the source of a record begins whose value a draw replaces."""
@@ -119,7 +119,7 @@ class PosteriorDraws:
     @property
     def one_laboratory(self) -> bool:
         """Whether all draws are of one laboratory, so that there is next to no spread between laboratories."""
-        return bool(self.values(LABORATORIES).max() < ONE)
+        return bool(self.values(BETWEEN_LABORATORIES).max() < NEGLIGIBLE)
 
     def interval(self, name: str, share: float = 0.95) -> tuple[float, float, float]:
         """Lower end, median and upper end of the central interval of a constant."""
@@ -166,7 +166,7 @@ class PosteriorDraws:
         same seed gives the same laboratory in standard units.
         """
         standard = np.random.default_rng(seed).standard_normal((len(self), len(CHANNELS)))
-        offsets: Array = self.values(LABORATORIES)[:, None] * standard
+        offsets: Array = self.values(BETWEEN_LABORATORIES)[:, None] * standard
         return offsets
 
     def __repr__(self) -> str:

@@ -300,9 +300,9 @@ def _inferred(variable: Variable, model: Model) -> set[str]:
         return {row["name"] for row in rows if (row["variable"], row["model"]) == (variable, model)}
 
 
-def current_inputs() -> str:
-    """Digest of the evidence and priors that this program's constants were inferred from."""
-    with CONSTANTS.open(encoding="utf-8") as file:
+def current_inputs(table: Path = CONSTANTS) -> str:
+    """Digest of the evidence and priors that this program's constants, or another shipped table, were made from."""
+    with table.open(encoding="utf-8") as file:
         return file.readline().rpartition(" ")[2].strip()
 
 

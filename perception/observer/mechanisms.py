@@ -8,6 +8,7 @@ from typing import Literal
 
 from thermicon.icons.near_words import did_you_mean
 
+from .channels import Channel
 from .delays import LEG_M_PER_S
 
 Without = frozenset[str]
@@ -37,8 +38,10 @@ class Mechanism:
         return 0.0 if value == NONE else value
 
 
-DEPTH_MM = {"cold": 0.15, "warm": 0.30}
+DEPTH_MM: dict[Channel, float] = {"cold": 0.15, "warm": 0.30}
+"""Depths below the face of the skin, stratum corneum included: Ho 2018, as cited by Shani & Lineykin 2021."""
 LIGHT_CONTACT_M2K_PER_W = 5.4e-4
+"""Contact of the shipped rigs (Ho & Jones, for alumina); a strapped thermode presses harder and conducts better."""
 IN_INFERENCE = "turn it off in the inference: thermicon.perception.inference.posterior.Posterior(without=…)"
 
 MECHANISMS = (
@@ -63,6 +66,7 @@ MECHANISMS = (
         "the shipped rigs have tabulated tissue already; for a light contact give the rig "
         f"contact.resistance_m2K_per_W = {LIGHT_CONTACT_M2K_PER_W:g}",
     ),
+    # Limits that are off do nothing: they stay at the middles of their priors.
     Mechanism("cold limit", "any fall of temperature is cold, however warm", {"cold limit": 33.0}),
     Mechanism("warm limit", "any rise of temperature is warm, however cold", {"warm limit": 31.7}),
     Mechanism("ends of summation", "a power of area without ends"),
@@ -88,6 +92,10 @@ MECHANISMS = (
         IN_INFERENCE,
     ),
 )  # fmt: skip
+
+
+ALL_OFF = "all of them"
+"""Name of an observer without any of the mechanisms."""
 
 
 def find_mechanism(name: str) -> Mechanism:

@@ -20,7 +20,6 @@ from .trials import Trials
 
 EXPERIMENTS = 1000
 COVER = (2.5, 97.5)
-POOR = 0.05
 LEAST_PEOPLE = 3
 """Participants that a spread between them needs to be compared."""
 

@@ -17,7 +17,7 @@ from thermicon.circuit.records import Record, Table, dump_records
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS
-from ..observer.draws import LABORATORIES, PosteriorDraws
+from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
 from ..observer.memory_constants import noise_name
 from .conditioning import Conditioned
@@ -64,7 +64,7 @@ def laboratory_draws(
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
     for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
         own[:, names.index(f"{channel} threshold drive")] *= np.exp(-values[:, prior.names.index(offset)])
-    own[:, names.index(LABORATORIES)] = NO_SPREAD
+    own[:, names.index(BETWEEN_LABORATORIES)] = NO_SPREAD
     remembered = tuple(parameter.name for parameter in prior.memory)
     memory = values[:, [prior.names.index(name) for name in remembered]]
     header = prior.draws.header

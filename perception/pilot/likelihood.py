@@ -17,6 +17,7 @@ from ..arrays import Array
 from .playing import Small
 
 AT_ONCE = 4_000_000
+"""Logarithms of probabilities that are held at once: 32 MB."""
 
 
 def log_likelihoods(probability: Small, counts: Array) -> Array:
@@ -61,14 +62,3 @@ def effective(weights: Array) -> float:
     4.0
     """
     return float(1.0 / np.square(weights).sum())
-
-
-def weighted_quantile(values: Array, weights: Array, shares: tuple[float, ...]) -> tuple[float, ...]:
-    """Quantiles of weighted values, linear between the middles of their weights.
-
-    >>> weighted_quantile(np.arange(4.0), np.full(4, 0.25), (0.5,))
-    (1.5,)
-    """
-    order = np.argsort(values, kind="stable")
-    place = np.cumsum(weights[order]) - 0.5 * weights[order]
-    return tuple(float(q) for q in np.interp(shares, place, values[order]))

@@ -14,7 +14,7 @@ from thermicon.circuit.inputs import quoted
 from thermicon.icons.near_words import nearest_words
 
 from ..observer.channels import CHANNELS, Channel
-from .measurements import ADAPTIVE, METHODS, Condition, Kind, Measurements
+from .measurements import ADAPTIVE, METHODS, UNITS, Condition, Kind, Measurements
 from .trials_file import Cells, TrialsError, check_labels, digest_of, label, read_cells, read_header
 
 if TYPE_CHECKING:
@@ -156,10 +156,9 @@ def _row(cells: Mapping[str, str], where: str, rig: Rig) -> Row:
     low, high, cure = RANGES[kind]
     value = factor * _number(cells["value"], "value", where)
     if not low <= value <= high:
-        unit = {"threshold": "K", "reaction_time": "s", "rating": "points"}[kind]
         raise TrialsError(
             f"{where}: value is {quoted(cells['value'])} {cells['unit']}, a {_words(kind)} lies within {low:g} to "
-            f"{high:g} {unit}; {cure}"
+            f"{high:g} {UNITS[kind]}; {cure}"
         )
     condition = _condition(cells, kind, method, channel, where, rig)
     if method == "limits" and condition.size_K is not None and value > condition.size_K:

@@ -197,7 +197,7 @@ def plan(
     _check(participants, trials, wanted, draws)
     sets = [icons] if other is None else [icons, other]
     prior = LaboratoryPrior.of(observer, check_norm(norm))
-    number = laboratories_for(max(2, *(len(list(each)) for each in sets), 2), draws)
+    number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories, done = prior.first(number, seed), 0
     total = number * len(sets) + len(participants) * len(trials) + steps_of(max(length, 1))
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -14,10 +13,9 @@ from ..arrays import Array
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits
 from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
-from ..ranking.batches import RATE_HZ
-from ..ranking.rank import TAIL_S
 from .states import Laboratories, LaboratoryPrior
 
 if TYPE_CHECKING:
@@ -122,7 +120,7 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
             "presented into a set of their own"
         )
     crowd = draw_people(people_for_intervals(len(members)), seed)
-    end = math.ceil((max(duration_s(icon, rig) for icon in members) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    end = run_end_s(duration_s(icon, rig) for icon in members)
     batch = simulate_many(
         members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ / EVERY, tracking=tracking, probes=PROBES
     )

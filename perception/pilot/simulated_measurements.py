@@ -22,7 +22,7 @@ from ..inference.laboratory import FEEBLE, Laboratory, Samples, samples_of
 from ..inference.rows import UNSTATED
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, sign_of
-from ..observer.draws import LABORATORIES
+from ..observer.draws import BETWEEN_LABORATORIES
 from ..observer.observer import on_forearm
 from ..observer.people import YOUNG_YEARS
 from .measurements import Condition
@@ -162,7 +162,7 @@ def constants_of(prior: LaboratoryPrior, row: Array) -> dict[str, float]:
     """Constants by name from a row of `LaboratoryPrior.values`, with the laboratory's own offset in SDs."""
     named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
     for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
-        named[f"{OWN} {channel}"] = named[offset] / named[LABORATORIES]
+        named[f"{OWN} {channel}"] = named[offset] / named[BETWEEN_LABORATORIES]
     return named
 
 

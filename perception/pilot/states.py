@@ -21,7 +21,7 @@ from ..arrays import Array
 from ..inference.posterior import Posterior
 from ..inference.priors import Prior
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import LABORATORIES, PosteriorDraws
+from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
@@ -30,10 +30,12 @@ from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import ObserverParameter, latin
 
 LEAST_VARIANCE = 1e-12
+"""Directions in which draws vary less, such as a constant that is the same in all, are left as they are."""
 OFFSETS = tuple(f"sensitivity of the laboratory, {channel}" for channel in CHANNELS)
 OUTERMOST = 1e-9
 """Shares of an interval of memory stay this far within it, so that their normal scores are finite."""
 SEEDS = 2**31
+"""Seeds of people lie below this."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +102,6 @@ class LaboratoryPrior:
         return cls(model.posterior, norm, model.records)
 
     @property
-    def dimensions(self) -> int:
-        """Number of coordinates."""
-        return self._held + self._free + len(CHANNELS)
-
-    @property
     def _held(self) -> int:
         """Coordinates that belong to the draws: constants, and memory that they have themselves."""
         return len(self._scales) + self._of_draws
@@ -146,7 +143,7 @@ class LaboratoryPrior:
         memory = np.array(
             [[p.at(NormalDist().cdf(z)) for p, z in zip(self.memory, row, strict=True)] for row in scores.tolist()]
         ).reshape(len(some), len(self.memory))
-        spread = constants[:, self.draws.names.index(LABORATORIES)]
+        spread = constants[:, self.draws.names.index(BETWEEN_LABORATORIES)]
         return np.hstack([constants, memory, spread[:, None] * some.place[:, -len(CHANNELS) :]])
 
     def _places(self, some: Laboratories) -> Array:

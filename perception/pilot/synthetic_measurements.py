@@ -14,9 +14,9 @@ import numpy as np
 from ..arrays import Array
 from ..observer.channels import CHANNELS, USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
-from .measurements import Condition, Measurements
+from .measurements import ADAPTIVE, Condition, Measurements
 from .simulated_measurements import Setting, measuring
-from .states import OFFSETS, LaboratoryPrior
+from .states import OFFSETS, SEEDS, LaboratoryPrior
 from .synthetic import STREAM
 
 if TYPE_CHECKING:
@@ -86,15 +86,15 @@ def measurements_of(
     rng: np.random.Generator,
 ) -> Measurements:
     """Measurements in the laboratory of a row of values."""
-    place = measuring(prior, row, setting, CROWD, int(rng.integers(2**31)))
+    place = measuring(prior, row, setting, CROWD, int(rng.integers(SEEDS)))
     invited = rng.integers(CROWD, size=participants)
     values = np.empty((participants, len(conditions)))
     for k, condition in enumerate(conditions):
         logs, within = place.measure(setting, condition)
         # What has no trials of its own, such as a staircase, has the error that is assumed of it.
-        error = within if condition.method in ("forced_choice", "yes_no") else within / np.sqrt(trials)
+        error = within if condition.method in ADAPTIVE else within / np.sqrt(trials)
         values[:, k] = np.exp(logs[invited] + error * rng.standard_normal(participants))
-    by_trial = [condition.method not in ("forced_choice", "yes_no") for condition in conditions]
+    by_trial = [condition.method not in ADAPTIVE for condition in conditions]
     return Measurements(
         tuple(conditions),
         tuple(f"P{k + 1}" for k in range(participants)),

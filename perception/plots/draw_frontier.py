@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.solver.draw import new_axes
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -16,7 +18,7 @@ DARK, GREY = "0.15", "0.55"
 
 def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     """Draw the mean over people, what 95 % of them reach, chance, and the total time at every point."""
-    axes = _axes() if ax is None else ax
+    axes = new_axes(ax, (8.2, 4.2))
     sizes = np.array([len(point.icons) for point in found.points])
     correct = np.array([100.0 * point.proportion_correct for point in found.points])
     low = np.array([100.0 * point.reached for point in found.points])
@@ -41,12 +43,3 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes.set_title("How many icons are distinguishable", loc="left")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
     return axes
-
-
-def _axes() -> Axes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.2, 4.2), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure.add_subplot()

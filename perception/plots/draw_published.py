@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 INK, BAND, LINE = "#222222", "#d9d9d9", "#8a8a8a"
 LOOKS = {"cold": (COOL, "o"), "warm": (WARM, "s"), "both": (INK, "D")}
-"""Colour and marker of a channel: shape alone tells them apart in grey."""
+"""Colour and marker of a channel: by their shape they are distinguishable in grey."""
 NOTE = {"fc": "w", "ec": "none", "pad": 0.6}
 LEAST, MOST = 0.08, 12.5
 TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.solver.draw import new_axes
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -19,7 +21,7 @@ MOST = 16
 def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     """Draw the shares of the constants that count most, proportion correct above bits."""
     shown = found.effects[:MOST]
-    axes = _axes(len(shown)) if ax is None else ax
+    axes = new_axes(ax, (7.6, 1.4 + 0.34 * len(shown)))
     names = [effect.constant for effect in shown]
     places = np.arange(len(names))
     correct = np.array([effect.proportion_correct for effect in shown])
@@ -37,12 +39,3 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     axes.set_title("Constants that carry the doubt", loc="left")
     axes.legend(frameon=False, loc="lower right")
     return axes
-
-
-def _axes(bars: int) -> Axes:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.6, 1.4 + 0.34 * bars), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure.add_subplot()

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..inference.posterior import Posterior
+from ..kernels.parallel import quiet_blas
 from .chains import Chain, Reference, begin
 from .limit_features import LimitFeatures
 from .surrogate import NARROW, WIDE, Surrogate, fit_surrogate
@@ -123,6 +124,8 @@ def walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> 
     return np.stack(visited)
 
 
-def misses_at(posterior: Posterior, vectors: Sequence[Array] | Array) -> Array:
-    """Misses of all rows, left out or not, at vectors (points, n)."""
-    return np.stack([posterior.misses(vector) for vector in vectors])
+def misses_at(part: tuple[Posterior, Array]) -> Array:
+    """Misses (points, rows) of all rows, left out or not, at vectors (points, n); a job of one worker process."""
+    posterior, vectors = part
+    with quiet_blas():
+        return np.stack([posterior.misses(vector) for vector in vectors])

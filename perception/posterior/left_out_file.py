@@ -16,7 +16,6 @@ from ..arrays import Array
 from ..inference.posterior import Posterior
 from ..inference.results import inputs_digest, read_rows, to_csv
 from ..inference.rows import load_rows
-from ..kernels.parallel import quiet_blas
 from .learning import Points, misses_at
 from .left_out import leave_out
 from .sampling import load_learned, load_vectors
@@ -104,7 +103,7 @@ def leave_each_out(
 
         def evaluate(at: Array) -> Array:
             parts = np.array_split(at, max(1, len(at) // PART))
-            return np.concatenate(list(pool.map(_misses, [(posterior, part) for part in parts])))
+            return np.concatenate(list(pool.map(misses_at, [(posterior, part) for part in parts])))
 
         file = keep / "draws.npz"
         if not file.exists():
@@ -135,11 +134,6 @@ def _part(keep: Path, experiment: str) -> Path:
 
 def _kept(keep: Path, experiment: str) -> list[LeftOutRow]:
     return [LeftOutRow(**each) for each in json.loads(_part(keep, experiment).read_text(encoding="utf-8"))]
-
-
-def _misses(part: tuple[Posterior, Array]) -> Array:
-    with quiet_blas():
-        return misses_at(*part)
 
 
 def write(rows: Iterable[LeftOutRow], path: Path) -> None:

@@ -7,14 +7,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ..inference.results import load_constants
+from ..inference.results import UNMOVED_SD, load_constants
 from ..inference.rows import load_rows
 from ..inference.table_text import UNITS, markdown, number, signed, span
 from ..inference.tables import TABLES as INFERRED
 from ..observer.draws import PosteriorDraws
 from .left_out import FROM_WEIGHTS
 from .left_out_file import LeftOutRow, load_left_out
-from .summaries import Summary, summarise
+from .summaries import UNMOVED_SHIFT, Summary, summarise
 from .variant_scores import VariantScores, variant_log_scores, variant_weights
 
 
@@ -41,7 +41,8 @@ def moved_sentence() -> str:
     """What the evidence did not move, and what it pushed to the edge of its prior."""
     found = [each for each in summarise(PosteriorDraws.load()) if each.unit != "SD"]
     return (
-        f"Not moved (SD above 0.9 of the prior's, median within 0.3 of its middle): {_names(found, 'unmoved')}. "
+        f"Not moved (SD above {UNMOVED_SD:g} of the prior's, median within {UNMOVED_SHIFT:g} of its middle): "
+        f"{_names(found, 'unmoved')}. "
         f"At the edge of the prior (median beyond its 95 %): {_names(found, 'at_edge')}."
     )
 

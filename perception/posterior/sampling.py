@@ -90,7 +90,7 @@ def sample(
     Parameters
     ----------
     posterior, seed
-        What is sampled; the same seed gives the same draws.
+        What is sampled; the same seed gives the same draws on the same computer, whose rounding they depend on.
     start
         Its maximum, where known.
     keep
@@ -118,7 +118,7 @@ def sample(
 
         def evaluate(vectors: Array) -> Array:
             parts = np.array_split(vectors, max(1, len(vectors) // PART))
-            return np.concatenate(list(run(_misses, [(posterior, part) for part in parts])))
+            return np.concatenate(list(run(misses_at, [(posterior, part) for part in parts])))
 
         def visit(chains: Sequence[Chain], at: Reference, by: Surrogate) -> list[tuple[Chain, Points]]:
             return list(run(_visited, [(chain, posterior, at, by) for chain in chains]))
@@ -231,11 +231,6 @@ def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain
         return chain
     with quiet_blas():
         return extend(chain, posterior, reference, surrogate, steps)
-
-
-def _misses(part: tuple[Posterior, Array]) -> Array:
-    with quiet_blas():
-        return misses_at(*part)
 
 
 def _visited(part: tuple[Chain, Posterior, Reference, Surrogate]) -> tuple[Chain, Points]:

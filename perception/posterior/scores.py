@@ -1,4 +1,4 @@
-"""How good left-out predictions are: coverage, width, log score against a naive baseline, and weights of the variants.
+"""How good left-out predictions are: quantiles, log score against a naive baseline, and weights of the variants.
 
 The naive baseline knows no model: it predicts a row by the mean and spread of the same kind of number in the other
 experiments. Rows of a kind that no two other experiments have are not compared with it.
@@ -7,7 +7,7 @@ experiments. Rows of a kind that no two other experiments have are not compared 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,15 +55,6 @@ class Score:
     baseline: float
     k_hat: float
     method: str
-
-    def covered(self, share: float) -> bool:
-        """Whether the central interval of a share contains the published number."""
-        return abs(self.probability - 0.5) <= 0.5 * share
-
-    @property
-    def width(self) -> float:
-        """Width of the 95 % interval on the row's scale: a logarithm of a ratio where that is one."""
-        return self.quantiles[4] - self.quantiles[0]
 
 
 SHARES = (0.025, 0.25, 0.5, 0.75, 0.975)
@@ -128,32 +119,3 @@ def stacking_weights(log_scores: Array, rounds: int = 2000) -> Array:
         shares = weights[:, None] * densities
         weights = (shares / shares.sum(axis=0)).mean(axis=1)
     return weights
-
-
-@dataclass(frozen=True, slots=True)
-class Summary:
-    """All rows together: shares covered, mean log score, and both where the baseline exists."""
-
-    rows: int
-    covered_50: float
-    covered_95: float
-    log_score: float
-    compared: int
-    log_score_compared: float
-    baseline: float
-    median_width: float
-
-
-def summarise(scores: Sequence[Score]) -> Summary:
-    """Coverage, log scores and width of the 95 % intervals of rows that are ratios (ln)."""
-    compared = [each for each in scores if not math.isnan(each.baseline)]
-    return Summary(
-        len(scores),
-        float(np.mean([each.covered(0.5) for each in scores])),
-        float(np.mean([each.covered(0.95) for each in scores])),
-        float(np.mean([each.log_score for each in scores])),
-        len(compared),
-        float(np.mean([each.log_score for each in compared])) if compared else math.nan,
-        float(np.mean([each.baseline for each in compared])) if compared else math.nan,
-        float(np.median([each.width for each in scores if each.row.log])),
-    )

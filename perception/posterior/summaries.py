@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..inference.posterior import Posterior
+from ..inference.results import UNMOVED_SD
 from ..observer.draws import PosteriorDraws
 
-UNMOVED_SD, UNMOVED_SHIFT = 0.9, 0.3
-"""A constant that keeps more of its prior's SD, with its median moved by less of it, was not moved by the evidence."""
+UNMOVED_SHIFT = 0.3
+"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
 EDGE = 1.96
 """A median so many SDs of the prior away from its middle lies at the edge of the prior."""
 

@@ -25,6 +25,8 @@ NARROW, WIDE = (2.0, 1.0), (2.6, 1.12)
 wall keeps trajectories from where nothing was fitted; heat divides the log density, which gives it longer tails than
 the posterior: a chain that is where the proposals never go has to stay there."""
 LEAST_WALL = 25.0
+WALL_RISE = 0.1
+"""The wall takes this times the square of how far the squared distance lies beyond it off the log density."""
 LEAPS, LEAP = 10, 0.16
 """Steps of a trajectory and their length, in SDs of the normal approximation."""
 
@@ -57,8 +59,8 @@ class Surrogate:
             residuals = residuals + self.weights @ self.features.at(vector)
             slopes = slopes + self._feature_slopes(vector)
         beyond = np.maximum(0.0, white @ white - max(self.wall * white.size, LEAST_WALL))
-        gradient: Array = -slopes.T @ residuals - self.factor.T @ vector - 0.4 * beyond * white
-        density = float(-0.5 * (residuals @ residuals + vector @ vector) - 0.1 * beyond**2)
+        gradient: Array = -slopes.T @ residuals - self.factor.T @ vector - 4.0 * WALL_RISE * beyond * white
+        density = float(-0.5 * (residuals @ residuals + vector @ vector) - WALL_RISE * beyond**2)
         return density / self.heat, gradient / self.heat
 
     def _feature_slopes(self, vector: Array) -> Array:

@@ -44,11 +44,7 @@ class Measurement:
 
     def quantile(self, share: float) -> float | None:
         """Value that a share of people lies below; None where so many felt nothing."""
-        ordered = np.sort(self.each)
-        place = share * (ordered.size - 1)
-        low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
-        found = low if low == high else low + (place - np.floor(place)) * (high - low)
-        return float(found) if np.isfinite(found) else None
+        return quantile_felt(np.sort(self.each), share)
 
     def __repr__(self) -> str:
         value = "not felt" if self.value is None else f"{self.value:.3g} {self.unit}"
@@ -56,6 +52,18 @@ class Measurement:
         spread = "" if self.each.size == 1 or low is None or high is None else f" [{low:.3g}, {high:.3g}]"
         crowd = "1 person" if self.each.size == 1 else f"{self.each.size} people"
         return f"Measurement({self.procedure}, {self.channel}: {value}{spread}, {crowd}; {self.conditions})"
+
+
+def quantile_felt(ordered: Array, share: float) -> float | None:
+    """Value that a share of numbers (n,), in rising order, lies below; None where it lies among those not felt (inf).
+
+    >>> quantile_felt(np.array([1.0, 2.0, np.inf]), 0.25), quantile_felt(np.array([1.0, 2.0, np.inf]), 0.75)
+    (1.5, None)
+    """
+    place = share * (ordered.size - 1)
+    low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
+    found = low if low == high else low + (place - np.floor(place)) * (high - low)
+    return float(found) if np.isfinite(found) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, confuse
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import PROBES, PopulationResponse, ReceptorTemperatures, memory_dprime, respond
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, Observer
@@ -22,9 +22,6 @@ from .subset_identification import Objective
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
-
-RATE_HZ = 100.0
-TAIL_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +151,7 @@ def population_response(
 
     nominal = Observer.load() if observer is None else observer
     durations = np.array([duration_s(icon, rig) for icon in icons])
-    end = math.ceil((durations.max() + TAIL_S) * rate_Hz - 1e-6) / rate_Hz if end_s is None else end_s
+    end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
     played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)

@@ -41,7 +41,7 @@ class Candidate:
 
 
 def candidate_at(family: Family, shares: Sequence[float]) -> Candidate | None:
-    """The gene of a member at these shares; None where the member cannot be run."""
+    """The candidate at these shares; None where the member cannot be run."""
     from thermicon.icons import CueErrors
 
     try:
@@ -61,7 +61,7 @@ def sample_candidates(families: Sequence[Family], count: int, rng: np.random.Gen
             found.append(
                 candidate_at(family, [share_of(p, int(k)) for p, k in zip(family.parameters, places, strict=True)])
             )
-    return [gene for gene in found if gene is not None]
+    return [candidate for candidate in found if candidate is not None]
 
 
 def member(family: Family, shares: Sequence[float]) -> Icon:

@@ -35,6 +35,7 @@ ENUMERATED = 20
 MOST_SUBSETS = 200_000
 """Pools of up to 20 icons, and all with at most this many choices, are enumerated completely."""
 RESTARTS = 6
+"""Random choices that larger pools are also climbed from."""
 ONE_BY_ONE = 50
 """Number of people for each of whom the best choice is found."""
 
@@ -185,7 +186,7 @@ def choose(
     tracking
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
     task
         The task that `d_prime` was found in.
     left

@@ -38,14 +38,19 @@ LARGEST, FARTHEST = 4.0, 256.0
 """A number becomes at most four times larger or smaller; where that separates no pair, up to 256 times."""
 GRID = 6
 ROUNDS = 4
+"""Changes that every number is tried with in each direction, and how often the interval that is left is halved."""
 DEARER = 1.5
+"""Numbers whose change must be more than so many times the smallest one that is enough are not followed."""
 REPEATS = (2, 3)
 MOST_LONGER_S = 30.0
+"""By more than this no edit makes an icon longer."""
 CONFIRMED_BY = 200
 MOST_NEAR, NEAR = 5, 3.0
 """Up to 5 icons that an edit brings nearer are checked with people, if they end within three times the wanted d′."""
 MOST_CONFIRMED = 8
+"""Edits that are checked with people before the search gives up."""
 MOST_RECOUNTED = 50
+"""People whose episodes are counted again with the edit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +64,6 @@ class _CandidateEdit:
     cost: float
     added_s: float
     way: tuple[int, int]
-    value: float
 
 
 def cheapest_edit(
@@ -296,7 +300,6 @@ class _Search:
             lambda new: (line_of(icon, number.path), line_of(new, number.path), number.ratio_to(value)),
             place,
             (w, g),
-            value,
         )
 
     def _repeats(self, place: int) -> list[_CandidateEdit]:
@@ -306,11 +309,11 @@ class _Search:
 
         def tried(count: int) -> list[_CandidateEdit]:
             described = (once, f"repeat {count} {{ {once} }}", math.log(count))
-            return self._valid(lambda: repeated(icon, count), lambda _: described, place, (-1, count), float(count))
+            return self._valid(lambda: repeated(icon, count), lambda _: described, place, (-1, count))
 
         return [one for count in REPEATS for one in tried(count)]
 
-    def _valid(self, make: Any, tell: Any, place: int, way: tuple[int, int], value: float) -> list[_CandidateEdit]:
+    def _valid(self, make: Any, tell: Any, place: int, way: tuple[int, int]) -> list[_CandidateEdit]:
         from thermicon.circuit import duration_s
         from thermicon.icons import CueErrors
 
@@ -322,7 +325,7 @@ class _Search:
         if added > MOST_LONGER_S:
             return []
         old, line, ratio = tell(new)
-        return [_CandidateEdit(place, new, old, line, ratio + PER_SECOND * max(added, 0.0), added, way, value)]
+        return [_CandidateEdit(place, new, old, line, ratio + PER_SECOND * max(added, 0.0), added, way)]
 
     def _good(self, tried: Sequence[_CandidateEdit]) -> list[bool]:
         """Whether each parts the pair for the nominal person, is safe and reached, and leaves the others apart."""

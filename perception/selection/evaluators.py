@@ -101,8 +101,8 @@ class PopulationEvaluator(NominalEvaluator):
     def better(self, *sets: list[Candidate]) -> list[Candidate]:
         """The best of some sets for these people; the first of those that are equal."""
         values = []
-        for genes in sets:
-            icons = [gene.icon for gene in genes]
+        for candidates in sets:
+            icons = [candidate.icon for candidate in candidates]
             d = self.pairwise_dprime(icons)
             middle = np.median(d, axis=0)[np.triu_indices(len(icons), 1)]
             few = self.objective == "worst"

@@ -6,7 +6,6 @@ many as in `rank`, and with all people.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,10 +16,11 @@ from ..arrays import Array
 from ..identification.laboratory import Nominal, new_laboratory
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.population import PROBES, ReceptorTemperatures
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
-from .appraise import RATE_HZ, TAIL_S, Appraisal, appraise
+from .appraise import Appraisal, appraise
 from .goal import NEEDS_DRAWS, Goal, GoalError, GoalPart
 from .subset_identification import Objective
 
@@ -89,7 +89,7 @@ class FinalJudge:
         from thermicon.circuit import duration_s, simulate_many
 
         durations = [duration_s(icon, self.rig) for icon in icons]
-        end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+        end = run_end_s(durations)
         few = self.crowd.part(0, min(PEOPLE, len(self.crowd)))
         batch = simulate_many(
             icons, few.rigs(self.rig), nominal=self.rig, end_s=end, rate_Hz=RATE_HZ, tracking=self.tracking,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.from_memory import dprimes_from_memory
+from ..identification.run_end import run_end_s
 from ..observer.observer import Norm, Observer
 from ..sensation.percept import perceive_many, uniform_clock
 from .request import objection
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 RATE_HZ = 25.0
-TAIL_S = 10.0
 BLOCK = 4
 """Fewer icons are solved together with repetitions: by the code that people need anyway, not by another for one."""
 
@@ -72,7 +71,7 @@ def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None =
 
 def end_of(durations_s: Sequence[float]) -> float:
     """When a run of the longest of them has faded, on a whole row: its end and 10 s."""
-    return math.ceil((max(durations_s) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    return run_end_s(durations_s, RATE_HZ)
 
 
 def _held(psi: Array, n: int) -> Array:

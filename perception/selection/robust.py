@@ -107,7 +107,7 @@ def compare_sets(
     a, b
         The sets.
     rig
-        The nominal rig; contact, ambient and gain vary within its uncertainty.
+        The nominal rig; contact and skin are each person's, ambient, module and heat sink vary about it.
     objective
         What is compared: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     draws
@@ -117,7 +117,7 @@ def compare_sets(
     tracking
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
-        How a difference over time is counted: `max`, `rms` or `integral`.
+        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
 
     Returns
     -------
@@ -196,9 +196,10 @@ def best_set_probability(
 
 
 def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
-    """Each rig with ambient, gain of the driver and heat sink drawn about its own values; the n-th is always the same.
+    """Each rig with ambient, gain and heat sink drawn about its own values; the n-th is always the same.
 
-    Under closed control the gain has no effect on what is played, under `replay` it scales the current.
+    Gain is that of the module, by its Seebeck coefficient: how much heat a current pumps. Under closed control it has
+    no effect on what is played, under `replay` it acts as another current would.
     """
     streams = np.random.SeedSequence([seed, 11]).spawn(3)
     ambient, gain, sink = (np.random.default_rng(stream).standard_normal(len(rigs)) for stream in streams)

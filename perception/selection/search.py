@@ -219,15 +219,18 @@ def search(
         middle = run.improve(few.better(widest, held), few, last, REFINING, rng, REFINED, tell)
         best = run.improve(shared.better(start, middle, held), shared, last, REFINING, rng, REFINED, tell)
         finalists = _different([start, best, middle, widest, held])
-    scores = [judge.appraisal([gene.icon for gene in genes]) for genes in finalists]
-    merits = [judge.merit([gene.icon for gene in genes], score) for genes, score in zip(finalists, scores, strict=True)]
+    scores = [judge.appraisal([candidate.icon for candidate in candidates]) for candidates in finalists]
+    merits = [
+        judge.merit([candidate.icon for candidate in candidates], score)
+        for candidates, score in zip(finalists, scores, strict=True)
+    ]
     place = max(range(len(finalists)), key=lambda k: merits[k])
     best, after = finalists[place], scores[place]
-    names = dict(zip((gene.icon.name for gene in best), names_of(best), strict=True))
+    names = dict(zip((candidate.icon.name for candidate in best), names_of(best), strict=True))
     a, b = after.worst_pair
     return SearchResult(
         found=found_set(icons, best, seed),
-        start=tuple(gene.icon for gene in start),
+        start=tuple(candidate.icon for candidate in start),
         before=scores[0],
         after=replace(after, worst_pair=(names[a], names[b])),
         objective=objective,
@@ -244,4 +247,4 @@ def search(
 
 def _different(sets: Sequence[list[Candidate]]) -> list[list[Candidate]]:
     """Each set once, by its icons."""
-    return list({tuple(gene.icon.name for gene in genes): genes for genes in sets}.values())
+    return list({tuple(candidate.icon.name for candidate in candidates): candidates for candidates in sets}.values())

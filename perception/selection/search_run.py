@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from thermicon.icons import Family, Icon
 
 SAMPLED = 400
+"""Listed icons that a search starts from, at most; of more, so many are drawn."""
 SHRINK, FINEST = 0.85, 0.005
+"""By what a step shrinks where nothing better is found, and the smallest one, as a share of a range."""
 ALIKE = -1.0
 """Stands for d′ between two members of one family, where each family gives one icon."""
 SHORTLIST = 8
@@ -41,7 +43,7 @@ class JudgedPool:
     @property
     def icons(self) -> list[Icon]:
         """Their icons."""
-        return [gene.icon for gene in self.candidates]
+        return [candidate.icon for candidate in self.candidates]
 
 
 class SearchRun:
@@ -83,9 +85,9 @@ class SearchRun:
         """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
         for _ in range(rounds):
             about = held[len(self.fixed) :]
-            near = [gene.moved(rng, step * float(rng.exponential())) for gene in about for _ in range(batch)]
-            others = [gene for gene in self.optional if gene not in held]
-            pool = [*held, *others, *(gene for gene in near if gene is not None)]
+            near = [candidate.moved(rng, step * float(rng.exponential())) for candidate in about for _ in range(batch)]
+            others = [candidate for candidate in self.optional if candidate not in held]
+            pool = [*held, *others, *(candidate for candidate in near if candidate is not None)]
             better = self.best(pool, judge, held)
             moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
             held = better if better is not None else held
@@ -107,7 +109,11 @@ class SearchRun:
         near = {int(k) for row in swapped for k in np.argsort(-row)[:SHORTLIST] if np.isfinite(row[k])}
         by_mean = self._ordered(pool, chosen)
         held = share.better(by_mean, start)
-        others = [gene for gene in (*by_mean, *start, *(pool.candidates[k] for k in sorted(near))) if gene not in held]
+        others = [
+            candidate
+            for candidate in (*by_mean, *start, *(pool.candidates[k] for k in sorted(near)))
+            if candidate not in held
+        ]
         by_share = self.best([*held, *dict.fromkeys(others)], share, held)
         return by_mean, held if by_share is None else by_share
 
@@ -144,7 +150,7 @@ class SearchRun:
     def _judged(self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator) -> JudgedPool | None:
         """The icons of a pool that can be chosen, as people feel them; None where they are too few."""
         self.tried += len(pool)
-        d = judge.pairwise_dprime([gene.icon for gene in pool])
+        d = judge.pairwise_dprime([candidate.icon for candidate in pool])
         must = len(self.fixed)
         good = [k for k in range(len(pool)) if k < must or judge.objections[k] is None]
         candidates, d = [pool[k] for k in good], d[:, good][:, :, good]
@@ -152,7 +158,7 @@ class SearchRun:
             return None
         middle = np.median(d, axis=0)
         if self.each:
-            own = np.array([self._place(gene) for gene in candidates])
+            own = np.array([self._place(candidate) for candidate in candidates])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
         limits = None if judge.limits is None else Limits(judge.limits.costs[:, good], judge.limits.most)
         return JudgedPool(candidates, d, middle, limits)
@@ -162,8 +168,8 @@ class SearchRun:
         order = sorted(chosen, key=lambda k: (k >= must, self._place(pool.candidates[k]), k))
         return [pool.candidates[k] for k in order]
 
-    def _place(self, gene: Candidate) -> int:
-        return -1 if gene.family is None else self.families.index(gene.family)
+    def _place(self, candidate: Candidate) -> int:
+        return -1 if candidate.family is None else self.families.index(candidate.family)
 
 
 def climbed(

@@ -1,4 +1,4 @@
-"""What a laboratory can measure, and the constants that each measurement would tell.
+"""What a laboratory can measure, and the constants that each measurement would determine.
 
 Offsets of the laboratories of the evidence and constants that other experiments alone make use of are not among them.
 """
@@ -88,9 +88,3 @@ def base_name(constant: str) -> str:
     'memory noise'
     """
     return constant.split(" (")[0]
-
-
-def measurement_of(constant: str) -> Measurement | None:
-    """The measurement that would determine a constant; None for an offset of a published laboratory."""
-    name = base_name(constant)
-    return next((each for each in MEASUREMENTS if name in each.constants), None)

@@ -6,7 +6,6 @@ parabolas through them, so that hundreds of draws cost nine simulations.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -89,13 +88,6 @@ def intervals_of(rig: Rig) -> tuple[ObserverParameter, ObserverParameter]:
         ObserverParameter(CONTACT, resistance / by, resistance, resistance * by, "m²K/W", source, "assumed"),
         ObserverParameter(LAYER, mm / other, mm, mm * other, "mm", thickness.source, "assumed"),
     )
-
-
-def end_of(icons: Sequence[Icon], rig: Rig, tail_s: float) -> float:
-    """When a run of the longest icon and a tail ends, on a whole row, s."""
-    from thermicon.circuit import duration_s
-
-    return math.ceil((max(duration_s(icon, rig) for icon in icons) + tail_s) * RATE_HZ - 1e-6) / RATE_HZ
 
 
 def _parabola(share: float) -> Array:

@@ -17,14 +17,14 @@ import numpy as np
 from ..arrays import Array
 from ..identification.doubt import explained, explained_together, scores_of
 from ..identification.laboratory_draws import LaboratoryDraws, laboratory_draws
+from ..identification.run_end import run_end_s
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..ranking.rank import TAIL_S
 from ..ranking.ranking import with_changes
 from ..sensation.parameters import latin
 from .measurements import MEASUREMENTS, base_name
-from .rig_doubt import UncertainRig, end_of
+from .rig_doubt import RATE_HZ, UncertainRig
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 
 DRAWS = 256
 FEWEST_DRAWS = 64
-"""Fewer draws do not tell a share of some per cent from chance."""
+"""Of fewer draws a share of some per cent is not distinguishable from chance."""
 NOTEWORTHY = 0.02
+"""Measurements that would take away less of the variance are not named as the first to make."""
 Progress = Callable[[int, int], None]
 
 
@@ -76,7 +77,7 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
-    """A measurement, the constants that it would tell, and the share (0–1) of the variance that would go with them."""
+    """A measurement, the constants it would determine, and the share (0–1) of the variance that would go with them."""
 
     measurement: str
     constants: tuple[str, ...]
@@ -100,7 +101,7 @@ class Sensitivity:
     proportion_correct, information_bits
         Medians over the draws: 0–1, and bits.
     proportion_correct_interval
-        Their 95 % interval for a new laboratory, contact and skin layer of the rig uncertain.
+        95 % of the draws, for a new laboratory; contact and skin layer of the rig are uncertain.
     effects
         Effect of each constant.
     reductions
@@ -225,6 +226,8 @@ def sensitivity(
     ...
     ValueError: a sensitivity needs 64 to 1000 draws of the posterior, not 3
     """
+    from thermicon.circuit import duration_s
+
     members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if len(members) < 2:
         raise ValueError("a sensitivity needs at least two icons: one alone is never confused")
@@ -240,7 +243,8 @@ def sensitivity(
             f"a sensitivity needs {FEWEST_DRAWS} to {len(model.posterior)} draws of the posterior, not {draws}"
         )
     crowd = model.people(people, seed)
-    uncertain = UncertainRig.simulate(members, rig, crowd, end_of(members, rig, TAIL_S))
+    end = run_end_s((duration_s(icon, rig) for icon in members), RATE_HZ)
+    uncertain = UncertainRig.simulate(members, rig, crowd, end)
     shares = latin(2, draws, seed + 1)
     done = 0
 

@@ -15,7 +15,7 @@ from thermicon.circuit.records import Record, Table, dump_records
 
 from ..identification.rate_task import memory_noise, memory_record
 from ..inference.evidence import load_evidence
-from ..inference.results import Constant, load_constants
+from ..inference.results import UNMOVED_SD, Constant, load_constants
 from ..observer.channels import CHANNELS, MEMORY_NORMS, Channel
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import shipped_file
@@ -24,8 +24,6 @@ from ..observer.variants import VARIANTS, Model, Variable, source_of
 from ..sensation.fits import neutral_flux
 
 DIGITS = 4
-NARROWED = 0.9
-"""Where the evidence leaves more than this of the prior's SD, the constant is as good as assumed."""
 MODEL_CONSTANTS = ("static gain", "dynamic gain", "window of counted impulses", "start of static discharge")
 COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.validation.calibrate`.
 Inferred from published evidence (`data/constants.csv`), or taken over from thresholds.toml; low and high are 95 %.
@@ -88,8 +86,8 @@ def _record(each: Constant, variant: str, method: str) -> Record:
         channel=channel if named else "both",
         method=method,
         conditions=f"SD {each.narrowed:.2f} times the prior's, {each.prior_low:.3g} to {each.prior_high:.3g}",
-        confidence="low" if each.narrowed > NARROWED else "medium",
-        use="assumed" if each.narrowed > NARROWED else "calibrate",
+        confidence="low" if each.narrowed > UNMOVED_SD else "medium",
+        use="assumed" if each.narrowed > UNMOVED_SD else "calibrate",
     )
 
 

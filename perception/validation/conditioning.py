@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from functools import lru_cache
 from statistics import NormalDist, median
 
-from ..inference.leave_out import WITHIN_95
 from ..inference.onset_stages import OnsetStages
 from ..inference.posterior import Posterior
+from ..inference.priors import WITHIN_95
 from ..inference.results import (
+    UNMOVED_SD,
     AblatedRow,
     Constant,
     PredictedRow,
@@ -23,11 +24,9 @@ from ..inference.results import (
     load_predictions,
 )
 from ..inference.rows import load_rows
-from ..observer.mechanisms import find_mechanism
+from ..observer.mechanisms import ALL_OFF, find_mechanism
 from .magnitudes import Magnitude, magnitudes, stages_of_six
 
-KEPT = 0.9
-"""A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 EDGE = 0.1
 """A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
 OFFSETS = "laboratories"
@@ -95,8 +94,8 @@ class InferredConstant:
 
     @property
     def moved(self) -> bool:
-        """Whether the evidence narrowed it to less than `KEPT` of the prior's SD."""
-        return self.constant.narrowed <= KEPT
+        """Whether the evidence narrowed it to less than `UNMOVED_SD` of the prior's."""
+        return self.constant.narrowed <= UNMOVED_SD
 
     @property
     def at_edge(self) -> bool:
@@ -190,7 +189,7 @@ def _shared(each: InferredConstant) -> bool:
 
 
 def _explained(run: AblatedRow) -> AblatedMechanism:
-    if not run.without or run.without == "all of them":
+    if not run.without or run.without == ALL_OFF:
         variant = () if run.without else (run.model, run.variable)
         return AblatedMechanism(run, "", tuple(VARIANT_SOURCES[key] for key in variant if key in VARIANT_SOURCES))
     mechanism = find_mechanism(run.without)

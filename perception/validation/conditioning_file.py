@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from ..inference.onset_stages import OnsetStages
+from ..inference.results import UNMOVED_SD
 from .comparisons import experiment_title
-from .conditioning import EDGE, KEPT, AblatedMechanism, ConditionedRow, Conditioning, InferredConstant
+from .conditioning import EDGE, AblatedMechanism, ConditionedRow, Conditioning, InferredConstant
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude
 
 
@@ -24,7 +25,7 @@ def conditioning_file(known: Conditioning) -> dict[str, Any]:
         },
         "constants": [_constant(each) for each in known.constants],
         "laboratory_offsets": [_constant(each) for each in known.offsets],
-        "not_moved_above": KEPT,
+        "not_moved_above": UNMOVED_SD,
         "edge_below": EDGE,
         "ablation": [_ablated(each) for each in known.ablation],
         "onset_stages": [_stages(each) for each in known.stages],

@@ -105,7 +105,7 @@ def reaction_times(
 ) -> tuple[Predicted, ...]:
     """Choice reaction times on the forearm at 5 °C/s from 31 °C: a median for each area, their exponent, their ratio.
 
-    The times of the largest area are those to hold against the published ones (about 10 cm²). Where the
+    The times of the largest area are those to compare with the published ones (about 10 cm²). Where the
     module falls behind the ramp of that area, the conditions say so.
     """
     at = {c: lru_cache(maxsize=None)(partial(_reaction, c)) for c in CHANNELS}

@@ -20,13 +20,13 @@ from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, identify, respond
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.channels import USUAL_NORM, Norm
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
-from ..ranking.batches import EXPERIMENTS, RATE_HZ
-from ..ranking.rank import TAIL_S
+from ..ranking.batches import EXPERIMENTS
 from .plausible import plausible_observers
 from .predicted import Predicted
 from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
@@ -100,8 +100,7 @@ def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
     from thermicon.circuit import duration_s, simulate_many
 
     members, crowd = list(icons), draw_people(people, seed)
-    longest = max(duration_s(icon, rig) for icon in members)
-    end = math.ceil((longest + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    end = run_end_s(duration_s(icon, rig) for icon in members)
     columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
 from ..observer.variants import Model, Variable
+from ..procedures.measured import quantile_felt
 from .plausible import plausible_observers
 
 DRAWS = 24
@@ -101,13 +101,6 @@ def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
     ((1.05, 2.95), (None, None))
     """
     ordered = np.sort(np.asarray(each, dtype=np.float64))
-    return _quantile(ordered, 0.025), _quantile(ordered, 0.975)
-
-
-def _quantile(ordered: Array, share: float) -> float | None:
     if not ordered.size:
-        return None
-    place = share * (ordered.size - 1)
-    low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
-    found = low if low == high else low + (place - np.floor(place)) * (high - low)
-    return float(found) if np.isfinite(found) else None
+        return None, None
+    return quantile_felt(ordered, 0.025), quantile_felt(ordered, 0.975)

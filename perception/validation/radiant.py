@@ -19,13 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """Changes (rows,) in K at the surface and at the depths of both receptors, and of the heat flow there, W/m²."""
+    """Changes (rows,) in K at the surface and at both receptors, and heat flow at the warm one (W/m²)."""
 
     dt_s: float
     surface_K: Array
     cold_receptor_K: Array
     warm_receptor_K: Array
-    cold_receptor_W_per_m2: Array
     warm_receptor_W_per_m2: Array
 
 
@@ -64,8 +63,8 @@ def radiant_warming(rig: Rig, flux_W_per_m2: float, duration_s: float, *, rate_H
     place = np.concatenate([[0.0], np.cumsum(column.resistance_m2K_per_W[1:])])
     at = [rig.skin.resistance_to_m2K_per_W(d) for d in (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)]
     temperature = [_at(change, place, here) for here in at]
-    flow = [_flow(change, place, here) for here in at]
-    return Warming(1.0 / rate_Hz, change[:, 0].copy(), temperature[0], temperature[1], flow[0], flow[1])
+    flow = _flow(change, place, at[1])
+    return Warming(1.0 / rate_Hz, change[:, 0].copy(), temperature[0], temperature[1], flow)
 
 
 def _at(change: Array, place: Array, here: float) -> Array:

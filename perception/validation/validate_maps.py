@@ -221,7 +221,7 @@ FIGURES: dict[int, tuple[Drawn, ...]] = {
 """File name, caption and drawing of the figures of every target."""
 TRADE_OFF: Drawn = (
     "trade-offs",
-    "How judged predictions move together over the plausible observers. Purple: both rise; orange: one falls; dots: "
+    "How judged predictions move together over the plausible observers. Orange: both rise; blue: one falls; dots: "
     "0.5 and stronger. Codes begin with the number of the target.",
     trade_figure,
 )

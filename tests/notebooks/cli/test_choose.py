@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -173,7 +174,8 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
     assert "contact.area_cm2=18" in words
     assert "what they maximised was proportion correct, in the last climb correct for 95 % of people" in words
     assert "held at the end" in words
-    assert "correct" in report.read_text(encoding="utf-8")
+    asked = "families.cue --objective correct --evaluations 20 --people 6 --goal"
+    assert asked in html.unescape(report.read_text(encoding="utf-8"))
     said = cli("search", families, *options[:-2], "--goal", "count 2, time <= 60 s")
     assert "Goal: met" in said.stdout
     assert "Not reached" not in said.stdout

@@ -66,6 +66,17 @@ def test_a_million_trials_are_refused_before_anything_is_simulated(tmp_path: Pat
         read_materials(write_study(tmp_path, many))
 
 
+def test_members_of_a_large_family_can_be_named(tmp_path: Path) -> None:
+    path = write_study(tmp_path, QUICK.replace('["dip", "glow"]', '["glow", "sink_depth=2_rate=1"]'))
+    large = "icon sink(depth in 2..6 step 0.1 °C, rate in 1..3 step 0.02 °C/s) { cool by depth at rate; hold for 1 s }"
+    cues = tmp_path / "two.cue"
+    cues.write_text(f"{cues.read_text(encoding='utf-8')}{large}\n", encoding="utf-8")
+    assert [icon.name for icon in read_materials(path).chosen] == ["glow", "sink_depth=2_rate=1"]
+    path.write_text(path.read_text(encoding="utf-8").replace('"glow"', '"snk"'), encoding="utf-8")
+    with pytest.raises(StudyError, match=r"there is no icon snk; did you mean sink\?"):
+        read_materials(path)
+
+
 def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
     text = QUICK.replace("repetitions = 2", "repetitions = 0").replace("gap_s = 10", "gap = 10")
     with pytest.raises(StudyError) as problem:

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.perception import Observer, Percept, perceive, percept_distance
-from thermicon.perception.comparison.reasons import largest_difference, pair_reasons
+from thermicon.perception import Observer, perceive, percept_distance
+from thermicon.perception.comparison.reasons import pair_reasons
 from thermicon.perception.comparison.rules import load_rules
 from thermicon.perception.identification.distance import difference_trace, identification_dprime
 from thermicon.perception.identification.episodes import PARTS
@@ -148,12 +148,3 @@ def test_as_much_as_is_said_of_what_is_equal(cue: Any, observer: Observer) -> No
 def test_unfelt_icons_are_named(cue: Any, observer: Observer) -> None:
     texts = [r.text for r in why(cue, observer, {"change": -0.05}, {"change": -4.0})]
     assert "not felt by the nominal person: a" in texts
-
-
-def test_largest_difference_names_time_and_channel(cue: Any, observer: Observer) -> None:
-    one, two = cue(change=-4.0), cue(change=3.0)
-    felt: tuple[Percept, Percept] = (perceive(one, observer), perceive(two, observer))
-    size, time, channel = largest_difference(*felt, observer)
-    assert channel == "cold"
-    assert 0.5 < time < 6.0
-    assert size < max(p.psi_cold.max() + p.psi_warm.max() for p in felt) * 2

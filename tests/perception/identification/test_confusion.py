@@ -5,7 +5,15 @@ import numpy as np
 import pytest
 
 from thermicon.perception import confuse, proportion_correct
-from thermicon.perception.identification.confusion import SAMPLES, embed, equal_proportion_correct, sampling_error
+from thermicon.perception.identification.confusion import SAMPLES, embed, sampling_error
+
+
+def equal_proportion_correct(d: float, icons: int) -> float:
+    """Proportion correct for equally distant icons, PC = ∫φ(x − d)Φ(x)^(m−1)dx, with d = d′/√2."""
+    x = np.linspace(-9.0, 9.0 + d, 4001)
+    normal = NormalDist()
+    density = np.array([normal.pdf(v - d) * normal.cdf(v) ** (icons - 1) for v in x.tolist()])
+    return float(np.trapezoid(density, x))
 
 
 def equal(d: float, icons: int = 6) -> np.ndarray:

@@ -27,7 +27,7 @@ def test_log_rows_are_taken_in_logarithms() -> None:
 
 
 def test_an_unknown_statistic_names_its_neighbours() -> None:
-    with pytest.raises(RecordError, match=r"no statistic 'treshold_gm' \(cold\).*threshold_gm"):
+    with pytest.raises(RecordError, match=r"no statistic 'treshold_gm' \(cold\): did you mean threshold_gm"):
         load_evidence().find("E3", "treshold_gm", "cold")
     with pytest.raises(RecordError, match="no experiment 'E9'; there are E1"):
         load_evidence().experiment("E9")

@@ -14,13 +14,13 @@ from thermicon.perception.inference.results import (
     CONSTANTS,
     PREDICTIONS,
     constant,
-    digest_of,
     inputs_digest,
     load_ablation,
     load_constants,
     load_predictions,
 )
 from thermicon.perception.inference.rows import load_rows
+from thermicon.perception.observer.draws_file import current_inputs
 from thermicon.perception.observer.mechanisms import MECHANISMS
 
 
@@ -33,7 +33,7 @@ def vector() -> np.ndarray:
 
 @pytest.mark.parametrize("name", [CONSTANTS, PREDICTIONS, ABLATION])
 def test_tables_were_made_from_the_shipped_inputs(name: str) -> None:
-    assert digest_of(DATA / name) == inputs_digest()
+    assert current_inputs(DATA / name) == inputs_digest()
 
 
 def test_constants_give_the_shipped_predictions(vector: np.ndarray) -> None:

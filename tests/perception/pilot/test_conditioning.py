@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from tests.weights import weighted_quantile
 from thermicon.perception.pilot.conditioning import condition, systematic
 from thermicon.perception.pilot.fit import compare
-from thermicon.perception.pilot.likelihood import effective, log_likelihoods, normalised_weights, weighted_quantile
+from thermicon.perception.pilot.likelihood import effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.playing import Confusions
 from thermicon.perception.pilot.pooled_answers import PooledLikelihood, walk
 from thermicon.perception.pilot.states import Laboratories

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.kernels.parallel import quiet_blas
@@ -17,7 +18,6 @@ from thermicon.perception.pilot.likelihood import (
     effective,
     log_likelihoods,
     normalised_weights,
-    weighted_quantile,
 )
 from thermicon.perception.pilot.playing import Confusions, stage
 from thermicon.perception.pilot.pooled_answers import PooledLikelihood

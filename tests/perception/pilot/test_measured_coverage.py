@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.kernels.parallel import quiet_blas
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.pilot.likelihood import effective, normalised_weights, weighted_quantile
+from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood
 from thermicon.perception.pilot.playing import stage
 from thermicon.perception.pilot.simulated_measurements import Setting, predicted

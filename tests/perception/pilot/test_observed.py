@@ -11,7 +11,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet, read_cue
-from thermicon.perception.observer.draws import LABORATORIES, PosteriorDraws
+from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.observed import Observed, observed
@@ -46,11 +46,11 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
     prior = LaboratoryPrior(draws, "episodes")
     some = prior.first(len(draws), 3)
     assert np.allclose(prior.constants(some), draws.draws, rtol=1e-9)
-    assert np.abs(np.cov(some.place.T) - np.eye(prior.dimensions)).max() < 0.2
+    assert np.abs(np.cov(some.place.T) - np.eye(len(prior.names))).max() < 0.2
     values = prior.values(some)
     share = values[:, prior.names.index("share of the scatter of ratings")]
     assert 0.0 <= share.min() < 0.01 and 0.99 < share.max() <= 1.0
-    spread = values[:, prior.names.index(LABORATORIES)]
+    spread = values[:, prior.names.index(BETWEEN_LABORATORIES)]
     offset = values[:, prior.names.index("sensitivity of the laboratory, cold")] / spread
     assert abs(offset.std() - 1.0) < 0.1
 
@@ -97,7 +97,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -
     (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
     draws = PosteriorDraws.load(tmp_path / "lab.csv")
     assert len(draws) == 20
-    assert draws.values(LABORATORIES).max() < 1e-5  # these draws are of this laboratory
+    assert draws.values(BETWEEN_LABORATORIES).max() < 1e-5  # these draws are of this laboratory
     assert "participants: 3; trials: 54" in draws.header.sampler
     assert draws.header.ess <= found.conditioned.effective + 0.01
     assert table.startswith("# written by thermicon observed from inputs ")

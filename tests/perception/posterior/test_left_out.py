@@ -9,7 +9,9 @@ import pytest
 
 from thermicon.perception.inference.rows import Row, load_rows
 from thermicon.perception.posterior.left_out import Predictive
-from thermicon.perception.posterior.scores import KINDS, naive_log_score, score, stacking_weights, summarise
+from thermicon.perception.posterior.left_out_file import row_of
+from thermicon.perception.posterior.posterior_tables import covered
+from thermicon.perception.posterior.scores import KINDS, naive_log_score, score, stacking_weights
 
 
 def predictive(value: float, draws: int = 4000) -> Predictive:
@@ -24,9 +26,9 @@ def test_scores_of_a_normal_prediction_are_those_of_a_normal() -> None:
     assert found.probability == pytest.approx(0.841, abs=0.01)
     assert found.log_score == pytest.approx(-0.5 - math.log(0.5 * math.sqrt(2.0 * math.pi)), abs=0.03)
     assert found.quantiles == pytest.approx((0.02, 0.663, 1.0, 1.337, 1.98), abs=0.04)
-    assert found.covered(0.95)
-    assert not found.covered(0.5)
-    assert not score(predictive(2.3)).covered(0.95)
+    assert covered(row_of(found), 0.95)
+    assert not covered(row_of(found), 0.5)
+    assert not covered(row_of(score(predictive(2.3))), 0.95)
 
 
 def test_weights_move_a_prediction() -> None:
@@ -42,13 +44,6 @@ def test_the_naive_baseline_knows_the_other_experiments_alone() -> None:
     assert math.isfinite(naive_log_score(limits))
     assert math.isnan(naive_log_score(rows["E2", "rating_mean_5strip", "cold"]))
     assert {key[1] for key in rows} >= set(KINDS)
-
-
-def test_a_summary_counts_rows() -> None:
-    found = summarise([score(predictive(value)) for value in (1.0, 1.4, 1.5, 3.0)])
-    assert (found.rows, found.covered_95, found.covered_50) == (4, 0.75, 0.25)
-    assert found.compared == 0
-    assert found.median_width == pytest.approx(1.96, abs=0.06)
 
 
 def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:

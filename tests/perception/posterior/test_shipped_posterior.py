@@ -13,10 +13,11 @@ import pytest
 
 from thermicon.perception.inference.evidence import DATA
 from thermicon.perception.inference.posterior import Posterior
-from thermicon.perception.inference.results import digest_of, inputs_digest, load_constants
+from thermicon.perception.inference.results import inputs_digest, load_constants
 from thermicon.perception.inference.rows import load_rows
 from thermicon.perception.inference.tables import TABLES as INFERRED
 from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.draws_file import current_inputs
 from thermicon.perception.posterior.left_out_file import LEFT_OUT, load_left_out
 from thermicon.perception.posterior.posterior_tables import TABLES, covered
 from thermicon.perception.posterior.summaries import summarise
@@ -46,7 +47,7 @@ def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
 
 def test_every_row_is_predicted_without_its_experiment() -> None:
     rows = load_left_out()
-    assert digest_of(DATA / LEFT_OUT) == inputs_digest()
+    assert current_inputs(DATA / LEFT_OUT) == inputs_digest()
     assert sorted((row.experiment, row.statistic, row.channel) for row in rows) == sorted(r.key for r in load_rows())
     assert all(row.low < row.lower < row.median < row.upper < row.high for row in rows)
     assert all((row.method == "weights") <= (row.k_hat <= 0.7) for row in rows)
@@ -72,7 +73,7 @@ def test_summaries_say_what_was_not_moved() -> None:
 
 def test_temperature_predicts_best_of_the_variants() -> None:
     weights = variant_weights()
-    assert digest_of(DATA / SCORES) == inputs_digest()
+    assert current_inputs(DATA / SCORES) == inputs_digest()
     assert max(weights, key=lambda each: weights[each]) == ("temperature", "adapting")
 
 
@@ -92,7 +93,10 @@ def parted(text: str) -> tuple[list[str], list[str]]:
 
 @pytest.mark.slow
 def test_calibrate_makes_the_shipped_draws_from_their_seed(tmp_path: Path) -> None:
-    """Six minutes of processor time. The order of the shipped rows is older: a row that once was first is second."""
+    """Six minutes of processor time, on a computer that rounds as that of the shipped draws does.
+
+    The order of the shipped rows is older: a row that once was first is second.
+    """
     made = tmp_path / "draws.csv"
     command = [sys.executable, "-m", "thermicon.notebooks", "calibrate", "--seed", "0", "-o", made]
     subprocess.run(command, check=True, capture_output=True)

@@ -9,8 +9,9 @@ from thermicon.circuit import Device, Rig, deliver, duration_s, simulate, simula
 from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
-from thermicon.perception.identification.delivered_people import detected_as_delivered, run_end_s
+from thermicon.perception.identification.delivered_people import detected_as_delivered
 from thermicon.perception.identification.population import PROBES, ReceptorTemperatures, population_detection
+from thermicon.perception.identification.run_end import run_end_s
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking import batches
 

@@ -78,9 +78,9 @@ def test_one_icon_of_each_family(small: IconSet, rig: Rig, objective: str) -> No
 def test_a_span_is_continuous_and_a_list_is_not() -> None:
     family = load_library("search-space").families[0]
     rng = np.random.default_rng(0)
-    gene = candidate_at(family, (0.5, 0.5, 0.5, 0.5))
-    assert gene is not None
-    moved = [gene.moved(rng, 0.2) for _ in range(40)]
+    candidate = candidate_at(family, (0.5, 0.5, 0.5, 0.5))
+    assert candidate is not None
+    moved = [candidate.moved(rng, 0.2) for _ in range(40)]
     made = [one for one in moved if one is not None]
     values = [dict(part.split("=") for part in one.icon.name.split("_")[1:]) for one in made]
     assert len({v["depth"] for v in values}) > 6
@@ -91,9 +91,9 @@ def test_a_span_is_continuous_and_a_list_is_not() -> None:
 
 def test_a_sample_is_of_members(small: IconSet) -> None:
     dip, rise = small.families
-    genes = sample_candidates((dip, rise), 20, np.random.default_rng(0))
-    assert [gene.icon.name for gene in genes] == [icon.name for icon in (*dip, *rise)]
-    assert [gene.icon.statements for gene in genes] == [icon.statements for icon in (*dip, *rise)]
+    candidates = sample_candidates((dip, rise), 20, np.random.default_rng(0))
+    assert [candidate.icon.name for candidate in candidates] == [icon.name for icon in (*dip, *rise)]
+    assert [candidate.icon.statements for candidate in candidates] == [icon.statements for icon in (*dip, *rise)]
     assert member(dip, [0.0, 1.0]).statements == dip.member({"depth": 2, "rate": 3}).statements
     assert value_at(rise.parameters[1], 0.2) == 1.0
 

@@ -1,8 +1,11 @@
 import math
 
 import pytest
+from matplotlib.colors import to_hex
 
+from thermicon.circuit.solver.draw import COOL, WARM
 from thermicon.perception.validation.tradeoffs import Answers, chance_of_as_few, correlation, trade_offs
+from thermicon.perception.validation.validate_maps import TRADE_OFF, _opposed
 
 UP = tuple(float(k) for k in range(20))
 DOWN = UP[::-1]
@@ -43,3 +46,10 @@ def test_few_draws_tell_nothing() -> None:
 def test_ranks_share_ties_and_what_is_not_felt_comes_last() -> None:
     assert correlation((1.0, 1.0, 2.0), (3.0, 3.0, math.inf)) == 1.0
     assert correlation((1.0, 1.0), (1.0, 2.0)) is None
+
+
+def test_the_caption_names_the_colours_of_correlations() -> None:
+    name, caption, _ = TRADE_OFF
+    assert name == "trade-offs"
+    assert "Orange: both rise; blue: one falls" in caption
+    assert [to_hex(_opposed()(place)) for place in (0.0, 1.0)] == [COOL, WARM]
