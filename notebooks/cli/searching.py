@@ -171,7 +171,7 @@ def search_command(
     made = FoundSet.ranked(found, icons, where, model, how, wanted)
     if report is not None or figure is not None:
         made.write(where, report, figure, _command([file], where, choose, objective, goal), look)
-    made.show(icons.title, where.name)
+    made.show(icons.title, where.name, evaluations)
 
 
 def _objective(goal: Goal | None) -> str:
