@@ -149,9 +149,9 @@ class FoundSet:
             f"Before: {', '.join(icon.name for icon in found.start)}",
             "",
             *self._goal(),
-            f"{found.evaluations} icons were tried on a nominal person{in_any_case(found.evaluations, wanted)} and {found.refined} on "
-            f"{REFINING_PEOPLE} "
-            f"people, whatever --people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
+            f"{found.evaluations} icons were tried on a nominal person"
+            f"{in_any_case(found.evaluations, wanted)} and {found.refined} on {REFINING_PEOPLE} people, whatever "
+            f"--people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
             f"(seed {found.seed}). {self._winner()} Before and after are for {crowd} on the {rig} rig.",
             "These are predictions of a model, not measurements, and the set was optimised for that same model: "
             "expect lower scores from people.",
