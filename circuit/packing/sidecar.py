@@ -25,6 +25,9 @@ NO_CLEARANCE = (
     "needs a temperature cut-off of its own that works without any software."
 )
 
+OF_THE_TARGET = ("reached", "largest_miss_K", "largest_miss_s", "rms_miss_K")
+"""Left out of `predicted`: a design is judged by its target (`reached`), what is delivered by the design."""
+
 
 def sidecar(
     delivery: DeliveredDrive,
@@ -111,7 +114,7 @@ def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
 
 def _event(event: Any, control: str) -> dict[str, object]:
     unit = "level_A" if control == "current" else "level_C"
-    return {"name": event.name, "time_s": event.time_s, unit: event.level}
+    return {"name": event.name, "time_s": event.time_s, unit: event.level, "level_of": control}
 
 
 def _played(delivery: DeliveredDrive) -> dict[str, object]:
@@ -137,7 +140,8 @@ def _played(delivery: DeliveredDrive) -> dict[str, object]:
 
 
 def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
-    predicted: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    numbers: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    predicted = {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
     if not isinstance(delivery.played, Setpoints):
         return predicted
     return {**predicted, "duration_s": delivery.file_s}

@@ -10,6 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from ..text.messages import fail, interrupted, into_nowhere, is_ours, late_notes
+from ..text.number_fault import reworded
 
 SENTENCE = 400
 """More letters than any first sentence of a command's help has."""
@@ -62,7 +63,10 @@ class Commands(TyperGroup):
         except Exception as error:
             if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
                 fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
-            if isinstance(error, typer.BadParameter) or not is_ours(error):
+            if isinstance(error, typer.BadParameter):
+                reworded(error)
+                raise
+            if not is_ours(error):
                 raise
             fail(str(error))
         else:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_free, check_output, check_separate, complete_or_absent
 from ..text.messages import check_bounds, check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import (
     Changes,
@@ -70,6 +70,7 @@ def observed_command(
             help="Write the conditioned observer, and its draws, half as many as --draws, beside it as LAB.csv.",
         ),
     ] = None,
+    force: Annotated[bool, typer.Option("--force", help="With --keep: replace the files that are there.")] = False,
     draws: Draws = 1000,
     seed: Seed = 0,
     norm: NormName = "episodes",
@@ -104,7 +105,11 @@ def observed_command(
         if keep == STDOUT:
             raise usage("- is not a file; give a name such as lab.toml", "--keep")
         check_output(drawn, (".csv",), "a table of draws")
+    elif force:
+        raise usage("belongs to --keep, whose files it replaces", "--force")
     check_separate([trials, file, *(other or []), *([observer] if observer else [])], [json, figure, keep, drawn])
+    if keep is not None and drawn is not None:
+        check_free([keep, drawn], replace=force)
     from thermicon.perception.pilot.measured import condition_on_measurements
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
     from thermicon.perception.pilot.observed import Observed, observed
@@ -119,6 +124,8 @@ def observed_command(
     by_measurements = is_measurements(trials)
     values = read_measurements(trials, where) if by_measurements else None
     answers = None if by_measurements else read_trials(trials, [icon.name for icon in icons])
+    for warning in () if answers is None else answers.warnings:
+        note(f"warning: {warning}")
     others = [read_set([name]) for name in other or []]
     warn_of_frames([file], icons, where)
     found: Observed | MeasuredPilot

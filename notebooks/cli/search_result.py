@@ -27,6 +27,9 @@ REFINING_PEOPLE = 24
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_TRIALS = 3
+MOST_LISTED, NEARLY = 400, 0.8
+"""Listed icons that a search starts from, as `SAMPLED` in `thermicon.perception.selection.search_run`; and the share of
+the icons tried from which the number that was wanted is as good as kept: whole rounds are tried."""
 LEAST_AGAIN = 0.01
 """Share of what is wanted, below which a second search is not worth a sentence."""
 
@@ -58,7 +61,7 @@ class FoundSet:
     def ranked(
         cls, found: SearchResult, icons: IconSet, rig: Rig, model: ObserverModel, how: Ranked, goal: Goal | None
     ) -> FoundSet:
-        """Rank both sets, the initial one without the goal; try what would help where the found one misses it."""
+        """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
         from thermicon.icons import IconSet
         from thermicon.perception import rank
         from thermicon.perception.ranking.reach import what_would_help
@@ -75,11 +78,11 @@ class FoundSet:
                     tracking=how.tracking,
                     norm=how.norm,
                     parameters=draws,
-                    goal=wanted,
+                    goal=goal,
                     observer=model,
                     progress=bar,
                 )
-                for each, wanted in ((start, None), (found.found, goal))
+                for each in (start, found.found)
             )
         advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
@@ -119,8 +122,11 @@ class FoundSet:
                 draft.write_text(made, encoding="utf-8", newline="\n")
             note(f"wrote {report_out}")
 
-    def show(self, title: str, rig: str) -> None:
-        """Print the improved set, its scores next to those of the initial set, and the caveat."""
+    def show(self, title: str, rig: str, wanted: int) -> None:
+        """Print the improved set, its scores next to those of the initial set, and the caveat.
+
+        `wanted` is how many icons were to be tried.
+        """
         found = self.found
         made = table("", "before", "after", numbers=("before", "after"))
         for what, before, after in self._rows():
@@ -143,8 +149,9 @@ class FoundSet:
             f"Before: {', '.join(icon.name for icon in found.start)}",
             "",
             *self._goal(),
-            f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
-            f"people, whatever --people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
+            f"{found.evaluations} icons were tried on a nominal person"
+            f"{in_any_case(found.evaluations, wanted)} and {found.refined} on {REFINING_PEOPLE} people, whatever "
+            f"--people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
             f"(seed {found.seed}). {self._winner()} Before and after are for {crowd} on the {rig} rig.",
             "These are predictions of a model, not measurements, and the set was optimised for that same model: "
             "expect lower scores from people.",
@@ -175,9 +182,20 @@ class FoundSet:
         if all(intervals):
             one, other = (percent_span(*each.proportion_correct) for each in intervals if each is not None)
             yield f"  {laboratory(self.after.observer, self.after.own_laboratory)} (95 %)", one, other
+        yield from self._shares()
         yield "information, bits", f"{before.information_bits:.2f}", f"{after.information_bits:.2f}"
         yield "information rate, bits/s", f"{before.bits_per_s:.2f}", f"{after.bits_per_s:.2f}"
         yield "total duration, s", number(self.before.total_s), number(self.after.total_s)
+
+    def _shares(self) -> Iterator[tuple[str, str, str]]:
+        """What the shares of people reach that the goal asks for, as the goal judges it."""
+        goals = self.before.goal, self.after.goal
+        if goals[0] is None or goals[1] is None:
+            return
+        for parts in zip(goals[0].parts, goals[1].parts, strict=True):
+            if (people := parts[0].part.people) is not None:
+                before, after = (goal_value(part.to_dict())[0] for part in parts)
+                yield f"  goal: {parts[0].part.quantity} for {100.0 * people:g} % of people", before, after
 
     def _remarks(self) -> Iterator[str]:
         """Icons of the found set that are not green, or that many people will miss; ranges that end too early."""
@@ -206,6 +224,17 @@ class FoundSet:
             return
         yield from advice_lines(self.advice)
         yield ""
+
+
+def in_any_case(tried: int, wanted: int) -> str:
+    """Why clearly more icons were tried than were to be; empty where they were about as many.
+
+    >>> in_any_case(220, 50), in_any_case(2026, 2000)
+    (' (not 50: what the families list is tried in any case, 400 icons at most)', '')
+    """
+    if tried * NEARLY <= wanted:
+        return ""
+    return f" (not {wanted}: what the families list is tried in any case, {MOST_LISTED} icons at most)"
 
 
 def advice_lines(advice: Advice | None) -> Iterator[str]:

@@ -188,7 +188,7 @@ def search_command(
             "parameters": parameters,
         }
         made.write(where, report, figure, command_text(file, where, rig, options), look)
-    made.show(icons.title, where.name)
+    made.show(icons.title, where.name, evaluations)
 
 
 def _objective(goal: Goal | None) -> str:

@@ -116,6 +116,7 @@ class Observed:
             "icons": list(trials.icons),
             "never_presented": list(trials.never_presented),
             "single_trial": list(trials.single_trial),
+            "warnings": list(trials.warnings),
             "counts": trials.pooled.astype(int).tolist(),
             "observed": self.pooled.to_dict(),
             "each": [

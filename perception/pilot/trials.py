@@ -25,6 +25,8 @@ class Trials:
         Median time of each participant's correct answers, s; NaN where none was recorded.
     source, digest
         Name of the file, and the first 16 digits of its SHA-256.
+    warnings
+        What is doubtful about the times in the file, with place and cure.
 
     Raises
     ------
@@ -44,6 +46,7 @@ class Trials:
     time_s: tuple[float, ...] = ()
     source: str = ""
     digest: str = ""
+    warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         counts = np.array(self.counts, dtype=np.float64)

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import math
+import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -27,6 +28,13 @@ LONGEST_LABEL, LONGEST_TIME_S = 100, 3600.0
 MARKS = (",", ";", "\t")
 LEAST_TIMES, SLOW_S, SLOWEST_S = 3, 60.0, 600.0
 """Times by which a unit is judged; medians above which whole numbers from 100 on, or any, can only be milliseconds."""
+PAUSE, MOST_PAUSES = 30.0, 5
+"""Times over SLOW_S and so many times the median are doubtful; of so many, each has a warning of its own."""
+LIKE_TIMES = re.compile(
+    r"(.*\.)?(rt|latency|((reaction|response|answer)[ _]?)?time)[ _(\[]*(s|sec(ond)?s?|ms|msecs?|milliseconds)?[)\]]?",
+    re.IGNORECASE,
+)
+"""Names under which other programs record times of answers, such as time_ms, RT, key_resp.rt and response_time (s)."""
 
 
 class TrialsError(InputError):
@@ -62,7 +70,8 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     ------
     TrialsError
         For a file that cannot be read, is too large or has no rows, for missing columns, for a trial that stands twice,
-        for names that are not in the set, and for times that are plainly milliseconds.
+        for names that are not in the set, for times that are negative, over an hour or not numbers, and for times that
+        are plainly milliseconds.
 
     Examples
     --------
@@ -81,6 +90,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     participants: dict[str, int] = {}
     answers: list[tuple[int, int, int]] = []
     times: list[tuple[int, float]] = []
+    timed: list[tuple[str, int, float]] = []
     first: dict[tuple[str, str], int] = {}
     for row, line in zip(cells.rows, cells.lines, strict=True):
         where = f"{file}:{line}"
@@ -94,8 +104,10 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         pair = [_icon(row[column], column, known, where) for column in ("presented", "responded")]
         number = participants.setdefault(person, len(participants))
         answers.append((number, places[pair[0]], places[pair[1]]))
-        if row.get(TIME) and pair[0] == pair[1]:
-            times.append((number, _time(row[TIME], where)))
+        if row.get(TIME):
+            timed.append((person, line, _time(row[TIME], where)))
+            if pair[0] == pair[1]:
+                times.append((number, timed[-1][2]))
     check_labels(file, participants)
     counts = np.zeros((len(participants), len(names), len(names)))
     np.add.at(counts, tuple(np.array(answers).T), 1.0)
@@ -103,7 +115,40 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         float(np.median(each)) if (each := [time for person, time in times if person == number]) else math.nan
         for number in range(len(participants))
     )
-    return Trials(names, tuple(participants), counts, medians, file.name, digest_of(file))
+    doubts = (*_unread_times(file, cells.header), *_pauses(file, timed))
+    return Trials(names, tuple(participants), counts, medians, file.name, digest_of(file), doubts)
+
+
+def _unread_times(file: Path, header: Sequence[str]) -> list[str]:
+    """That times in a column of another name are not read, in a table without the one that is."""
+    if TIME in header:
+        return []
+    return [
+        f"{file}: times in the column {quoted(name)} are not read: name it {TIME} and give s, or leave it as it is if "
+        "they are of no interest"
+        for name in header
+        if LIKE_TIMES.fullmatch(name)
+    ]
+
+
+def _pauses(file: Path, timed: Sequence[tuple[str, int, float]]) -> list[str]:
+    """Times of (participant, line, s) that are far longer than the others of the participant, or of all if few."""
+    each: dict[str, list[float]] = {}
+    for person, _, value in timed:
+        each.setdefault(person, []).append(value)
+    together, found = [value for _, _, value in timed], list[str]()
+    for person, line, value in timed:
+        own = each[person] if len(each[person]) >= LEAST_TIMES else together
+        middle = float(np.median(own))
+        if len(own) >= LEAST_TIMES and value > max(SLOW_S, PAUSE * middle):
+            whose = f"of participant {quoted(person)}" if own is not together else "of all times"
+            found.append(
+                f"{file}:{line}: {TIME} is {value:g} s, and the median {whose} is {middle:.3g} s: correct it, or leave "
+                "it empty; the answer counts in either case"
+            )
+    if (more := len(found) - MOST_PAUSES) > 0:
+        found[MOST_PAUSES:] = [f"{file}: {more} more {'time is' if more == 1 else 'times are'} that long"]
+    return found
 
 
 def _check_unit_of_times(path: Path, cells: Cells) -> None:

@@ -127,7 +127,7 @@ class Goal:
     Raises
     ------
     GoalError
-        For two parts about the same.
+        For two parts about the same quantity and share of people.
 
     See Also
     --------
@@ -148,7 +148,7 @@ class Goal:
         for part in self.parts:
             other = seen.setdefault((part.quantity, part.people), part)
             if other is not part:
-                raise GoalError(f"goal: {other.text!r} and {part.text!r} are about the same: keep one of them")
+                raise GoalError(f"goal: {_same(other, part)}")
 
     @classmethod
     def parse(cls, text: str) -> Goal:
@@ -164,7 +164,7 @@ class Goal:
         Raises
         ------
         GoalError
-            For what cannot be read, units that do not fit, and parts about the same.
+            For what cannot be read, units that do not fit, and parts about the same quantity and share of people.
 
         """
         from lark.exceptions import UnexpectedInput
@@ -209,6 +209,16 @@ class Goal:
 
     def __repr__(self) -> str:
         return f"Goal({self.text})"
+
+
+def _same(one: GoalPart, other: GoalPart) -> str:
+    """That two parts limit the same quantity, and which of them to keep."""
+    if one.limit == other.limit:
+        return f"{one.text!r} stands twice: leave one out"
+    lower = one.quantity == SAFETY or QUANTITIES[one.quantity].comparison == "<="
+    strictest = min if lower else max
+    kept = strictest((one, other), key=lambda part: part.limit)
+    return f"{one.text!r} and {other.text!r} limit the same quantity: keep the stricter, {kept.text!r}"
 
 
 @lru_cache(maxsize=1)

@@ -251,6 +251,31 @@ class TestSidecar:
         assert thermode["events"][0]["time_s"] == 0.0
         assert thermode["played"]["segments"] == 3
 
+    def test_events_say_whose_level_they_have(self) -> None:
+        text = "cue 1\nset s {{ site thenar; control {} }}\nicon a {{ {} }}\n"
+        kinds = {
+            "display": "warm by 3 °C at 1 °C/s; return at 1 °C/s",
+            "skin": "warm by 2 °C at 0.5 °C/s; return at 0.5 °C/s",
+            "current": "to 0.4 A at 0.5 A/s; return at 0.5 A/s",
+        }
+        for control, statements in kinds.items():
+            (icon,) = parse(text.format(control, statements)).icons
+            told = sidecar_of(prepare(icon, RIG, Device.load("dac-16"), CSV, gate=GreenVerdict))
+            unit = "level_A" if control == "current" else "level_C"
+            assert {event["level_of"] for event in told["events"]} == {control}
+            assert all(list(event) == ["name", "time_s", unit, "level_of"] for event in told["events"])
+            assert told["reached"] is (None if control == "current" else True)
+
+    @pytest.mark.parametrize(
+        ("device", "form"),
+        [("dac-16", "csv"), ("closed-loop-controller", "setpoint-csv"), ("qst-tcs2", "tcs2-serial")],
+    )
+    def test_whether_the_target_is_reached_stands_once(self, device: str, form: str) -> None:
+        told = sidecar_of(ready(device=device, form=form), form)
+        assert told["reached"] is True
+        assert not {key for key in told["predicted"] if "reached" in key or "miss" in key}
+        assert told["predicted"]["skin_min_C"] < 27.0
+
     def test_a_thermode_is_predicted_on_the_clock_of_its_commands_and_without_a_module_of_the_rig(self) -> None:
         told = sidecar_of(ready(device="qst-tcs2", form="tcs2-serial"), "tcs2-serial")
         assert told["played"]["icon_begins_at_s"] == told["events"][0]["time_s"] == 0.0

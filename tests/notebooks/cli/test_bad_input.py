@@ -168,6 +168,9 @@ USAGE = [
     (("simulate", "a.cue", "--rate", "nan"), "--rate"),
     (("simulate", "a.cue", "--tail", "-1"), "--tail"),
     (("rank", "six-icons", "--people", "0"), "--people"),
+    (("rank", "six-icons", "--people", "1.5"), "'1.5' is not a whole number; write one, such as 12"),
+    (("rank", "six-icons", "--seed", "9" * 5000), "has too many digits to be read"),
+    (("plan", "six-icons", "--width", "wide"), "'wide' is not a number in percentage points; write it in digits"),
     (("rank", "six-icons", "--people", "100001"), "1 to 100000"),
     (("rank", "six-icons", "--trials", "1000000000000"), "--trials"),
     (("rank", "six-icons", "--tracking", "repaly"), "replay, display, ideal"),
@@ -181,6 +184,11 @@ def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...]
     assert said.exit_code == 2
     assert words in said.stderr + (said.stdout if not arguments else "")
     assert "Traceback" not in said.stderr
+
+
+def test_a_switch_of_the_environment_that_is_neither_yes_nor_no(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("THERMICON_RECOMPUTE", "perhaps")
+    refused(cli("rank", "six-icons"), "'perhaps' in THERMICON_RECOMPUTE is neither yes nor no; set it to 1 or", code=2)
 
 
 @pytest.mark.parametrize(

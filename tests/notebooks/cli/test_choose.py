@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -168,6 +169,7 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
     assert "a new laboratory (95 %)" in words
+    assert re.search(r"goal: correct for 95 % of people \d+\.\d % \d+\.\d %", words)
     assert "✗ correct >= 99.9 % for 95 % of people: " in words
     assert "✓ time <= 60 s: " in words
     assert "Not reached by this search" in words

@@ -146,6 +146,7 @@ def test_a_bad_table_is_bad_input_and_nothing_is_written(cli: Cli, two: Path, tm
         (("--draws", 5), "'--draws': 5 is outside 20 to 20000"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
         (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming, max, rms, integral"),
+        (("--force",), "'--force': belongs to --keep, whose files it replaces"),
         (("--keep", "-"), "'--keep': - is not a file; give a name such as lab.toml"),
     ],
 )
@@ -161,6 +162,34 @@ def test_outputs_are_checked_before_work_begins(cli: Cli, two: Path, answers: Pa
     assert "an observer is written as .toml, not .csv" in said.stderr
     own = answers.with_suffix(".toml")
     assert "is read by this command; give another name" in cli("observed", answers, two, "--keep", own).stderr
+
+
+def test_what_was_kept_is_replaced_only_with_force(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
+    lab = tmp_path / "lab.toml"
+    lab.with_suffix(".csv").write_text("mine", encoding="utf-8")
+    said = cli("observed", answers, two, *QUICK, "--keep", lab)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert said.stderr == f"{lab.with_suffix('.csv')} already exists and was kept; --force replaces it\n"
+    lab.write_text("mine", encoding="utf-8")
+    both = cli("observed", answers, two, *QUICK, "--keep", lab).stderr
+    assert both == f"{lab} and 1 more already exist and were kept; --force replaces them\n"
+    assert lab.read_text(encoding="utf-8") == lab.with_suffix(".csv").read_text(encoding="utf-8") == "mine"
+    said = cli("observed", answers, two, *QUICK, "--keep", lab, "--force")
+    assert said.exit_code == 0, said.stderr
+    assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 12
+
+
+def test_doubtful_times_are_warned_of_on_screen_and_in_the_file(
+    cli: Cli, two: Path, answers: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out.json"
+    text = answers.read_text(encoding="utf-8").replace("ann,3,cool-step,cool-step,4.5", "ann,3,cool-step,cool-step,900")
+    answers.write_text(text, encoding="utf-8")
+    said = cli("observed", answers, two, *QUICK, "--json", out)
+    assert said.exit_code == 0
+    warning = f"{answers}:5: time_s is 900 s, and the median of participant 'ann' is "
+    assert said.stderr.startswith(f"warning: {warning}")
+    assert json.loads(out.read_text(encoding="utf-8"))["warnings"][0].startswith(warning)
 
 
 def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:

@@ -179,7 +179,7 @@ def test_a_goal_is_judged_with_what_is_predicted_how_far_that_is_and_what_binds(
     ("typed", "message"),
     [
         ("corect >= 90 %", "there is no quantity"),
-        ("correct >= 90 %, correct >= 80 %", "are about the same: keep one of them"),
+        ("correct >= 90 %, correct >= 80 %", "limit the same quantity: keep the stricter, "),
         ("time >= 10 s", "is wanted"),
         ("correct >= 90 % for", "ends too early"),
         ("<script>", "cannot be read"),

@@ -53,6 +53,12 @@ def test_semicolons_quotes_comments_and_further_columns_are_read(tmp_path: Path)
         (("P1,1,dip,dip", "p1,2,dip,dip"), HEAD, "participants 'P1' and 'p1' differ by case alone; did you mean 'P1'"),
         (("P1,1,dip,dip,soon",), f"{HEAD},time_s", "time_s is 'soon', not a time of 0 to 3600 s"),
         (("P1,1,dip,dip,-1",), f"{HEAD},time_s", "time_s is '-1', not a time of 0 to 3600 s"),
+        (
+            ("P1,1,dip,cool-step,-0.4",),
+            f"{HEAD},time_s",
+            "csv:2: time_s is '-0.4', not a time of 0 to 3600 s; leave it",
+        ),
+        (("P1,1,dip,dip,2", "P1,2,dip,cool-step,9000"), f"{HEAD},time_s", "csv:3: time_s is '9000', not a time of"),
         (("P1,1,dip,dip,9",), HEAD, "csv:2: 5 cells, where the first line names 4"),
         ((f"{'P' * 101},1,dip,dip",), HEAD, "participant has 101 characters; at most 100"),
     ],
@@ -90,6 +96,40 @@ def test_slow_answers_stay_seconds(tmp_path: Path, times: tuple[float, ...]) -> 
     rows = [f"P1,{k},dip,dip,{time}" for k, time in enumerate(times)]
     found = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
     assert found.time_s == (float(np.median(times)),)
+
+
+def test_a_time_far_longer_than_the_others_is_warned_of_with_its_line(tmp_path: Path) -> None:
+    rows = [f"P1,{k},dip,dip,{1.5 + 0.1 * k}" for k in range(5)] + ["P1,9,dip,cool-step,1800", "P2,1,dip,dip,61"]
+    path = written(tmp_path, *rows, head=f"{HEAD},time_s")
+    pause, other = read_trials(path, ICONS).warnings
+    assert pause == (
+        f"{path}:7: time_s is 1800 s, and the median of participant 'P1' is 1.75 s: correct it, or leave it empty; the "
+        "answer counts in either case"
+    )
+    assert other.startswith(f"{path}:8: time_s is 61 s, and the median of all times is 1.8 s: ")
+    rows = [f"P1,{k},dip,dip,{90 if k < 6 else 1.5}" for k in range(20)]
+    many = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS).warnings
+    assert (len(many), many[-1]) == (6, f"{path}: 1 more time is that long")
+    slow = written(
+        tmp_path, *(f"P1,{k},dip,dip,{time}" for k, time in enumerate((1.5, 2, 3, 59))), head=f"{HEAD},time_s"
+    )
+    assert read_trials(slow, ICONS).warnings == ()
+
+
+@pytest.mark.parametrize(
+    "column", ["time_ms", "Time_s", "RT", "key_resp.rt", "response_time (s)", "reaction time [ms]"]
+)
+def test_times_under_another_name_are_said_not_to_be_read(tmp_path: Path, column: str) -> None:
+    path = written(tmp_path, "P1,1,dip,dip,900", head=f"{HEAD},{column}")
+    (said,) = read_trials(path, ICONS).warnings
+    assert said.startswith(f"{path}: times in the column {column!r} are not read: name it time_s and give s")
+    both = written(tmp_path, "P1,1,dip,dip,900,0.9", head=f"{HEAD},{column},time_s")
+    assert read_trials(both, ICONS).warnings == ()
+
+
+@pytest.mark.parametrize("column", ["timeline", "start", "part", "sometimes", "note"])
+def test_other_columns_are_nobodys_business(tmp_path: Path, column: str) -> None:
+    assert read_trials(written(tmp_path, "P1,1,dip,dip,7", head=f"{HEAD},{column}"), ICONS).warnings == ()
 
 
 def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

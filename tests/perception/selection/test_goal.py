@@ -46,7 +46,14 @@ def test_the_strictest_of_several_counts() -> None:
         ("count 6.5", "count is a whole number of icons"),
         ("time <= 9 s for 95 % of people", "time is the same for all people"),
         ("correct >= 9 % for 20 % of people", "for 50 % of people or more"),
-        ("correct >= 90 %, correct >= 80 %", "are about the same: keep one of them"),
+        (
+            "count 4, count >= 5",
+            "'count >= 4' and 'count >= 5' limit the same quantity: keep the stricter, 'count >= 5'",
+        ),
+        ("time <= 9 s, time <= 8 s", "keep the stricter, 'time <= 8 s'"),
+        ("safety amber, safety green", "keep the stricter, 'safety green'"),
+        ("bits >= 2, bits >= 2 bits", "'bits >= 2 bits' stands twice: leave one out"),
+        ("correct >= 90 %, correct >= 80 %", "limit the same quantity: keep the stricter, 'correct >= 90 %'"),
     ],
 )
 def test_what_cannot_be_read_is_said_with_its_place_and_cure(text: str, words: str) -> None:

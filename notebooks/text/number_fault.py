@@ -1,0 +1,55 @@
+"""What a person reads where an option needs a number and got something else."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+UNITS = {"S": "s", "HZ": "Hz", "J": "J", "K": "K", "POINTS": "percentage points", "PERCENT": "%"}
+"""Units by the metavar of an option; others have none."""
+WHOLE, DECIMAL, SWITCH = "int", "float", "bool"
+DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+
+
+def number_fault(text: str, kind: str, unit: str = "") -> str:
+    """Say what kind of number was wanted, and how to write it.
+
+    >>> number_fault("abc", "float", "s")
+    "'abc' is not a number in s; write it in digits, such as 2.5"
+    >>> number_fault("10 s", "float", "s")
+    "'10 s' is not a number in s; leave the unit out: 10"
+    >>> number_fault("2,5", "float"), number_fault("2.5", "int")
+    ("'2,5' is not a number; write a decimal point: 2.5", "'2.5' is not a whole number; write one, such as 12")
+    """
+    from thermicon.circuit.inputs import quoted
+
+    bare = text.strip()
+    what = "a whole number" if kind == WHOLE else f"a number in {unit}" if unit else "a number"
+    own = re.fullmatch(rf"({DIGITS})\s*{re.escape(unit)}", bare) if unit else None
+    if kind == WHOLE and re.fullmatch(r"[-+]?\d+", bare):
+        return f"{quoted(text)} has too many digits to be read"
+    if kind == DECIMAL and own:
+        cure = f"leave the unit out: {own[1]}"
+    elif kind == DECIMAL and re.fullmatch(r"[-+]?\d*,\d+", bare):
+        cure = f"write a decimal point: {bare.replace(',', '.')}"
+    else:
+        cure = "write one, such as 12" if kind == WHOLE else "write it in digits, such as 2.5"
+    return f"{quoted(text)} is not {what}; {cure}"
+
+
+def reworded(error: Any) -> None:
+    """Put such a sentence in the place of the parser's own words, where an option could not be read as a number.
+
+    `error` is a bad parameter of the command line; others stay as they are.
+    """
+    param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
+    if param is None or faults is None:
+        return
+    from thermicon.circuit.inputs import quoted
+
+    fault = faults()[0]
+    kind, text = fault["type"].partition("_")[0], str(fault["input"])
+    if kind == SWITCH and param.envvar:
+        error.message = f"{quoted(text)} in {param.envvar} is neither yes nor no; set it to 1 or 0, or unset it"
+    elif kind in (WHOLE, DECIMAL):
+        error.message = number_fault(text, kind, UNITS.get(param.metavar or "", ""))
