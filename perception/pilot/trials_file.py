@@ -286,7 +286,7 @@ def _icon(cell: str, column: str, known: set[str], where: str) -> str:
         return name
     same = [icon for icon in known if icon.casefold() == name.casefold()]
     hint = f"did you mean {same[0]}? Names differ by case" if same else did_you_mean(name, known)
-    cure = "" if same else "; an answer that names no icon is left out with its row" * (column == "responded")
+    cure = "" if same else "; where somebody answered none of the icons, remove the row" * (column == "responded")
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}{cure}")
 
 

@@ -9,7 +9,8 @@ from matplotlib.figure import Figure
 import thermicon.icons
 from thermicon.icons import Context, Icon, load_library
 from thermicon.icons.model.statements import Hold
-from thermicon.icons.pictures.draw import COOL, STAY, WARM, plot_icon
+from thermicon.icons.pictures.curve_style import COOL, STAY, WARM
+from thermicon.icons.pictures.draw import plot_icon
 
 
 def test_all_names_exist() -> None:
