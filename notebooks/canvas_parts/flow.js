@@ -66,7 +66,7 @@ class Flow {
     }
   }
 
-  /** What is in flight got lost; what waits goes another way. */
+  /** Stops waiting for the message in flight, and sends the next one. */
   lost() {
     clearTimeout(this.timer);
     this.inFlight = null;

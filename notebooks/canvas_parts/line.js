@@ -4,7 +4,7 @@
 const OWN_MACHINE = ["localhost", "127.0.0.1", "[::1]"];
 
 class Line {
-  /** `onFrame(meta, buffers)` gets what arrives; `onEnd` is told when a line that was open is no more. */
+  /** `onFrame(meta, buffers)` is called with each frame, `onEnd` when an open connection closes. */
   constructor(onFrame, onEnd) {
     Object.assign(this, { onFrame, onEnd, socket: null });
   }

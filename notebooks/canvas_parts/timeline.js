@@ -223,7 +223,7 @@ class Timeline {
     this.onHandle(handle ? handle.line : 0, this.handles.pulling);
   }
 
-  /** The tip hangs on the side of its corner that has more room, so that its own size need not be known. */
+  /** The tip stands on the side of its corner that has more room, so it fits whatever its own size is. */
   placeTip(tip, lay, box) {
     const { t, y } = this.handles.placeOf(tip.index);
     setText(this.tip, tip.text);

@@ -51,7 +51,7 @@ class DirectLine:
         """Close the port."""
         if self._server is not None:
             self._server.stop()
-            self._server = None
+            self._server, self.port = None, 0
 
 
 class _Socket(WebSocketHandler):
