@@ -211,7 +211,7 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
             noise = drawn(seed, first + person, used, samples)
             own = points[person, :, :used]
             gram = own @ own.T - (0.5 * (own**2).sum(axis=1) - favour[person])[:, None]
-            kernels.nearest(gram, np.ascontiguousarray((own @ noise).T), counts[person])
+            kernels.nearest(gram, own @ noise, counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
     return counts / samples

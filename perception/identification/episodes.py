@@ -139,13 +139,14 @@ def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: 
 
     people = len(one)
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
-    first, second = one.scaled(norm, observer), other.scaled(norm, observer)
+    first = one.scaled(norm, observer)
+    second = first if other is one else other.scaled(norm, observer)
     intensity, timing = intensity_noise(norm, observer, own), observer.memory.timing * own
     apart = np.empty((people, one.counts.shape[1], other.counts.shape[1]))
 
     def work(part: slice) -> None:
         alignment.distances(
-            first.features[part], first.counts[part], second.features[part], second.counts[part],
+            first.features[part], first.counts[part], second.features[part], second.counts[part], other is one,
             intensity[part], timing[part], apart[part],
         )  # fmt: skip
 

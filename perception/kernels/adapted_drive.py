@@ -14,15 +14,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from thermicon.circuit.compiled import kernel
+import numpy as np
 
-FAR = 30.0
-"""Softnesses beyond its limit at which a soft limit is none."""
-
-
-def _limited(temperature: float, limit: float, softness: float, sign: float) -> float:
-    x = sign * (temperature - limit) / softness
-    return temperature if x > FAR else limit + sign * softness * math.log1p(math.exp(x))
+from thermicon.circuit.vector_math import exp, log1p, vectorised
 
 
 def _adapted_drive(
@@ -44,21 +38,25 @@ def _adapted_drive(
         -math.expm1(-dt / integration_s) * integration_s / dt,
         -math.expm1(-dt / adaptation_s) * adaptation_s / dt,
     )
+    samples = temperature.shape[1]
+    quality = np.empty(samples)
     for row in range(temperature.shape[0]):
-        q = limited(temperature[row, 0], limit, softness, sign)
-        clipped = min(max(q, low), high)
-        integrated, level = q, clipped
-        for t in range(temperature.shape[1]):
+        for t in range(samples):
+            x = sign * (temperature[row, t] - limit) / softness
+            quality[t] = limit + sign * softness * (max(x, 0.0) + log1p(exp(-abs(x))))  # max(0, x), with a soft corner
+        # States are counted from the first sample, where what does not change leaves them at 0 without rounding.
+        first = quality[0]
+        first_clipped = min(max(first, low), high)
+        q, clipped, integrated, level = 0.0, 0.0, 0.0, 0.0
+        for t in range(samples):
             if t > 0:
                 last_q, last_clipped = q, clipped
-                q = limited(temperature[row, t], limit, softness, sign)
-                clipped = min(max(q, low), high)
-                integrated = decay_i * integrated + (mean_i - decay_i) * last_q + (1.0 - mean_i) * q
-                level = decay_a * level + (mean_a - decay_a) * last_clipped + (1.0 - mean_a) * clipped
-            y = sign * (integrated - level)
+                q = quality[t] - first
+                clipped = min(max(quality[t], low), high) - first_clipped
+                integrated = decay_i * integrated + ((mean_i - decay_i) * last_q + (1.0 - mean_i) * q)
+                level = decay_a * level + ((mean_a - decay_a) * last_clipped + (1.0 - mean_a) * clipped)
+            y = sign * ((integrated - level) + (first - first_clipped))
             drive[row, t] = y if y > 0.0 else 0.0
 
 
-_compile: Any = kernel(nogil=True)
-limited: Any = _compile(_limited)
-adapted_drive: Any = _compile(_adapted_drive)
+adapted_drive: Any = vectorised(_adapted_drive)

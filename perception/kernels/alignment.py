@@ -81,42 +81,61 @@ def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: f
     return float(cost[ones, twos])
 
 
-def _distances(one: Any, ones: Any, two: Any, twos: Any, intensity: Any, timing: Any, apart: Any) -> None:
-    """d′ (people, n, m) from every icon of `one` to every icon of `two`; noises are (people, 2) and (people,)."""
-    shares = np.empty(SHARES)
+def _of_pair(x: Any, y: Any, intensity: Any, timing: float) -> float:
+    """m² of two episodes of one quality."""
+    sd = intensity[int(x[QUALITY])]
+    square = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
+    if x[CUT] == 0.0 and y[CUT] == 0.0:
+        square += (x[LENGTH] - y[LENGTH]) ** 2
+    noise = sd * sd + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
+    return float((x[INTENSITY] - y[INTENSITY]) ** 2 / noise + square / (timing * timing))
+
+
+def _least_cost(
+    one: Any, ones: int, alone: Any, two: Any, twos: int, missing: Any, sd: Any, timing: float, cost: Any
+) -> float:
+    """d′² between two sequences, given what their episodes cost without a partner; `cost` (MOST + 1,) is room."""
+    cost[0] = 0.0
+    for j in range(twos):
+        cost[j + 1] = cost[j] + missing[j]
+    for i in range(ones):
+        before, cost[0] = cost[0], cost[0] + alone[i]
+        for j in range(twos):
+            best = min(cost[j + 1] + alone[i], cost[j] + missing[j])
+            if one[i, QUALITY] == two[j, QUALITY]:
+                best = min(best, before + of_pair(one[i], two[j], sd, timing))
+            before, cost[j + 1] = cost[j + 1], best
+    return float(cost[twos])
+
+
+def _distances(
+    one: Any, ones: Any, two: Any, twos: Any, same: bool, intensity: Any, timing: Any, apart: Any
+) -> None:  # fmt: skip
+    """d′ (people, n, m) from every icon of `one` to every icon of `two`; noises are (people, 2) and (people,).
+
+    Where both are the `same`, each pair is compared once.
+    """
+    alone, missing = np.empty(one.shape[1:3]), np.empty(two.shape[1:3])
+    cost = np.empty(two.shape[2] + 1)
     for person in range(apart.shape[0]):
+        sd = intensity[person]
         for i in range(apart.shape[1]):
-            for j in range(apart.shape[2]):
-                square = aligned(
-                    one[person, i], ones[person, i], two[person, j], twos[person, j],
-                    intensity[person], timing[person], shares,
+            for k in range(ones[person, i]):
+                alone[i, k] = unmatched(one[person, i, k], sd)
+        for j in range(apart.shape[2]):
+            for k in range(twos[person, j]):
+                missing[j, k] = unmatched(two[person, j, k], sd)
+        for i in range(apart.shape[1]):
+            for j in range(i + 1 if same else 0, apart.shape[2]):
+                square = least_cost(
+                    one[person, i], ones[person, i], alone[i], two[person, j], twos[person, j], missing[j], sd,
+                    timing[person], cost,
                 )  # fmt: skip
                 apart[person, i, j] = math.sqrt(square)
-
-
-def _cost_of_name(
-    felt: Any, felts: int, lone: Any, template: Any, places: int, sd: Any, timing: Any, c: float
-) -> float:
-    """What it costs to give one felt sequence the name of a template: felt without a partner lone² + c, missing g²."""
-    cost = np.empty((felts + 1, places + 1))
-    cost[0, 0] = 0.0
-    for i in range(1, felts + 1):
-        cost[i, 0] = cost[i - 1, 0] + lone[i - 1] * lone[i - 1] + c
-    for j in range(1, places + 1):
-        cost[0, j] = cost[0, j - 1] + unmatched(template[j - 1], sd)
-    for i in range(1, felts + 1):
-        for j in range(1, places + 1):
-            x, y = felt[i - 1], template[j - 1]
-            best = min(cost[i - 1, j] + lone[i - 1] * lone[i - 1] + c, cost[i, j - 1] + unmatched(y, sd))
-            if x[QUALITY] == y[QUALITY]:
-                noise = sd[int(x[QUALITY])] ** 2 + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
-                square = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
-                if x[CUT] == 0.0 and y[CUT] == 0.0:
-                    square += (x[LENGTH] - y[LENGTH]) ** 2
-                pair = (x[INTENSITY] - y[INTENSITY]) ** 2 / noise + square / (timing * timing)
-                best = min(best, cost[i - 1, j - 1] + pair)
-            cost[i, j] = best
-    return float(cost[felts, places])
+                if same:
+                    apart[person, j, i] = apart[person, i, j]
+            if same:
+                apart[person, i, i] = 0.0
 
 
 def _name(
@@ -125,10 +144,15 @@ def _name(
     """Count the names that one person gives: noise on what is felt, the template that costs least.
 
     `felt` (icons, MOST, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (icons, samples, MOST, 4)
-    are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to.
+    are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to. What is felt without a
+    partner costs `c` more than the square of its size, since noise is part of it.
     """
     icons = felt.shape[0]
-    now, lone = felt[0].copy(), np.empty(felt.shape[1])
+    now, alone, missing = felt[0].copy(), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
+    cost = np.empty(felt.shape[1] + 1)
+    for j in range(icons):
+        for k in range(counts[j]):
+            missing[j, k] = unmatched(felt[j, k], intensity)
     for i in range(icons):
         for s in range(noise.shape[1]):
             for k in range(counts[i]):
@@ -140,12 +164,13 @@ def _name(
                 now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
                 now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
                 now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
-                lone[k] = max((x[INTENSITY] - x[ONSET]) / total + z[0], 0.0)
+                lone = max((x[INTENSITY] - x[ONSET]) / total + z[0], 0.0)
+                alone[k] = lone * lone + c
             best, name = math.inf, 0
             for j in range(icons):
-                cost = cost_of_name(now, counts[i], lone, felt[j], counts[j], intensity, timing, c) - 2.0 * favour[j]
-                if cost < best:
-                    best, name = cost, j
+                square = least_cost(now, counts[i], alone, felt[j], counts[j], missing[j], intensity, timing, cost)
+                if square - 2.0 * favour[j] < best:
+                    best, name = square - 2.0 * favour[j], j
             answers[i, name] += 1.0
 
 
@@ -154,6 +179,7 @@ unmatched: Any = _compile(_unmatched)
 matched: Any = _compile(_matched)
 put: Any = _compile(_put)
 aligned: Any = _compile(_aligned)
+of_pair: Any = _compile(_of_pair)
+least_cost: Any = _compile(_least_cost)
 distances: Any = _compile(_distances)
-cost_of_name: Any = _compile(_cost_of_name)
 name: Any = _compile(_name)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.circuit.compiled import kernel
+from thermicon.circuit.vector_math import LEAST, exp, expm1, log, vectorised
 
 QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET, START = range(9)
 """Columns of an episode: 0 cold or 1 warm; ln u at the peak; ln of the steepest rise of u in 1/s; ln of the time above
@@ -86,14 +87,18 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
     starts, ends, kinds = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
     total = 0
     drives = np.empty((2, n))
+    back = int(LOOK_BACK_S / dt)
     for quality in range(2):
         psi = psi_cold if quality == 0 else psi_warm
         other = psi_warm if quality == 0 else psi_cold
         count = segments(psi, other, dt, c_on[quality], c_on[1 - quality], first, last)
         if count == 0:
             continue
-        for t in range(n):
-            drives[quality, t] = (b * math.expm1(psi[t] / a)) ** (1.0 / p) if psi[t] > 0.0 else 0.0
+        # u is read where an episode looks back, and not beyond the last; a loop of its own that runs in vectors
+        from_, to = max(first[0] - back - 1, 0), last[count - 1] + 1
+        given, own = psi[from_:to], drives[quality, from_:to]
+        for t in range(given.size):
+            own[t] = exp(log(max(b * expm1(given[t] / a), LEAST)) / p)
         k = 0
         while k < count:
             place = split_at(drives[quality], first[k], last[k]) if count < MOST_SEGMENTS - 1 else -1
@@ -129,8 +134,7 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
             if u[t] > u[top]:
                 top = t
         steepest = 1e-6
-        back = max(1, starts[e] - int(LOOK_BACK_S / dt))
-        for t in range(back, top + 1):
+        for t in range(max(1, starts[e] - back), top + 1):
             steepest = max(steepest, (u[t] - u[t - 1]) / dt)
         above = 0
         for t in range(starts[e], ends[e] + 1):
@@ -162,5 +166,5 @@ def _all_episodes(cold: Any, warm: Any, dt: float, c_on: Any, a: float, p: float
 _compile: Any = kernel(nogil=True)
 segments: Any = _compile(_segments)
 split_at: Any = _compile(_split_at)
-episodes: Any = _compile(_episodes)
+episodes: Any = vectorised(_episodes)
 all_episodes: Any = _compile(_all_episodes)

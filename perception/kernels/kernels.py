@@ -12,14 +12,30 @@ from typing import Any
 import numpy as np
 
 from thermicon.circuit.compiled import kernel
+from thermicon.circuit.vector_math import LEAST, exp, log, log1p, vectorised
+
+DRAWS_AT_ONCE = 512
 
 
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
-    """ψ = a·ln(1 + u^p/b) of u = scale·drive."""
+    """ψ = a·ln(1 + u^p/b) of u = scale·drive; 0 without drive. It may be written over the drive."""
+    samples = drive.shape[1]
+    course = np.empty(samples)
     for row in range(drive.shape[0]):
-        for t in range(drive.shape[1]):
-            u = scale[row] * drive[row, t]
-            psi[row, t] = a * math.log1p(u**p / b) if u > 0.0 else 0.0
+        first, end = 0, samples
+        while first < end and drive[row, first] == 0.0:
+            first += 1
+        while end > first and drive[row, end - 1] == 0.0:
+            end -= 1
+        psi[row, :first] = 0.0
+        psi[row, end:] = 0.0
+        given, own = drive[row, first:end], psi[row, first:end]
+        for t in range(given.size):
+            course[t] = exp(p * log(max(scale[row] * given[t], LEAST))) / b
+        for t in range(given.size):
+            course[t] = a * log1p(course[t])
+        for t in range(given.size):
+            own[t] = course[t] if given[t] > 0.0 else 0.0
 
 
 def _blur(psi: Any, decay: float, blurred: Any) -> None:
@@ -62,25 +78,27 @@ def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
 
 
 def _nearest(gram: Any, projected: Any, counts: Any) -> None:
-    """Counts of the nearest point (presented, answer) for one person; the innermost loops run over presented points.
+    """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
-    `gram` (answer, presented) speaks for an answer without noise; `projected` (draw, answer) is what the noise adds.
+    `gram` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what the noise adds.
     """
-    icons = gram.shape[0]
-    score, best = np.empty(icons), np.empty(icons)
-    for s in range(projected.shape[0]):
+    icons, draws = projected.shape
+    score, best = np.empty(DRAWS_AT_ONCE), np.empty(DRAWS_AT_ONCE, dtype=np.int64)
+    for start in range(0, draws, DRAWS_AT_ONCE):
+        count = min(DRAWS_AT_ONCE, draws - start)
         for i in range(icons):
-            score[i] = gram[0, i] + projected[s, 0]
-            best[i] = 0.0
-        for j in range(1, icons):
-            push, name = projected[s, j], float(j)
-            for i in range(icons):
-                value = gram[j, i] + push
-                better = value > score[i]
-                score[i] = value if better else score[i]
-                best[i] = name if better else best[i]
-        for i in range(icons):
-            counts[i, int(best[i])] += 1.0
+            noise = projected[0, start : start + count]
+            for s in range(count):
+                score[s] = gram[0, i] + noise[s]
+                best[s] = 0
+            for j in range(1, icons):
+                noise = projected[j, start : start + count]
+                for s in range(count):
+                    value = gram[j, i] + noise[s]
+                    best[s] = j if value > score[s] else best[s]
+                    score[s] = max(value, score[s])
+            for s in range(count):
+                counts[i, best[s]] += 1.0
 
 
 def _bend(points: Any, distances: Any, bent: Any) -> None:
@@ -100,8 +118,8 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
 Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
-sensation: Loop = _compile(_sensation)
+sensation: Loop = vectorised(_sensation)
 blur: Loop = _compile(_blur)
 differences: Loop = _vector(_differences)
-nearest: Loop = _compile(_nearest)
+nearest: Loop = _vector(_nearest)
 bend: Loop = _compile(_bend)

@@ -97,33 +97,6 @@ def _first_below_index(falling: Any, level: float, end: int) -> int:
     return low
 
 
-def _survive(psi: Any, dt: float, criterion: float, tau: float, corrected: bool, log_left: Any) -> None:
-    """Fill the log probability (n_time,) that the change of a sensation from its first sample has not passed yet.
-
-    Corrected, it is relative to that of no change at all: the crossings of noise alone are left out.
-    """
-    silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
-    spared = silent if corrected else 0.0
-    left, last = 0.0 if corrected else math.log(cumulative(criterion)), 0.0
-    log_left[0] = left
-    for t in range(1, psi.size):
-        now = abs(psi[t] - psi[0])
-        rate = silent if now == 0.0 and last == 0.0 else crossing_rate(last, now, dt, criterion, tau)
-        left -= dt * (rate - spared)
-        log_left[t] = left
-        last = now
-        if left < CERTAIN:
-            log_left[t:] = left
-            break
-
-
-def _crossing_rate(last: float, now: float, dt: float, criterion: float, tau: float) -> float:
-    """Rate of first crossings in 1/s over a step in which sensation goes from `last` to `now`."""
-    z = (now - last) / dt * tau
-    rise = z if z > Z_TO else looked_up(RISE, z, Z_FROM, Z_STEP)
-    return float(rise / tau * looked_up(MILLS, criterion - 0.5 * (now + last), GAP_FROM, GAP_STEP))
-
-
 def _looked_up(table: Any, x: float, start: float, step: float) -> float:
     place = (x - start) / step
     if place <= 0.0:
@@ -175,8 +148,6 @@ _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
 cumulative: Any = _compile(_cumulative)
 looked_up: Any = _compile(_looked_up)
-crossing_rate: Any = _compile(_crossing_rate)
-survive: Any = _compile(_survive)
 between: Any = _vector(_between)
 first_below: Any = _compile(_first_below_index)
 passage: Any = _vector(_passage)

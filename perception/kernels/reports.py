@@ -2,21 +2,28 @@
 
     P(t) = mean over gains g and decision times d of 1 − exp(L_cold(t − d − δ_cold) + L_warm(t − d − δ_warm))
 
-L is the log probability of not having passed the criterion (`passage.survive`), δ the conduction of a channel. A drive
-that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)).
+L is the log probability of not having passed the criterion yet, at the rate that `passage` gives; δ is the conduction
+of a channel. A drive that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from thermicon.circuit.compiled import kernel
+from thermicon.circuit.vector_math import exp, expm1, log1p, vectorised
 
-from .passage import CERTAIN, GAP_FROM, GAP_STEP, MILLS, RISE, Z_MIDDLE, crossing_rate, cumulative, looked_up
+from .passage import (
+    CERTAIN, GAP_FROM, GAP_STEP, MILLS, RISE, Z_FROM, Z_MIDDLE, Z_STEP, between, cumulative, looked_up,
+)  # fmt: skip
+
+AT_ONCE = 64
+"""Samples that go through the processor's vectors before it is asked whether a report is certain."""
+LEAST_FALL = 1e-300
+COLD, WARM = range(2)
 
 
 def _report(
@@ -30,89 +37,152 @@ def _report(
     (`reported` of no columns) only the probability is filled in. The last time holds all reports, however late.
     """
     samples, times = cold.shape[1], reported.shape[1]
-    risen, risen_until = np.empty((2, samples)), np.zeros(2, dtype=np.int64)
-    logs, arrived = np.empty((2, samples)), np.empty(times)
+    risen, logs, room = np.empty((2, samples)), np.empty((2, samples)), np.empty((2, AT_ONCE + 1))
+    passed, left = np.zeros((2, times + 1)), np.empty(times + 1)  # their first column is the time before the first
+    arrived, decided = np.empty(times), np.empty(times)
+    begin, end = np.empty(2, dtype=np.int64), np.empty(2, dtype=np.int64)
+    share = 1.0 / raised.size
     for row in range(cold.shape[0]):
+        # Between these times something changes; before them nothing has, and after them all stays as it is.
+        first, last = (times, 0) if corrected else (0, times)
         for channel in range(2):
-            risen_until[channel] = 0
+            psi = cold[row] if channel == COLD else warm[row]
+            begin[channel], end[channel] = changing(psi)
+            own, delay = risen[channel], late[row, channel] / dt
+            for t in range(samples):
+                own[t] = expm1(psi[t] / a)
+            if corrected and begin[channel] < samples:
+                first = min(first, int((begin[channel] - 1 + delay) / every))
+                last = max(last, int((end[channel] + delay) / every) + 2)
+        last = min(last, times)
         unreported, by_cold = 0.0, 0.0
         arrived[:] = 0.0
+        left[:] = 1.0
         for gain in range(raised.size):
             for channel in range(2):
-                psi = cold[row] if channel == 0 else warm[row]
-                risen_until[channel] = survive_louder(
-                    psi, raised[gain], a, risen[channel], risen_until[channel], dt, criterion[row, channel], tau,
-                    corrected, logs[channel],
+                if gain > 0 and begin[channel] == samples:
+                    continue  # a channel without change is the same for every gain
+                survive(
+                    risen[channel], raised[gain], a, begin[channel], end[channel], dt, criterion[row, channel], tau,
+                    corrected, room, logs[channel],
                 )  # fmt: skip
-            unreported += math.exp(logs[0, samples - 1] + logs[1, samples - 1]) / raised.size
-            last_cold, last_warm, last_left = 0.0, 0.0, 1.0
-            for k in range(times):
-                now_cold = course_at(logs[0], every * k - late[row, 0] / dt)
-                now_warm = course_at(logs[1], every * k - late[row, 1] / dt)
-                fallen = now_cold + now_warm != last_cold + last_warm
-                left = math.exp(now_cold + now_warm) if fallen else last_left
-                arrived[k] += (1.0 - left) / raised.size
-                from_cold, from_warm = max(last_cold - now_cold, 0.0), max(last_warm - now_warm, 0.0)
-                if from_cold + from_warm > 0.0:
-                    by_cold += (last_left - left) * from_cold / (from_cold + from_warm) / raised.size
-                last_cold, last_warm, last_left = now_cold, now_warm, left
+                delayed(logs[channel], every, late[row, channel] / dt, passed[channel, 1:])
+            unreported += share * math.exp(logs[COLD, samples - 1] + logs[WARM, samples - 1])
+            if first < last:
+                by_cold += share * reports_by_cold(
+                    passed[COLD, first : last + 1], passed[WARM, first : last + 1], left[first : last + 1]
+                )
+                for k in range(first, last):
+                    arrived[k] += share * (1.0 - left[k + 1])
+                for k in range(last, times):
+                    arrived[k] += share * (1.0 - left[last])
         probability[row] = min(max(1.0 - unreported, 0.0), 1.0)
         if times == 0:
             continue
         given = arrived[times - 1]
         cold_share[row] = min(max(by_cold / given, 0.0), 1.0) if given > 0.0 else 0.0
-        reported[row] = 0.0
+        answered = reported[row]
+        answered[:] = 0.0
         for d in range(decision.shape[1]):
+            delayed(arrived, 1, decision[row, d] / (every * dt), decided)
             for k in range(times):
-                reported[row, k] += course_at(arrived, k - decision[row, d] / (every * dt)) / decision.shape[1]
-        reported[row, times - 1] = probability[row]
+                answered[k] += decided[k] / decision.shape[1]
+        answered[times - 1] = probability[row]
 
 
-def _survive_louder(
-    psi: Any, raised: float, a: float, risen: Any, until: int, dt: float, criterion: float, tau: float, corrected: bool,
-    log_left: Any,
-) -> int:  # fmt: skip
-    """`passage.survive` of a sensation whose drive is larger; each sample is computed when the course reaches it.
+def _changing(psi: Any) -> tuple[int, int]:
+    """The first sample that differs from the one at the start (`psi.size`: none does), and the end of those that do.
 
-    `risen` (n_time,) is filled with e^(ψ/a) − 1 `until` a sample, and further where needed; returns how far it is.
-    A strong icon is certain to be reported soon after it begins, and what comes later is never computed.
+    The end is one past the sample at which the course is back where it started, if it is.
+    """
+    first, end = 1, psi.size
+    while first < psi.size and psi[first] == psi[0]:
+        first += 1
+    while end > first and psi[end - 1] == psi[0]:
+        end -= 1
+    return first, min(end + 1, psi.size)
+
+
+def _survive(
+    risen: Any, raised: float, a: float, begin: int, end: int, dt: float, criterion: float, tau: float,
+    corrected: bool, room: Any, log_left: Any,
+) -> None:  # fmt: skip
+    """Fill the log probability (n_time,) that the change of a sensation from its first sample has not passed yet.
+
+    `risen` (n_time,) is e^(ψ/a) − 1 of a sensation that changes from the sample `begin` to `end`, and `raised` how much
+    larger its drive is. Corrected, it is relative to that of no change at all: the crossings of noise alone are left
+    out. What comes after a report is certain is not computed.
     """
     silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
     spared = silent if corrected else 0.0
-    left, last, first = 0.0 if corrected else math.log(cumulative(criterion)), 0.0, 0.0
-    for t in range(psi.size):
-        if t >= until:
-            risen[t] = math.expm1(psi[t] / a) if psi[t] != 0.0 else 0.0
-            until = t + 1
-        louder = psi[t]
-        if raised != 1.0:
-            louder = a * math.log1p(raised * risen[t]) if risen[t] else 0.0
-        if t == 0:
-            first = louder
-            log_left[0] = left
-            continue
-        now = abs(louder - first)
-        rate = silent if now == 0.0 and last == 0.0 else crossing_rate(last, now, dt, criterion, tau)
-        left -= dt * (rate - spared)
+    left, at_start = 0.0 if corrected else math.log(cumulative(criterion)), a * log1p(raised * risen[0])
+    log_left[0] = left
+    for t in range(1, begin):
+        left -= dt * (silent - spared)
         log_left[t] = left
-        last = now
-        if left < CERTAIN:
-            log_left[t:] = left
-            break
-    return until
+    psi, fall, last = room[0], room[1], 0.0
+    for start in range(begin, end, AT_ONCE):
+        count = min(AT_ONCE, end - start)
+        own, now, before = risen[start : start + count], psi[1:], psi
+        before[0] = last
+        for i in range(count):
+            now[i] = abs(a * log1p(raised * own[i]) - at_start)
+        for i in range(count):
+            z = (now[i] - before[i]) * (tau / dt)
+            fall[i] = max(between(RISE, (z - Z_FROM) / Z_STEP), z)
+        for i in range(count):
+            twice = now[i] + before[i]
+            rate = fall[i] / tau * between(MILLS, (criterion - 0.5 * twice - GAP_FROM) / GAP_STEP)
+            fall[i] = dt * ((rate if twice > 0.0 else silent) - spared)
+        last = psi[count]
+        for i in range(count):
+            left -= fall[i]
+            log_left[start + i] = left
+            if left < CERTAIN:
+                log_left[start + i :] = left
+                return
+    for t in range(end, log_left.size):
+        left -= dt * (silent - spared)
+        log_left[t] = left
 
 
-def _course_at(course: Any, place: float) -> float:
-    """A course between its samples: 0 before the first, held after the last."""
-    if place < 0.0:
-        return 0.0
-    k = int(place)
-    if k >= course.size - 1:
-        return float(course[course.size - 1])
-    return float(course[k] + (place - k) * (course[k + 1] - course[k]))
+def _delayed(course: Any, every: int, delay: float, found: Any) -> None:
+    """Fill `found` (times,) with every k-th sample of a course that comes so many samples later, linear in between.
+
+    It is 0 before the first sample, and held after the last.
+    """
+    whole, times = math.ceil(delay), found.size
+    part = whole - delay
+    first = min((whole + every - 1) // every, times)
+    last = min(max((course.size - 2 + whole) // every + 1, first), times)
+    found[:first] = 0.0
+    if first < last:
+        here, own = course[every * first - whole :], found[first:last]
+        after = here[1:]
+        if every == 1:  # a loop of its own, since the compiler knows then that samples are neighbours
+            for k in range(own.size):
+                own[k] = here[k] + part * (after[k] - here[k])
+        else:
+            for k in range(own.size):
+                own[k] = here[every * k] + part * (after[every * k] - here[every * k])
+    found[last:] = course[course.size - 1]
 
 
-_compile: Any = kernel(nogil=True)
-course_at: Callable[..., float] = _compile(_course_at)
-survive_louder: Callable[..., int] = _compile(_survive_louder)
-report: Callable[..., None] = _compile(_report)
+def _reports_by_cold(cold: Any, warm: Any, left: Any) -> float:
+    """Fill `left` (times + 1,) after its first from the logs of two channels; the probability of a report by cold."""
+    now_cold, now_warm, now_left = cold[1:], warm[1:], left[1:]
+    for k in range(now_left.size):
+        now_left[k] = exp(now_cold[k] + now_warm[k])
+    by_cold = 0.0
+    for k in range(now_left.size):
+        from_cold, from_warm = max(cold[k] - now_cold[k], 0.0), max(warm[k] - now_warm[k], 0.0)
+        by_cold += (left[k] - now_left[k]) * from_cold / max(from_cold + from_warm, LEAST_FALL)
+    return by_cold
+
+
+_sum: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
+changing: Any = vectorised(_changing)
+survive: Any = _sum(_survive)
+delayed: Any = vectorised(_delayed)
+reports_by_cold: Any = _sum(_reports_by_cold)
+report: Any = _sum(_report)

@@ -25,12 +25,15 @@ def log_survival(psi: ArrayLike, dt_s: float, criterion: ArrayLike, observer: Ob
 
     What counts is the change of sensation from its first sample, in either direction.
     """
-    from ..kernels.passage import survive
+    from ..kernels.reports import AT_ONCE, changing, survive
 
     rows, shape = as_rows(psi)
-    survived = np.empty_like(rows)
+    survived, room = np.empty_like(rows), np.empty((2, AT_ONCE + 1))
     for row, own, left in zip(rows, _each(criterion, rows.shape[0]), survived, strict=True):
-        survive(row, dt_s, own, observer.noise_correlation_s, False, left)
+        survive(
+            np.expm1(row / observer.a), 1.0, observer.a, *changing(row), dt_s, own, observer.noise_correlation_s, False,
+            room, left,
+        )  # fmt: skip
     return survived.reshape(shape)
 
 
