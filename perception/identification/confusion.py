@@ -203,15 +203,15 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
 
     people, icons = points.shape[:2]
     counts = np.zeros((people, icons, icons))
+    axes = np.maximum((points != 0.0).any(axis=1).sum(axis=1), 1).tolist()
+    grams = points @ np.swapaxes(points, 1, 2) - (0.5 * (points**2).sum(axis=2) - favour)[:, :, None]
 
     def work(part: slice) -> None:
         for person in range(part.start, part.stop):
-            used = max(1, int(np.any(points[person] != 0.0, axis=0).sum()))
+            used = axes[person]
             drawn = _noise if used * samples > SMALL_NOISE else _kept_noise
             noise = drawn(seed, first + person, used, samples)
-            own = points[person, :, :used]
-            gram = own @ own.T - (0.5 * (own**2).sum(axis=1) - favour[person])[:, None]
-            kernels.nearest(gram, own @ noise, counts[person])
+            kernels.nearest(grams[person], points[person, :, :used] @ noise, counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
     return counts / samples

@@ -38,8 +38,8 @@ def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float
     whole = x[CUT] == 0.0 and y[CUT] == 0.0  # the length of an episode that the end cuts is the tail's
     parts[BY_LENGTH] = ((x[LENGTH] - y[LENGTH]) / timing) ** 2 if whole else 0.0
     parts[BY_PAUSE] = ((x[PAUSE] - y[PAUSE]) / timing) ** 2
-    total: float = parts.sum()
-    return total
+    # Not parts.sum(): that part of numba imports scipy.linalg, for a fifth of a second.
+    return float(parts[BY_INTENSITY] + parts[BY_RATE] + parts[BY_LENGTH] + parts[BY_PAUSE])
 
 
 def _put(place: Any, values: Any) -> None:
@@ -148,7 +148,7 @@ def _name(
     partner costs `c` more than the square of its size, since noise is part of it.
     """
     icons = felt.shape[0]
-    now, alone, missing = felt[0].copy(), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
+    now, alone, missing = np.empty(felt.shape[1:]), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
     cost = np.empty(felt.shape[1] + 1)
     for j in range(icons):
         for k in range(counts[j]):

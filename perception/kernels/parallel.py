@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from contextvars import copy_context
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any, TypeVar
@@ -64,6 +65,22 @@ def in_order(
                 yield waiting.pop(0).result()
         finally:
             pool.shutdown(cancel_futures=True)
+
+
+def beside(work: Callable[[], Result], threads: int | None = None) -> Callable[[], Result]:
+    """Begin work in a thread beside the caller, and return what waits for its result.
+
+    Where no more than one thread is allowed, it is done when its result is asked for.
+
+    >>> beside(lambda: 3)()
+    3
+    """
+    if (cores() if threads is None else threads) <= 1:
+        return work
+    pool = ThreadPoolExecutor(1)
+    result = pool.submit(copy_context().run, work)
+    pool.shutdown(wait=False)
+    return result.result
 
 
 @contextmanager

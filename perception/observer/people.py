@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from statistics import NormalDist
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -150,18 +151,17 @@ def draw_people(
         raise ValueError(f"at least one person is needed, not {n}")
     off = check_without(without, "people")
     record = people_records()
-    streams = np.random.SeedSequence([seed, 0]).spawn(len(record))
-    column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(record, streams, strict=True)}
+    column, normal = _columns(n, seed)
     constants = {} if spreads is None else spreads
     shared = constants.get(
         "correlation of cold and warm", observer_records().one("correlation of cold and warm").central
     )
 
     def lognormal(name: str, sd: float) -> Array:
-        return np.exp(sd * _normal(column[name]))
+        return np.exp(sd * normal[name])
 
     def both(what: str) -> tuple[Array, Array]:
-        cold, own = (_normal(column[f"{what}_{channel}"]) for channel in CHANNELS)
+        cold, own = (normal[f"{what}_{channel}"] for channel in CHANNELS)
         warm = shared * cold + math.sqrt(1.0 - shared**2) * own
         own_names = [SPREADS[what].format(channel) for channel in CHANNELS]
         sd = [
@@ -196,11 +196,29 @@ def draw_people(
     )
 
 
+@lru_cache(maxsize=8)
+def _columns(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Uniform and standard normal numbers (n,) of every field; kept, since all draws have people of one seed."""
+    names = tuple(people_records())
+    streams = np.random.SeedSequence([seed, 0]).spawn(len(names))
+    column = {name: np.random.default_rng(stream).random(n) for name, stream in zip(names, streams, strict=True)}
+    normal = {name: _normal(column[name]) for name in NORMAL}
+    for each in (*column.values(), *normal.values()):
+        each.setflags(write=False)
+    return column, normal
+
+
+NORMAL = (
+    *(f"{what}_{channel}" for what in ("threshold", "criterion") for channel in CHANNELS),
+    *("contact_resistance", "outer_layer", "decision_s"),
+)
+"""Fields whose logarithm is normal."""
 SPREADS = {"threshold": "{} sensitivity between people", "criterion": "criterion between people"}
 """Inferred constants behind the columns of both channels."""
 
 
-def people_records() -> dict[str, Record]:
+@lru_cache(maxsize=1)
+def people_records() -> Mapping[str, Record]:
     """The record behind every field of `People`; `use` says whether it is data or assumed.
 
     >>> people_records()["memory"].use
@@ -208,7 +226,7 @@ def people_records() -> dict[str, Record]:
     """
     table, inferred = load_thresholds(), observer_records()
     criterion = inferred.one("criterion between people")
-    return {
+    records = {
         "threshold_cold": inferred.one("sensitivity between people", channel="cold"),
         "threshold_warm": inferred.one("sensitivity between people", channel="warm"),
         "criterion_cold": criterion,
@@ -220,6 +238,7 @@ def people_records() -> dict[str, Record]:
         "decision_s": inferred.one("decision time between people"),
         "lapse": table.one("lapse rate"),
     }
+    return MappingProxyType(records)
 
 
 def age_factor(age_years: float, channel: Channel) -> float:

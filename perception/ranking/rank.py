@@ -20,6 +20,7 @@ from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
 from ..identification.task import USUAL, Task
+from ..kernels.parallel import beside
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, check_norm
 from ..observer.observer_model import ObserverModel
@@ -170,7 +171,11 @@ def rank(
     made = assemble(members, traces, percepts, all_, chosen, nominal)
     counted = playable_pairs(made)
     worst = worst_of(counted) if by == "model" else worst_by_rules(counted)
-    pairs = with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task, nominal)
+    # One edit takes as long as the draws, mostly on one core; more of them would keep an interrupted run waiting.
+    edited = beside(
+        lambda: with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task, nominal),
+        workers if edits == "worst" else 1,
+    )
     picked = None
     if choosing is not None:
         picked = choose(
@@ -200,6 +205,7 @@ def rank(
         picked = _with_interval(
             picked, [icon.name for icon in members], all_, crowd, chosen, model, draws, seed, (task, left), report
         )
+    pairs = edited()
     energies = [energy_J(trace, lasting) for trace, lasting in zip(traces, durations, strict=True)]
     reached = None
     if wanted is not None:
