@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Protocol
 
@@ -122,6 +122,11 @@ class Table:
 
     name: str
     records: tuple[Record, ...]
+    _by_quantity: dict[str, list[Record]] = field(init=False, repr=False, compare=False, default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for record in self.records:
+            self._by_quantity.setdefault(record.quantity, []).append(record)
 
     def __iter__(self) -> Iterator[Record]:
         return iter(self.records)
@@ -143,10 +148,9 @@ class Table:
         where: Mapping[str, Plain] | None = None,
     ) -> tuple[Record, ...]:
         """All records that match every key given; a channel also matches records for both channels."""
-        records = [r for r in self.records if r.quantity == quantity]
+        records = self._by_quantity.get(quantity, [])
         if not records:
-            known = {r.quantity for r in self.records}
-            raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, known)}")
+            raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, self._by_quantity)}")
         keys = {"channel": channel, "site": site, "method": method, "use": use, **(where or {})}
         for key, value in keys.items():
             if value == "":

@@ -92,7 +92,7 @@ class Outcome:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class Trace:
     """One run: temperatures, heat flow and current against time, as read-only arrays (rows,).
 

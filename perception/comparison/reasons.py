@@ -16,7 +16,7 @@ from thermicon.icons.number_text import decimals, fixed, verdict
 
 from ..arrays import Array
 from ..identification.distance import difference_trace, identification_dprime, percept_distance
-from ..identification.episodes import remembered
+from ..identification.episodes import Episodes, remembered
 from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, TraceNorm, check_norm, trace_norm
 from ..observer.observer import Observer
 from ..sensation.features import (
@@ -58,11 +58,14 @@ def pair_reasons(
     felt_b: Percept,
     observer: Observer | None = None,
     norm: Norm = USUAL_NORM,
+    episodes: Episodes | None = None,
+    places: tuple[int, int] = (0, 1),
 ) -> tuple[Reason, ...]:
     """What separates the two icons, or fails to: what carries the distance, then direction, peaks, rates, onsets.
 
     Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm of distance
-    with which the two are distinguished from memory.
+    with which the two are distinguished from memory; `episodes` are those of the nominal person, with the two icons at
+    `places`, where they are known.
     """
     if _alike(a, b):
         text = (
@@ -71,7 +74,7 @@ def pair_reasons(
         return (Reason(text, {}, "K"),)
     shared = tuple(c for c in directions(a) if c in directions(b))
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
-    found = [_carrying(a, b, felt_a, felt_b, person, chosen), _direction(a, b)]
+    found = [_carrying(a, b, felt_a, felt_b, person, chosen, episodes, places), _direction(a, b)]
     for channel in shared:
         found.append(_peaks(a, b, channel))
         found.append(_rates(a, b, channel))
@@ -136,13 +139,17 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> Reason:
     return Reason(text, {"a": felt_a.onset_s, "b": felt_b.onset_s, "difference": gap, "threshold": needed}, "s")
 
 
-def _carrying(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm) -> Reason:
+def _carrying(
+    a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm, episodes: Episodes | None,
+    places: tuple[int, int],
+) -> Reason:  # fmt: skip
     """What carries the distance from memory: a feature of episodes, or the largest difference of traces."""
     trace = trace_norm(norm)
     if trace is not None:
         return _largest(a, b, felt_a, felt_b, observer, trace)
-    episodes = remembered((felt_a, felt_b), observer)
-    return Reason(*carrying_feature((_name(a), _name(b)), episodes, (0, 1), observer, norm), "d′")
+    if episodes is None:
+        episodes, places = remembered((felt_a, felt_b), observer), (0, 1)
+    return Reason(*carrying_feature((_name(a), _name(b)), episodes, places, observer, norm), "d′")
 
 
 def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: TraceNorm) -> Reason:

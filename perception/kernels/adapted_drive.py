@@ -43,7 +43,8 @@ def _adapted_drive(
     for row in range(temperature.shape[0]):
         for t in range(samples):
             x = sign * (temperature[row, t] - limit) / softness
-            quality[t] = limit + sign * softness * (max(x, 0.0) + log1p(exp(-abs(x))))  # max(0, x), with a soft corner
+            nearest = temperature[row, t] if x > 0.0 else limit
+            quality[t] = nearest + sign * softness * log1p(exp(-abs(x)))  # ln(1 + e^x) = max(x, 0) + ln(1 + e^−|x|)
         # States are counted from the first sample, where what does not change leaves them at 0 without rounding.
         first = quality[0]
         first_clipped = min(max(first, low), high)

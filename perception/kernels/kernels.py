@@ -77,26 +77,29 @@ def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
                 pair += 1
 
 
-def _nearest(gram: Any, projected: Any, counts: Any) -> None:
+def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
-    `gram` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what the noise adds.
+    `nearness` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what noise adds.
+    Both are in single precision, of which the processor's vectors hold twice as many.
     """
     icons, draws = projected.shape
-    score, best = np.empty(DRAWS_AT_ONCE), np.empty(DRAWS_AT_ONCE, dtype=np.int64)
+    score, best = np.empty(DRAWS_AT_ONCE, dtype=np.float32), np.empty(DRAWS_AT_ONCE, dtype=np.int32)
     for start in range(0, draws, DRAWS_AT_ONCE):
         count = min(DRAWS_AT_ONCE, draws - start)
         for i in range(icons):
             noise = projected[0, start : start + count]
             for s in range(count):
-                score[s] = gram[0, i] + noise[s]
+                score[s] = nearness[0, i] + noise[s]
                 best[s] = 0
             for j in range(1, icons):
                 noise = projected[j, start : start + count]
+                name, near = np.int32(j), nearness[j, i]
                 for s in range(count):
-                    value = gram[j, i] + noise[s]
-                    best[s] = j if value > score[s] else best[s]
-                    score[s] = max(value, score[s])
+                    value = near + noise[s]
+                    nearer = value > score[s]
+                    best[s] = name if nearer else best[s]
+                    score[s] = value if nearer else score[s]
             for s in range(count):
                 counts[i, best[s]] += 1.0
 
@@ -107,11 +110,11 @@ def _bend(points: Any, distances: Any, bent: Any) -> None:
     for p in range(people):
         total = 0.0
         for i in range(icons):
-            for j in range(icons):
+            for j in range(i):
                 square = 0.0
                 for k in range(axes):
                     square += (points[p, i, k] - points[p, j, k]) ** 2
-                total += (math.sqrt(square) - distances[p, i, j]) ** 2
+                total += 2.0 * (math.sqrt(square) - distances[p, i, j]) ** 2
         bent[p] = math.sqrt(total)
 
 

@@ -48,7 +48,7 @@ def assemble(
     pairs = []
     episodes = remembered(percepts, observer)
     for i, j in combinations(range(len(icons)), 2):
-        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm)
+        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm, episodes, (i, j))
         rules = pair_rules(traces[i], traces[j])
         pairs.append(
             PairScore(

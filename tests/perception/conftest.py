@@ -12,7 +12,7 @@ from thermicon.perception.observer.observer import Receptor
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FakeTrace:
     """What perception reads of a trace, with receptors that follow the skin at once."""
 
