@@ -6,6 +6,7 @@ of this package.
 
 from __future__ import annotations
 
+import gc
 import math
 import sys
 from pathlib import Path
@@ -61,7 +62,7 @@ from . import (
     validation,
     whatif_commands,
 )
-from .app import Commands
+from .app import Commands, with_command
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
@@ -375,11 +376,13 @@ for _name, _command, _panel in (
 
 def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
+    # What imports create is not garbage, and looking for some after each 700 objects takes a twentieth of a command.
+    gc.set_threshold(100_000)
     try:
         if is_command():
             warn_if_hidden()
         print_anywhere()
-        app(prog_name="thermicon")
+        with_command(app, sys.argv[1:2])(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)
 

@@ -11,6 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 
+GROUPED_FROM = 3
+"""With fewer things missing, looking at the candidates costs more than trying them."""
+
+
 class StepsExhaustedError(Exception):
     """The search stopped before it was complete."""
 
@@ -29,6 +33,18 @@ def find_clique(
     neighbours = [sum(1 << int(k) for k in np.flatnonzero(row)) & ~(1 << i) for i, row in enumerate(compatible)]
     steps = 0
 
+    def too_few(candidates: int, missing: int) -> bool:
+        """Whether the candidates fall into fewer groups without a compatible pair than are missing: one each at most."""
+        for _ in range(missing - 1):
+            group = candidates
+            while group:
+                one = group.bit_length() - 1
+                candidates &= ~(1 << one)
+                group &= ~(neighbours[one] | 1 << one)
+            if not candidates:
+                return True
+        return False
+
     def extended(clique: tuple[int, ...], candidates: int) -> tuple[int, ...] | None:
         nonlocal steps
         steps += 1
@@ -37,6 +53,8 @@ def find_clique(
         missing = size - len(clique)
         if missing == 0:
             return clique if accepts(clique) else None
+        if missing >= GROUPED_FROM and too_few(candidates, missing):
+            return None
         while candidates.bit_count() >= missing:
             last = candidates.bit_length() - 1
             candidates &= ~(1 << last)
