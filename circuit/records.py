@@ -210,10 +210,10 @@ def dump_records(table: Table, *, comment: str = "") -> str:
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     for record in table:
         lines += ["", "[[record]]"]
-        for field in fields(record):
-            value = getattr(record, field.name)
-            if field.name != "extra" and value not in (None, ""):
-                lines.append(f"{field.name} = {_toml(value)}")
+        for column in fields(record):
+            value = getattr(record, column.name)
+            if column.name != "extra" and value not in (None, ""):
+                lines.append(f"{column.name} = {_toml(value)}")
         lines += [f"{key} = {_toml(value)}" for key, value in record.extra]
     return "\n".join(lines).lstrip("\n") + "\n"
 

@@ -4,7 +4,7 @@ Cody and Waite's reduction with a Taylor polynomial for the exponential, and the
 tangent for the logarithm: both are within 5 units in the last place, which tests compare with the standard library.
 """
 
-# mypy: disable-error-code="no-untyped-call,misc,no-any-return"
+# mypy: disable-error-code="no-untyped-call,misc,no-any-return,import-untyped"
 # numba's decorators have no types.
 from __future__ import annotations
 
@@ -35,16 +35,18 @@ E2, E3, E4, E5, E6, E7, E8, E9, E10, E11, E12 = (1.0 / math.factorial(k) for k i
 A1, A2, A3, A4, A5, A6, A7, A8, A9, A10 = (1.0 / (2 * k + 1) for k in range(1, 11))
 
 
-@intrinsic
-def bits_of(context: Any, x: Any) -> Any:
+def _bits_of(context: Any, x: Any) -> Any:
     """The 64 bits of a double as an integer."""
     return types.int64(types.float64), lambda _, builder, __, held: builder.bitcast(held[0], ir.IntType(64))
 
 
-@intrinsic
-def double_of(context: Any, bits: Any) -> Any:
+def _double_of(context: Any, bits: Any) -> Any:
     """The double that has these 64 bits."""
     return types.float64(types.int64), lambda _, builder, __, held: builder.bitcast(held[0], ir.DoubleType())
+
+
+bits_of: Any = intrinsic(_bits_of)
+double_of: Any = intrinsic(_double_of)
 
 
 def _exp(x: float) -> float:
@@ -71,7 +73,7 @@ def _expm1(x: float) -> float:
 
 
 def _log_of(above: float, n: float) -> float:
-    """ln((1 + above) · 2^n) = 2·artanh(s) + n·ln 2 with s = above/(2 + above), |s| < 0.172."""
+    """Logarithm of (1 + above) · 2^n = 2·artanh(s) + n·ln 2 with s = above/(2 + above), |s| < 0.172."""
     s = above / (2.0 + above)
     z = s * s
     p = ((((((A10 * z + A9) * z + A8) * z + A7) * z + A6) * z + A5) * z + A4) * z + A3
@@ -80,7 +82,7 @@ def _log_of(above: float, n: float) -> float:
 
 
 def _log(x: float) -> float:
-    """ln x of a normal positive double."""
+    """Logarithm of a normal positive double."""
     bits = bits_of(x)
     n = np.uint64(bits + FROM_SQRT_HALF) >> np.uint64(FRACTION_BITS)  # 1024 too large; x = m·2^n with m from √½ to √2
     above = double_of(bits - np.int64(n << np.uint64(FRACTION_BITS)) + EXPONENT_ZERO) - 1.0
@@ -88,7 +90,7 @@ def _log(x: float) -> float:
 
 
 def _log1p(x: float) -> float:
-    """ln(1 + x) of a number that is not negative, accurate near 0."""
+    """Logarithm of 1 + x, of a number that is not negative, accurate near 0."""
     bits = bits_of(1.0 + x)
     n = np.uint64(bits + FROM_SQRT_HALF) >> np.uint64(FRACTION_BITS)
     above = double_of(bits - np.int64(n << np.uint64(FRACTION_BITS)) + EXPONENT_ZERO) - 1.0

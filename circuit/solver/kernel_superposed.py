@@ -114,8 +114,8 @@ def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine
 
         αI·T_c − I²R/2 = flow − C_c·dT_c/dt + (T_h − T_c)/Θ,
 
-    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps. Lanes go through time side by side; limits are
-    those of `kernel.limited`.
+    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps. Lanes go through time side by side; the
+    limits are those of `kernel.limited`.
     """
     alpha, ohm, leak, out = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)
     hot_store, cold_store, sink_C = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)

@@ -226,7 +226,7 @@ def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) 
 
 
 def _noise(seed: int, person: int, axes: int, samples: int) -> Single:
-    """Noise (axes, samples) of a person in single precision, read-only; along an axis it does not depend on the number of axes."""
+    """Noise (axes, samples) of a person in single precision, read-only."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 1], spawn_key=(person,)))
     strata = _strata(samples)
     noise = rng.standard_normal((axes, samples))

@@ -22,7 +22,6 @@ from ..observer.channels import TRACE_NORMS, TraceNorm, trace_norm
 from ..observer.observer import Observer
 from ..sensation.percept import Percept
 
-
 FINE_S = 0.02
 """Step at which smoothed traces of many icons are compared: half of it changes a difference by less than 1 in 1,000."""
 
@@ -59,13 +58,14 @@ def percept_distances(
     if cold.ndim != 3 or cold.shape != warm.shape:
         raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
     every = max(1, round(FINE_S / dt_s))
+    people, icons, samples = cold.shape
     cold, warm = (np.ascontiguousarray(felt[..., ::every]) for felt in (cold, warm))
-    people, icons, _ = cold.shape
+    step_s = dt_s * samples / cold.shape[-1]
     first, second = np.triu_indices(icons, 1)
     found = np.zeros((people, first.size, len(TRACE_NORMS)))
 
     def work(part: slice) -> None:
-        kernels.differences(cold[part], warm[part], every * dt_s, found[part])
+        kernels.differences(cold[part], warm[part], step_s, found[part])
 
     over_rows(work, people, cold.size)
     matrices: dict[TraceNorm, Array] = {}

@@ -17,7 +17,17 @@ from thermicon.circuit.compiled import kernel
 from thermicon.circuit.vector_math import exp, expm1, log1p, vectorised
 
 from .passage import (
-    CERTAIN, GAP_FROM, GAP_STEP, MILLS, RISE, Z_FROM, Z_MIDDLE, Z_STEP, between, cumulative, looked_up,
+    CERTAIN,
+    GAP_FROM,
+    GAP_STEP,
+    MILLS,
+    RISE,
+    Z_FROM,
+    Z_MIDDLE,
+    Z_STEP,
+    between,
+    cumulative,
+    looked_up,
 )  # fmt: skip
 
 AT_ONCE = 64

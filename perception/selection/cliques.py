@@ -10,7 +10,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-
 GROUPED_FROM = 3
 """With fewer things missing, looking at the candidates costs more than trying them."""
 
@@ -34,7 +33,7 @@ def find_clique(
     steps = 0
 
     def too_few(candidates: int, missing: int) -> bool:
-        """Whether the candidates fall into fewer groups without a compatible pair than are missing: one each at most."""
+        """Whether candidates fall into fewer groups without a compatible pair than are missing: each gives one."""
         for _ in range(missing - 1):
             group = candidates
             while group:

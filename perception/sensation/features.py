@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -37,7 +37,7 @@ def of_each_trace(
             own[key] = number(trace, *args, **kwargs)
         return own[key]
 
-    return found
+    return cast(Callable[Concatenate["Trace", Arguments], Number], found)
 
 
 def receptor_C(trace: Trace, channel: Channel) -> Array:

@@ -50,7 +50,7 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     [
         "thermicon.notebooks.cli.app.TyperGroup.make_context",
         "thermicon.notebooks.cli.app.TyperGroup.invoke",
-        "thermicon.notebooks.cli.main.app",
+        "thermicon.notebooks.cli.main.with_command",
     ],
 )
 def test_an_interrupt_is_told_wherever_it_comes(
