@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli.main import main
+from thermicon.notebooks.cli.app import with_command
+from thermicon.notebooks.cli.main import app, main
 
 Cli = Callable[..., Any]
 
@@ -25,6 +26,13 @@ def test_the_entry_point_is_the_command_line() -> None:
 def test_the_version(process: Cli) -> None:
     said = process("--version")
     assert (said.exit_code, said.stdout, said.stderr) == (0, f"thermicon {version('thermicon')}\n", "")
+
+
+def test_a_command_reads_its_own_options_alone() -> None:
+    assert [command.name for command in with_command(app, ["rank"]).registered_commands] == ["rank"]
+    for words in ([], ["--help"], ["chek"]):
+        assert with_command(app, words) is app
+    assert len(app.registered_commands) > 20
 
 
 def test_the_package_runs_as_a_module(tmp_path: Path) -> None:

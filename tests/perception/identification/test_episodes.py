@@ -178,3 +178,19 @@ def test_messages(observer: Observer) -> None:
         replace(observer.memory, missing=-1.0)
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
         Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
+
+
+def test_a_set_is_compared_with_itself_as_with_any_other(observer: Observer) -> None:
+    icons = [(bump(k * 0.7, 4.0 + k), bump(6.0 - k, 5.0)) for k in range(5)] + [(NOTHING, NOTHING)]
+    found = episodes(*icons, observer=observer)
+    again = Episodes(found.features.copy(), found.counts.copy())
+    own, other = (
+        episode_distances(found, found, observer, "episodes"),
+        episode_distances(found, again, observer, "episodes"),
+    )
+    assert np.allclose(own, other, rtol=1e-12, atol=1e-12)
+    assert (own == own.transpose(0, 2, 1)).all()
+    for i in range(6):
+        for j in range(6):
+            parts = distance_shares(found, i, found, j, observer, "episodes")
+            assert own[0, i, j] == pytest.approx(math.sqrt(sum(parts.values())), abs=1e-9)

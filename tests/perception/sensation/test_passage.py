@@ -8,6 +8,7 @@ from scipy.stats import norm
 
 from thermicon.perception import Observer
 from thermicon.perception.arrays import Array
+from thermicon.perception.kernels.reports import delayed
 from thermicon.perception.sensation.detection import detect, false_alarms
 from thermicon.perception.sensation.first_passage import ResponseTimes, log_survival, response_times
 
@@ -111,3 +112,13 @@ def test_messages(observer: Observer) -> None:
         found.quantile(1.0)
     with pytest.raises(ValueError, match=r"response times: \(1, 3\) probabilities for 2 times"):
         ResponseTimes(np.zeros(2), np.zeros((1, 3)), np.zeros(1))
+
+
+@pytest.mark.parametrize("every", [1, 2, 5])
+@pytest.mark.parametrize("delay", [0.0, 0.4, 3.0, 7.6, 39.0, 41.5, 300.0])
+def test_a_delayed_course_is_that_of_the_times_before(every: int, delay: float) -> None:
+    course = np.cumsum(np.random.default_rng(1).random(40))
+    found = np.empty(60)
+    delayed(course, every, delay, found)
+    place = every * np.arange(60) - delay
+    assert found == pytest.approx(np.where(place < 0, 0.0, np.interp(place, np.arange(40), course)), rel=1e-12)
