@@ -81,7 +81,8 @@ def timed(run: Callable[[], Any], *, most: int = 10, budget_s: float = 2.0) -> T
 def command_timed(words: Sequence[str], times: int, environment: Mapping[str, str] | None = None) -> Timing:
     """Time a command of thermicon as it is typed, the start of Python included.
 
-    Python keeps the byte code of what it imports, as it does unless a machine is told otherwise. Raises `RuntimeError` with the command's own message where it fails.
+    Python keeps the byte code of what it imports, as it does unless a machine is told otherwise. Raises `RuntimeError`
+    with the command's own message where it fails.
     """
     seconds: list[float] = []
     processor: list[float] = []
