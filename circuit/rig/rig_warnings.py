@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from .modules import beyond_the_face, module_names, unlike_before, unlike_record
@@ -25,6 +26,7 @@ HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 """Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
 
 
+@lru_cache(maxsize=512)
 def rig_warnings(rig: Rig) -> tuple[str, ...]:
     """Return a sentence for everything unusual: heat loss, blood, loosened limits, origin of the module's numbers.
 
