@@ -102,15 +102,3 @@ def measurements_of(
         np.full(values.shape, np.nan),
         np.where(by_trial, float(trials), np.nan) * np.ones(values.shape),
     )
-
-
-def measurements_text(measured: Measurements) -> str:
-    """The measurements as a CSV file that `read_measurements` reads."""
-    lines = ["participant,kind,method,channel,size_K,rate_K_per_s,hold_s,baseline_C,value,unit,trials"]
-    for name, values, trials in zip(measured.participants, measured.values, measured.trials, strict=True):
-        for own, value, count in zip(measured.conditions, values.tolist(), trials.tolist(), strict=True):
-            if value == value:
-                cells = [name, own.kind, own.method, own.channel, "" if own.size_K is None else f"{own.size_K:g}"]
-                cells += [f"{own.rate_K_per_s:g}", f"{own.hold_s:g}", f"{own.baseline_C:g}", f"{value:.4g}", own.unit]
-                lines.append(",".join([*cells, f"{count:g}" if count == count else ""]))
-    return "\n".join(lines) + "\n"

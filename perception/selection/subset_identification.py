@@ -65,11 +65,6 @@ class SubsetIdentification:
     def __len__(self) -> int:
         return int(self.half.shape[1])
 
-    def person(self, which: int) -> SubsetIdentification:
-        """One of the people alone."""
-        only = slice(which, which + 1)
-        return SubsetIdentification(self.half[only], self.push[only], self.lapse[only], self.durations_s)
-
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
         """Proportion correct, bits, or bits a second of the chosen: mean over people, or what the share reaches."""
         from . import subset_kernels as subsetkernels

@@ -8,12 +8,25 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
+from thermicon.perception.pilot.measurements import Measurements
 from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
-from thermicon.perception.pilot.synthetic_measurements import measurements_text, synthetic_measurements
+from thermicon.perception.pilot.synthetic_measurements import synthetic_measurements
 from thermicon.perception.pilot.trials_file import TrialsError
 
 HEAD = "participant,kind,method,channel,size_K,value,unit,standard_error,trials,baseline_C\n"
 GOOD = "P1,threshold,limits,cold,,1.2,K,0.1,,\nP1,reaction_time,,warm,6,850,ms,,12,31\nP2,rating,,warm,6,40,points,,,\n"
+
+
+def measurements_text(measured: Measurements) -> str:
+    """The measurements as a file that `read_measurements` reads."""
+    lines = ["participant,kind,method,channel,size_K,rate_K_per_s,hold_s,baseline_C,value,unit,trials"]
+    for name, values, trials in zip(measured.participants, measured.values, measured.trials, strict=True):
+        for own, value, count in zip(measured.conditions, values.tolist(), trials.tolist(), strict=True):
+            if value == value:
+                cells = [name, own.kind, own.method, own.channel, "" if own.size_K is None else f"{own.size_K:g}"]
+                cells += [f"{own.rate_K_per_s:g}", f"{own.hold_s:g}", f"{own.baseline_C:g}", f"{value:.4g}", own.unit]
+                lines.append(",".join([*cells, f"{count:g}" if count == count else ""]))
+    return "\n".join(lines) + "\n"
 
 
 def written(folder: Path, text: str) -> Path:

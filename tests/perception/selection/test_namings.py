@@ -75,7 +75,8 @@ def test_a_swap_scores_what_its_set_scores(objective: Objective, share: float | 
 
 def test_what_a_share_reaches_is_a_quantile_of_the_people() -> None:
     held = pool(3, 6, people=9)
-    alone = [held.person(k).score([0, 2, 4], "correct") for k in range(9)]
+    each = [{name: getattr(held, name)[k : k + 1] for name in ("half", "push", "lapse")} for k in range(9)]
+    alone = [replace(held, **person).score([0, 2, 4], "correct") for person in each]
     reached = replace(held, share=0.9).score([0, 2, 4], "correct")
     assert reached == pytest.approx(float(np.quantile(alone, 0.1)))
 
