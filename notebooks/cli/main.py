@@ -385,6 +385,8 @@ def main() -> None:
         with_command(app, sys.argv[1:2])(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)
+    finally:
+        gc.freeze()  # a process that ends needs no last search for garbage either
 
 
 if __name__ == "__main__":
