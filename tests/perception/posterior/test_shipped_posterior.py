@@ -105,7 +105,7 @@ def test_calibrate_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_p
     assert {key: own_header[key] for key in (" evidence", " priors")} == {
         key: header[key] for key in (" evidence", " priors")
     }
-    assert own.shape == shipped.shape == (1001, len(names))
+    assert own.shape == shipped.shape == (1000, len(names))
     assert (own[0] == shipped[0]).all(), "the nominal observer"
     spread = shipped[1:].std(axis=0)
     free = spread > 0.0
