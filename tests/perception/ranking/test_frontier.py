@@ -60,7 +60,11 @@ def test_total_time_ends_the_curve() -> None:
     )
     assert [len(point.icons) for point in short.points] == [2]
     assert short.points[0].total_s <= 17.0
-    assert steps[0][0] == 1
+    assert steps == [(k, 6) for k in range(1, 7)]
+    with pytest.raises(
+        ChoiceError, match=r"no 2 of the 6 icons stay within a total of 9 s \(the 2 shortest last 16 s\)"
+    ):
+        frontier(load_library("six-icons"), Rig.load("thenar"), people=2, most_s=9.0, parameters=0)
     with pytest.raises(ChoiceError, match="a choice of 1 has no pair"):
         frontier(load_library("six-icons"), Rig.load("thenar"), most=1)
 
