@@ -100,17 +100,18 @@ def plain(held: Any) -> Any:
     >>> plain({"a": float("nan"), "b": np.float64(1.5)})
     {'a': None, 'b': 1.5}
     """
+    # The most frequent come first, and in tuples: a union of classes would be made anew for each of a million values.
+    if held is None or isinstance(held, (str, bool)):
+        return held
+    if isinstance(held, (float, np.floating)):
+        return float(held) if math.isfinite(held) else None
     if isinstance(held, dict):
         return {str(key): plain(value) for key, value in held.items()}
-    if isinstance(held, list | tuple):
+    if isinstance(held, (list, tuple)):
         return [plain(value) for value in held]
-    if isinstance(held, bool | np.bool_):
-        return bool(held)
-    if isinstance(held, int | np.integer):
+    if isinstance(held, (int, np.integer)):
         return int(held)
-    if isinstance(held, float | np.floating):
-        return float(held) if math.isfinite(held) else None
-    return held
+    return bool(held) if isinstance(held, np.bool_) else held
 
 
 def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str, Any]:
