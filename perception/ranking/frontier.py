@@ -11,11 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..arrays import Array
+from ..identification.confusion import confuse
 from ..identification.laboratory import DRAWS
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
+from ..selection.appraise import identified
 from ..selection.choose import limits_of, nothing_fits, pick
 from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
 from ..selection.nominal import end_of, sense
@@ -206,7 +209,17 @@ def frontier(
     largest = min(most, len(able))
     step = steps_of(progress, job.batches + largest - 1)
     pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
-    judge = PointJudge(pooled, crowd, pool, [icon.name for icon in able], amber, chosen, model, draws, seed, wanted)
+
+    def named(places: Sequence[int]) -> Array:
+        """Confusions of people who know only these icons; what is named directly is felt again."""
+        if chosen == "naming":
+            alone = [able[k] for k in places]
+            return identified(alone, rig, crowd, tracking, chosen, seed=seed, observer=model.nominal)[1].probability
+        own = pooled.d_prime[:, places][:, :, places]
+        return confuse(own, lapse=crowd.lapse, seed=seed).probability
+
+    names = [icon.name for icon in able]
+    judge = PointJudge(pooled, crowd, pool, names, amber, chosen, model, draws, seed, wanted, named)
     namings = SubsetIdentification.of(pooled.d_prime, crowd.lapse, pool.durations_s, seed)
     limits = limits_of(asked, pool)
     points: list[FrontierPoint] = []

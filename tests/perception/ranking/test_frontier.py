@@ -7,6 +7,10 @@ from thermicon.perception import ChoiceError, Frontier, frontier, rank
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.request import Selection
 
+THREE = (
+    "cue 1; icon dip { cool by 3 K at 2 K/s }; icon sip { cool by 1 K at 2 K/s }; icon glow { warm by 2 K at 2 K/s }"
+)
+
 
 @pytest.fixture(scope="module")
 def found() -> Frontier:
@@ -36,6 +40,18 @@ def test_a_choice_is_that_of_rank(found: Frontier) -> None:
     assert point.d_prime == pytest.approx(whole.chosen.value, rel=1e-6)
     assert point.proportion_correct == pytest.approx(whole.chosen.at_own_range.proportion_correct, abs=0.01)
     assert point.total_s == pytest.approx(whole.chosen.total_s)
+
+
+def test_direct_naming_of_all_icons_is_that_of_rank() -> None:
+    """By itself, as a choice and on a frontier, a set has one proportion correct."""
+    icons, rig = parse(THREE), Rig.load("thenar")
+    whole = rank(icons, rig, people=8, parameters=0, norm="naming", choosing=Selection(3))
+    assert whole.chosen is not None
+    assert whole.chosen.at_own_range.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
+    assert whole.chosen.at_own_range.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
+    point = frontier(icons, rig, people=8, parameters=0, norm="naming").points[-1]
+    assert point.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
+    assert point.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
 
 
 def test_as_a_table_and_a_picture(found: Frontier) -> None:
