@@ -1,4 +1,4 @@
-"""How many cores a computation may use; results do not depend on it."""
+"""How many cores a computation may use, and one thread for its linear algebra; results do not depend on it."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from threading import Lock
 
 _allowed: ContextVar[int | None] = ContextVar("cores", default=None)
+_quiet = Lock()
 
 
 def cores() -> int:
@@ -35,3 +37,21 @@ def at_most(count: int) -> Iterator[None]:
         yield
     finally:
         _allowed.reset(before)
+
+
+@contextmanager
+def quiet_blas() -> Iterator[None]:
+    """Keep the linear algebra library on one thread: on matrices as small as ours its threads only wait, busily.
+
+    That is a setting of the process: who finds it set leaves it alone, or would set it again when the first is done.
+    """
+    from threadpoolctl import threadpool_limits
+
+    if not _quiet.acquire(blocking=False):
+        yield
+        return
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
+            yield
+    finally:
+        _quiet.release()

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from ..cores import quiet_blas
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
@@ -217,10 +218,8 @@ def gate_set(
     pause, that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
     switches too fast for a plate to follow.
     """
-    from threadpoolctl import threadpool_limits
-
     check_pause(pause_s)
-    with threadpool_limits(limits=1, user_api="blas"):  # matrices of 50 rows: threads would only wait for each other
+    with quiet_blas():
         ensemble = Ensemble.of(rig, bridge_A, averaged)
         return _gated(drives, ensemble, rig.limits if limits is None else limits, pause_s)
 

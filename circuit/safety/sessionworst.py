@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ..cores import quiet_blas
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, colour_of, findings_of, worst_of
@@ -64,10 +65,8 @@ def worst_case_of_blocks(
 
     Times run on from block to block, breaks left out; `recovery_s` is that after the last block.
     """
-    from threadpoolctl import threadpool_limits
-
     total_s = sum(float(played.drive.time_s[-1]) for played in blocks)
-    with threadpool_limits(limits=1, user_api="blas"):  # small matrices: threads would only wait for each other
+    with quiet_blas():
         ensemble, before_s = Ensemble.of(rig), 0.0
         whole, tallies = Tally(limits, ensemble.corners), list[Tally]()
         for played in blocks:

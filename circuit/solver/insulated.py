@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array, Index
+from ..cores import quiet_blas
 from ..rig.parts import Probe
 from ..rig.rig import Rig
 from ..rig.skin import Column, column_of
@@ -71,8 +72,6 @@ def insulated_C(rig: Rig, probe: Probe, time_s: Array, display_C: Array) -> Arra
 @lru_cache(maxsize=16)
 def patch_under(rig: Rig, probe: Probe) -> Patch:
     """Return the modes of what a probe on insulated skin reads."""
-    from threadpoolctl import threadpool_limits
-
     column, radius = column_of(rig.skin, rig.column.blood_capacity_J_per_m3K, *DEPTH_MESH), 0.5 * probe.width_m
     edges = _edges(radius)
     area, centre = np.pi * np.diff(edges**2), 0.5 * (edges[1:] + edges[:-1])
@@ -99,7 +98,7 @@ def patch_under(rig: Rig, probe: Probe) -> Patch:
     matrix[place[0], place[0]] += down
     drive[place[0]] = down
     root = np.sqrt(np.outer(column.capacity_J_per_m2K, area).ravel())
-    with threadpool_limits(limits=1, user_api="blas"):  # some hundred rows: threads would only wait for each other
+    with quiet_blas():
         rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
     weight, direct = _reading(rig, column, probe, centre)
     residue = (weight / root) @ vectors * ((drive / root) @ vectors)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
 from .kernel import compiled, greatest_cooling
-from .network import SKIN
+from .network import COLD, SKIN
 from .plate import (
     ALPHA,
     COLD_J_PER_K,
@@ -74,7 +74,7 @@ def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
             for i in range(n):
                 above = y[i] + elim[i] * above
                 x[SKIN + i] = 2.0 * above - x[SKIN + i]
-            x[1] = k + 1.0
+            x[COLD] = k + 1.0
 
 
 @compiled

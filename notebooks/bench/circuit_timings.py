@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit import Rig, netlist, simulate_current, simulate_many
-from thermicon.circuit.cores import at_most
+from thermicon.circuit.cores import at_most, quiet_blas
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import load_library
 from thermicon.perception import draw_people
-from thermicon.perception.kernels.parallel import quiet_blas
 
 from .measure import Timing, timed
 from .peers import (

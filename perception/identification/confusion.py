@@ -26,7 +26,10 @@ SAMPLES = 10_240
 SMALL_NOISE = 16_384
 """Noise of a person that is kept for the next use has at most so many numbers: 128 persons take 8 MB."""
 NEGLIGIBLE = 0.003
-"""In d′: axes along which no point lies farther out get no noise, since 50 of them change a d′ of 2 by under 0.001."""
+"""In d′: axes along which no point lies farther out are left out, since 50 of them change a d′ of 2 by under 0.001, and
+points that are no farther apart count as one: single precision would decide between them, and not noise."""
+IDENTICAL = 1e-9
+"""In d′: icons that are no farther apart do not differ but by rounding."""
 Single = NDArray[np.float32]
 
 
@@ -130,7 +133,7 @@ def confuse(
     elif icons == 2:
         named = _two(distances[:, 0, 1], favour[:, 0] - favour[:, 1])
     else:
-        named = shared_among_identical(_sampled(points, favour, seed, samples, first), distances, favour)
+        named = _sampled(points, distances, favour, seed, samples, first)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
     mean = probability.mean(axis=0)
     one = sampling_error(probability, samples) if icons > 2 else 0.0
@@ -186,13 +189,13 @@ def _two(d_prime: Array, favour: Array) -> Array:
     return np.stack([np.stack([first, 1.0 - first], -1), np.stack([1.0 - second, second], -1)], -2)
 
 
-def shared_among_identical(named: Array, distances: Array, favour: Array) -> Array:
+def shared_among_identical(named: Array, distances: Array, favour: Array, identical: float = IDENTICAL) -> Array:
     """Answers shared equally among icons that are identical for a person, such as several that one does not feel.
 
     The order of the file, or rounding, would decide among them otherwise.
     """
     fair = favour[:, :, None] == favour[:, None]
-    same = ((distances < 1e-9) & fair).astype(np.float64)
+    same = ((distances <= identical) & fair).astype(np.float64)
     mean = same / same.sum(axis=2, keepdims=True)
     if mean.max(axis=2).min() == 1.0:
         return named
@@ -200,29 +203,33 @@ def shared_among_identical(named: Array, distances: Array, favour: Array) -> Arr
     return shared
 
 
-def _sampled(points: Array, favour: Array, seed: int, samples: int, first: int) -> Array:
+def _sampled(points: Array, distances: Array, favour: Array, seed: int, samples: int, first: int) -> Array:
     """Shares of answers; draws are spread evenly along the two longest axes, which can only lower the error."""
     from ..kernels import kernels
 
     people, icons = points.shape[:2]
     counts = np.zeros((people, icons, icons))
     wide = np.abs(points).max(axis=1) > NEGLIGIBLE
-    needed = np.where(wide, np.arange(1, wide.shape[1] + 1), 1).max(axis=1)
-    axes = np.minimum(-(-needed // 8) * 8, wide.shape[1]).tolist()  # in eights: of few sizes, so that it is kept
+    order = np.arange(wide.shape[1])
+    needed = np.where(wide, order + 1, 1).max(axis=1)
+    axes = np.minimum(-(-needed // 8) * 8, wide.shape[1])  # in eights: of few sizes, so that it is kept
+    # Where noise has no part, distances have none either: noise alone makes one of two near icons the other.
+    points = np.where(order < axes[:, None, None], points, 0.0)
     # Of x_j·(x_i + z) − |x_j|²/2 only what depends on the answer j counts: x_j·z − |x_i − x_j|²/2.
     gram, size = points @ np.swapaxes(points, 1, 2), (points**2).sum(axis=2)
-    near = (gram - 0.5 * (size[:, :, None] + size[:, None, :]) + favour[:, :, None]).astype(np.float32)
+    squares = np.maximum(size[:, :, None] + size[:, None, :] - 2.0 * gram, 0.0)
+    near = (favour[:, :, None] - 0.5 * squares).astype(np.float32)
     single = points.astype(np.float32)
 
     def work(part: slice) -> None:
         for person in range(part.start, part.stop):
-            used = axes[person]
+            used = int(axes[person])
             drawn = _noise if used * samples > SMALL_NOISE else _kept_noise
             noise = drawn(seed, first + person, used, samples)
             kernels.nearest(near[person], single[person, :, :used] @ noise, counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
-    return counts / samples
+    return shared_among_identical(counts / samples, np.minimum(np.sqrt(squares), distances), favour, NEGLIGIBLE)
 
 
 def _noise(seed: int, person: int, axes: int, samples: int) -> Single:

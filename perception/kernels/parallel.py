@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from contextvars import copy_context
-from functools import lru_cache
 from itertools import pairwise
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from thermicon.circuit.cores import at_most, cores
+from thermicon.circuit.cores import at_most, cores, quiet_blas
 
 SMALL = 200_000
 MOST_THREADS = 8
@@ -81,17 +79,3 @@ def beside(work: Callable[[], Result], threads: int | None = None) -> Callable[[
     result = pool.submit(copy_context().run, work)
     pool.shutdown(wait=False)
     return result.result
-
-
-@contextmanager
-def quiet_blas() -> Iterator[None]:
-    """Keep the linear algebra library on one thread: on matrices as small as ours its threads only wait, busily."""
-    with _blas().limit(limits=1, user_api="blas"):
-        yield
-
-
-@lru_cache(maxsize=1)
-def _blas() -> Any:
-    from threadpoolctl import ThreadpoolController
-
-    return ThreadpoolController()

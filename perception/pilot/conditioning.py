@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.circuit.cores import quiet_blas
+
 from ..arrays import Array
-from ..kernels.parallel import quiet_blas
 from .likelihood import effective, log_likelihoods, normalised_weights
 from .playing import Confusions, Stage
 from .pooled_answers import PooledLikelihood, walk

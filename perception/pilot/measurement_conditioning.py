@@ -12,8 +12,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from thermicon.circuit.cores import quiet_blas
+
 from ..arrays import Array
-from ..kernels.parallel import quiet_blas
 from .conditioning import LEAST_EFFECTIVE, LEAST_SHARE, systematic
 from .likelihood import effective, normalised_weights
 from .measurement_likelihood import NUGGET, Group, groups_of, log_likelihood

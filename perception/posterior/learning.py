@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermicon.circuit.cores import quiet_blas
+
 from ..arrays import Array
 from ..inference.posterior import Posterior
-from ..kernels.parallel import quiet_blas
 from .chains import Chain, Reference, begin
 from .limit_features import LimitFeatures
 from .surrogate import NARROW, WIDE, Surrogate, fit_surrogate

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.records import RecordError
 
 from ..arrays import Array
@@ -27,7 +28,6 @@ from ..inference.posterior import LABORATORIES, Posterior
 from ..inference.prior_file import load_priors
 from ..inference.results import inputs_digest, load_constants
 from ..inference.rows import load_rows
-from ..kernels.parallel import quiet_blas
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from .chains import Chain, Reference, extend

@@ -6,9 +6,10 @@
 
 from __future__ import annotations
 
+from thermicon.circuit.cores import quiet_blas
+
 from ..inference.maximum import maximise
 from ..inference.posterior import Posterior
-from ..kernels.parallel import quiet_blas
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import shipped_file, to_text
 from ..observer.variants import VARIANTS, Model, Variable

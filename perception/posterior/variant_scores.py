@@ -16,13 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.circuit.cores import quiet_blas
+
 from ..arrays import Array
 from ..inference.leave_out import leave_each_out
 from ..inference.maximum import maximise
 from ..inference.posterior import Posterior
 from ..inference.results import inputs_digest, read_rows, to_csv
 from ..inference.rows import load_rows
-from ..kernels.parallel import quiet_blas
 from ..observer.variants import VARIANTS, Model, Variable
 from .sampling import shipped_vector
 from .scores import stacking_weights

@@ -62,12 +62,15 @@ def assemble(
                 parts=components_of(episodes, i, j, observer),
             )
         )
+    of_icon: dict[str, list[PairScore]] = {icon.name: [] for icon in icons}
+    for pair in pairs:
+        of_icon[pair.a].append(pair)
+        of_icon[pair.b].append(pair)
     scored = []
     for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
         safe, reason, cautions = _verdict(trace)
         own = icon_rules(trace, percept)
-        objection = [(pair.rules_pass, pair.rules_margin) for pair in pairs if icon.name in (pair.a, pair.b)]
-        share, margin = icon_score(own, objection)
+        share, margin = icon_score(own, [(pair.rules_pass, pair.rules_margin) for pair in of_icon[icon.name]])
         scored.append(
             IconScore(
                 name=icon.name,

@@ -17,6 +17,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.doubt import scores_of
 from ..identification.laboratory_draws import LaboratoryDraws
+from ..inference.posterior import LABORATORIES
 from ..observer.channels import CHANNELS
 from ..observer.observer import Observer, on_forearm
 from ..observer.people import People, people_records
@@ -44,7 +45,6 @@ ELSEWHERE = (
     *("cold sensitivity lost per decade", "warm sensitivity lost per decade"),
 )
 """Constants of the posterior that act in other experiments only; what correlates with them here is named itself."""
-LABORATORIES = ("E1", "E3", "E4", "thenar", "wrist")
 NOT_VARIED = (
     "module, driver and heat sink",
     "room and resting temperature of the skin",

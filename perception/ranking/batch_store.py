@@ -68,12 +68,5 @@ class BatchStore:
             # Whatever is wrong with the file, computing the batch again is the remedy.
             return None
 
-    def clear(self) -> None:
-        """Remove the files of this job, and the folder when nothing else is in it."""
-        for file in [*self.folder.glob("*.npz"), *self.folder.glob(".*.part")]:
-            file.unlink(missing_ok=True)
-        if not any(self.folder.iterdir()):
-            self.folder.rmdir()
-
     def _label(self, number: int) -> str:
         return f"{self.key} {number}"

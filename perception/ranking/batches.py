@@ -22,7 +22,9 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised, sampling_error
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
+from ..identification.naming import SAMPLES as NAMED_SAMPLES
 from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
+from ..identification.run_end import RATE_HZ
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm
@@ -37,7 +39,6 @@ if TYPE_CHECKING:
     from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
 
-RATE_HZ = 100.0
 DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
@@ -281,14 +282,14 @@ class PooledResult:
 
 def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) -> PooledResult:
     """Compute or read every batch; `step` is called after each. Place and order of work do not change the result."""
-    icons, people = len(job.icons), job.people
+    people = job.people
     parts: dict[int, BatchResult] = {}
     pooled: dict[int, Array] = {}
     reported: dict[int, Array] = {}
     blur = 0.0
     for number, found in _each_batch(job, execution):
         pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
-        blur = max(blur, sampling_error(found.confusion, SAMPLES))
+        blur = max(blur, _sampling_error(job, found.confusion))
         parts[number] = _light(found)
         step()
     ordered = [parts[number] for number in range(job.batches)]
@@ -313,8 +314,8 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
         plugin=joined("plugin"),
         stress=joined("stress"),
         by_norm=dict(zip(job.other_norms, other, strict=True)),
-        standard_error=sampling_error(mean, SAMPLES * people) if icons > 2 else 0.0,
-        person_standard_error=blur if icons > 2 else 0.0,
+        standard_error=_sampling_error(job, mean, people),
+        person_standard_error=blur,
         thin=ReceptorTemperatures(
             joined("cold_C"), joined("warm_C"), time_s(job, EVERY), job.rig.site, job.rig.contact.area_m2
         ),
@@ -342,6 +343,14 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
         if store is not None:
             store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})
         yield number, result
+
+
+def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
+    """Largest standard error of a cell to which so many people give answers; 0 where cells are exact."""
+    direct = job.norm == "naming"
+    if len(job.icons) <= (1 if direct else 2):
+        return 0.0
+    return sampling_error(confusion, people * (NAMED_SAMPLES if direct else SAMPLES))
 
 
 def _light(found: BatchResult) -> BatchResult:

@@ -27,8 +27,9 @@ def prepare_people() -> None:
     from thermicon.icons import load_library
 
     from ..identification.population import PROBES
+    from ..identification.run_end import RATE_HZ
     from ..observer.observer_model import ObserverModel
-    from .batches import RATE_HZ, Job, judge_people
+    from .batches import Job, judge_people
 
     icons, end_s = tuple(load_library("six-icons"))[:3], 4.0
     clock = np.arange(round(end_s * RATE_HZ) + 1) / RATE_HZ

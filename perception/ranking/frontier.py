@@ -6,28 +6,28 @@ For each number of icons the best choice is found as in `choose`, and judged by 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from ..arrays import Array
+from ..identification.confusion import confuse
 from ..identification.laboratory import DRAWS
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..selection.choose import pick
+from ..selection.appraise import identified
+from ..selection.choose import limits_of, nothing_fits, pick
 from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
-from ..selection.max_min_subset import Limits
 from ..selection.nominal import end_of, sense
-from ..selection.request import ChoiceError, Selection, UsableIcons, usable_icons
+from ..selection.request import ChoiceError, Selection, UsableIcons, check_selection, usable_icons
 from ..selection.search_request import SearchRequest, soft_finding
 from ..selection.subset_identification import Objective, SubsetIdentification
-from .batches import RATE_HZ, Execution, Job, collect_batches
+from .batches import Execution, Job, collect_batches
 from .frontier_point import FrontierPoint, PointJudge
-from .rank import TAIL_S
+from .progress import Progress, steps_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +171,7 @@ def frontier(
     Raises
     ------
     ChoiceError
-        Where not even two icons can be chosen.
+        Where not even two icons can be chosen, or no two keep the limits.
     GoalError
         For a goal for a share of people without draws.
     ValueError
@@ -197,41 +196,43 @@ def frontier(
         raise GoalError(NEEDS_DRAWS)
     request = SearchRequest(most_s, None, wanted)
     time, energy = request.totals
-    durations = [duration_s(icon, rig) for icon in members]
-    end = math.ceil((max(durations, default=0.0) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    asked = Selection(2, objective, most_s=time, most_J=energy)
+    check_selection(asked, [icon.name for icon in members])
+    end = run_end_s(duration_s(icon, rig) for icon in members)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    pool = usable_icons(Selection(2, objective, most_s=time, most_J=energy), members, traces, rig)
+    pool = usable_icons(asked, members, traces, rig)
     if wanted is not None:
         pool = _fit_for(request, members, pool, rig, model)
     amber = {members[k].name for k in pool.places if soft_finding(traces[k])}
     able = [members[k] for k in pool.places]
     job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen, observer=model.for_jobs())
     largest = min(most, len(able))
-    steps = job.batches + largest - 1
-    done = 0
-
-    def step() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, steps)
-
+    step = steps_of(progress, job.batches + largest - 1)
     pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
-    judge = PointJudge(pooled, crowd, pool, [icon.name for icon in able], amber, chosen, model, draws, seed, wanted)
+
+    def named(places: Sequence[int]) -> Array:
+        """Confusions of people who know only these icons; what is named directly is felt again."""
+        if chosen == "naming":
+            alone = [able[k] for k in places]
+            return identified(alone, rig, crowd, tracking, chosen, seed=seed, observer=model.nominal)[1].probability
+        own = pooled.d_prime[:, places][:, :, places]
+        return confuse(own, lapse=crowd.lapse, seed=seed).probability
+
+    names = [icon.name for icon in able]
+    judge = PointJudge(pooled, crowd, pool, names, amber, chosen, model, draws, seed, wanted, named)
     namings = SubsetIdentification.of(pooled.d_prime, crowd.lapse, pool.durations_s, seed)
-    totals = [(pool.durations_s, time), (pool.energies_J, energy)]
-    kept = [(costs, limit) for costs, limit in totals if limit is not None]
-    limits = Limits.none(len(able))
-    if kept:
-        limits = Limits(np.stack([costs for costs, _ in kept]), tuple(limit for _, limit in kept))
+    limits = limits_of(asked, pool)
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
         picked = pick(pooled.middle, namings, count, objective, (), limits, seed)
-        if picked is not None:
-            points.append(judge.point(picked))
-        step()
         if picked is None:
             break
+        points.append(judge.point(picked))
+        step()
+    for _ in range(len(points) + 1, largest):  # sizes that no longer keep the limits
+        step()
+    if not points:
+        raise ChoiceError(nothing_fits(asked, pool))
     changes = tuple(rig.changes)
     return Frontier(
         rig.name, changes, people, seed, chosen, objective, len(able), pool.excluded, tuple(points), draws, wanted

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
-from ..identification.confusion import confuse
 from ..identification.laboratory import Nominal, new_laboratory
 from ..identification.measures import information_bits, proportion_correct
 from ..observer.observer import Norm
@@ -76,7 +75,10 @@ class FrontierPoint:
 
 @dataclass(frozen=True, slots=True)
 class PointJudge:
-    """Scores of a choice by people who know it alone."""
+    """Scores of a choice by people who know it alone.
+
+    `named` returns the confusions (people, n, n) of icons at some places of the pool.
+    """
 
     pooled: PooledResult
     crowd: People
@@ -88,12 +90,13 @@ class PointJudge:
     draws: int
     seed: int
     goal: Goal | None
+    named: Callable[[Sequence[int]], Array]
 
     def point(self, picked: SubsetChoice) -> FrontierPoint:
         """The choice with its scores, and the goal judged for it."""
         places, pooled, pool = list(picked.chosen), self.pooled, self.pool
         own = pooled.d_prime[:, places][:, :, places]
-        named = confuse(own, lapse=self.crowd.lapse, seed=self.seed).probability
+        named = self.named(places)
         each, middle = proportion_correct(named), np.median(own, axis=0)
         first, second = np.triu_indices(len(places), 1)
         nearest = int(middle[first, second].argmin())

@@ -19,6 +19,7 @@ from ..comparison.rules import rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
+from ..identification.run_end import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import beside
 from ..observer.channels import USUAL_NORM
@@ -32,21 +33,19 @@ from ..selection.request import Selection, check_selection, energy_J, objection
 from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
 from .assumptions import assumptions_of
-from .batches import RATE_HZ, Execution, Job, PooledResult, collect_batches
+from .batches import Execution, Job, PooledResult, collect_batches
 from .first_run import begin
 from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
+from .progress import Progress, steps_of
 from .ranking import Ranking
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
-TAIL_S = 10.0
 RANKED_BY = ("model", "rules")
 EDITS = ("worst", "all", "none")
-
-Progress = Callable[[int, int], None]
 
 
 def rank(
@@ -158,12 +157,12 @@ def rank(
     if workers is None or workers > 1:
         begin()
     durations = [duration_s(icon, rig) for icon in members]
-    end = math.ceil((max(durations) + TAIL_S) * RATE_HZ - 1e-6) / RATE_HZ
+    end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
-    report = _steps(progress, 2 + job.batches + draws + (choosing is not None))
+    report = steps_of(progress, 2 + job.batches + draws + (choosing is not None))
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
@@ -301,18 +300,6 @@ def _with_interval(
 def _interval(values: Array) -> tuple[float, float]:
     low, high = np.percentile(values, [2.5, 97.5])
     return float(low), float(high)
-
-
-def _steps(progress: Progress | None, total: int) -> Callable[[], None]:
-    done = 0
-
-    def step() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, total)
-
-    return step
 
 
 def _hash(icons: IconSet, rig: Rig, model: ObserverModel) -> str:

@@ -50,7 +50,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
                 {**_icon(icon, model), **intervals, "carry_over": _carried(ranking, place)}
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],
-            "pairs": [_pair(pair, model, _elsewhere(ranking, pair, asked)) for pair in ranking.pairs],
+            "pairs": _pairs(ranking, model, asked),
             "confusion": {
                 "labels": list(ranking.labels),
                 "probability": ranking.confusion.tolist() if model else None,
@@ -100,17 +100,18 @@ def plain(held: Any) -> Any:
     >>> plain({"a": float("nan"), "b": np.float64(1.5)})
     {'a': None, 'b': 1.5}
     """
+    # The most frequent come first, and in tuples: a union of classes would be made anew for each of a million values.
+    if held is None or isinstance(held, (str, bool)):
+        return held
+    if isinstance(held, (float, np.floating)):
+        return float(held) if math.isfinite(held) else None
     if isinstance(held, dict):
         return {str(key): plain(value) for key, value in held.items()}
-    if isinstance(held, list | tuple):
+    if isinstance(held, (list, tuple)):
         return [plain(value) for value in held]
-    if isinstance(held, bool | np.bool_):
-        return bool(held)
-    if isinstance(held, int | np.integer):
+    if isinstance(held, (int, np.integer)):
         return int(held)
-    if isinstance(held, float | np.floating):
-        return float(held) if math.isfinite(held) else None
-    return held
+    return bool(held) if isinstance(held, np.bool_) else held
 
 
 def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str, Any]:
@@ -186,9 +187,13 @@ def _map(ranking: Ranking) -> dict[str, Any]:
     }
 
 
-def _elsewhere(ranking: Ranking, pair: PairScore, asked: NewLaboratory | None) -> Interval | None:
-    """Interval of the d′ of a pair for a new laboratory."""
-    return None if asked is None else asked.pair(ranking.labels.index(pair.a), ranking.labels.index(pair.b))
+def _pairs(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> list[dict[str, Any]]:
+    """Every pair, with the interval of its d′ for a new laboratory."""
+    place = {name: k for k, name in enumerate(ranking.labels)}
+    return [
+        _pair(pair, model, None if asked is None else asked.pair(place[pair.a], place[pair.b]))
+        for pair in ranking.pairs
+    ]
 
 
 def _pair(pair: PairScore, model: bool, elsewhere: Interval | None) -> dict[str, Any]:

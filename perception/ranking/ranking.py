@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations
@@ -218,6 +219,7 @@ class Ranking:
         Icons that are not safe or not reached come last. By rules, what only the model provides is None.
         """
         model = self.by == "model"
+        apart = Counter(name for pair in self.pairs if pair.rules_pass for name in (pair.a, pair.b))
         return [
             {
                 "icon": icon.name,
@@ -231,7 +233,7 @@ class Ranking:
                 "rules_margin": icon.rules_margin,
                 "rules_passed": sum(r.passed for r in counted(icon.rules)),
                 "rules": len(counted(icon.rules)),
-                "pairs_distinguishable_by_rules": self._pairs_apart(icon.name),
+                "pairs_distinguishable_by_rules": apart[icon.name],
                 "reachable": icon.reachable,
                 "safe": icon.safe,
                 "reason": icon.reason,
@@ -285,9 +287,6 @@ class Ranking:
         from ..plots.draw import as_svg, plot_confusion
 
         return as_svg(plot_confusion(self, None))
-
-    def _pairs_apart(self, name: str) -> int:
-        return sum(pair.rules_pass for pair in self.pairs if name in (pair.a, pair.b))
 
     def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
         if self.by == "rules":

@@ -9,9 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..identification.confusion import SAMPLES, confuse
+from ..identification.confusion import SAMPLES, Confusion
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import PROBES, PopulationResponse, ReceptorTemperatures, memory_dprime, respond
+from ..identification.population import (
+    PROBES,
+    PopulationResponse,
+    ReceptorTemperatures,
+    identify,
+    memory_dprime,
+    respond,
+)
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
@@ -79,22 +86,32 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("at least two icons are needed to be distinguished")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, durations = population_dprime(icons, rig, crowd, tracking, norm, task=task, observer=observer)
-    return appraise_dprime([icon.name for icon in icons], d_prime, crowd.lapse, durations, seed, samples, task)
+    d_prime, named, durations = identified(
+        icons, rig, crowd, tracking, norm, seed=seed, samples=samples, task=task, observer=observer
+    )
+    return _appraisal([icon.name for icon in icons], d_prime, named.probability, durations)
 
 
-def appraise_dprime(
-    names: Sequence[str],
-    d_prime: Array,
-    lapse: Array,
-    durations_s: Array,
-    seed: int,
+def identified(
+    icons: Sequence[Icon],
+    rig: Rig,
+    crowd: People,
+    tracking: str | None,
+    norm: Norm,
+    *,
+    seed: int = 0,
     samples: int = SAMPLES,
     task: Task = USUAL,
-) -> Appraisal:
-    """An appraisal from d′ (people, icons, icons) and durations (s)."""
-    bias = task.favour(0, len(d_prime), len(names), seed)
-    probability = confuse(d_prime, lapse=lapse, bias=bias, seed=seed, samples=samples).probability
+    observer: Observer | None = None,
+) -> tuple[Array, Confusion, Array]:
+    """d′ and confusions (people, icons, icons) and durations (s) of icons that people know alone, as in `rank`."""
+    nominal = Observer.load() if observer is None else observer
+    felt, durations = population_response(icons, rig, crowd, tracking, norm, observer=nominal)
+    return *identify(felt, norm, crowd, nominal, seed, samples, task=task), durations
+
+
+def _appraisal(names: Sequence[str], d_prime: Array, probability: Array, durations_s: Array) -> Appraisal:
+    """An appraisal from d′ and confusions (people, icons, icons) and durations (s)."""
     bits = float(information_bits(probability).mean())
     middle = np.median(d_prime, axis=0)
     first, second = np.triu_indices(len(names), 1)

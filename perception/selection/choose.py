@@ -222,14 +222,14 @@ def choose(
     places = list(pool.places)
     d = d_prime[:, places][:, :, places]
     must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
-    limits = _limits(asked, pool)
+    limits = limits_of(asked, pool)
     namings = None
     if asked.objective != "worst":
         favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
         namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
     picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
     if picked is None:
-        raise ChoiceError(_nothing_fits(asked, pool))
+        raise ChoiceError(nothing_fits(asked, pool))
     chosen = [places[k] for k in picked.chosen]
     names = [icons[k].name for k in chosen]
     share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
@@ -340,7 +340,8 @@ def swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) ->
     return allowed
 
 
-def _limits(asked: Selection, pool: UsableIcons) -> Limits:
+def limits_of(asked: Selection, pool: UsableIcons) -> Limits:
+    """The totals that a request sets to the icons of a pool."""
     rows = [
         (costs, most)
         for costs, most in ((pool.durations_s, asked.most_s), (pool.energies_J, asked.most_J))
@@ -368,7 +369,8 @@ def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
     return names[first[k]], names[second[k]]
 
 
-def _nothing_fits(asked: Selection, pool: UsableIcons) -> str:
+def nothing_fits(asked: Selection, pool: UsableIcons) -> str:
+    """Why no choice keeps the totals of a request, with the least that so many icons take."""
     totals = []
     for costs, most, unit, what in (
         (pool.durations_s, asked.most_s, "s", "shortest last"),

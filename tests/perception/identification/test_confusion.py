@@ -165,3 +165,16 @@ def test_icons_that_one_person_does_not_feel_are_named_alike_in_any_order() -> N
     turned = confuse(np.stack([felt, faint])[:, order][:, :, order], lapse=0.0, seed=1).probability
     assert np.diagonal(turned[1])[0] == pytest.approx(np.diagonal(found[1])[3], abs=0.02)
     assert np.diagonal(turned[1])[1:] == pytest.approx(np.diagonal(found[1])[:3], abs=0.02)
+
+
+@pytest.mark.parametrize("icons", [4, 12, 40])
+@pytest.mark.parametrize("apart", [1e-7, 1e-4, 0.004, 0.02])
+def test_two_icons_that_hardly_differ_share_their_names(icons: int, apart: float) -> None:
+    """Neither single precision nor an axis without noise may decide between them."""
+    points = np.zeros((icons, 9))
+    points[:, :8] = np.random.default_rng(0).normal(0.0, 3.0, (icons, 8))
+    points[-1] = points[-2]
+    points[-1, 8] = apart
+    distances = np.linalg.norm(points[:, None] - points, axis=-1)
+    last = confuse(distances, lapse=0.0).pooled[-2:, -2:]
+    assert last == pytest.approx(np.full((2, 2), last.mean()), abs=0.02)

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
+from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
-from thermicon.perception.kernels.parallel import quiet_blas
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
 from thermicon.perception.pilot.likelihood import (

@@ -7,8 +7,8 @@ import pytest
 
 from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
+from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
-from thermicon.perception.kernels.parallel import quiet_blas
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood

@@ -7,6 +7,10 @@ from thermicon.perception import ChoiceError, Frontier, frontier, rank
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.request import Selection
 
+THREE = (
+    "cue 1; icon dip { cool by 3 K at 2 K/s }; icon sip { cool by 1 K at 2 K/s }; icon glow { warm by 2 K at 2 K/s }"
+)
+
 
 @pytest.fixture(scope="module")
 def found() -> Frontier:
@@ -38,6 +42,18 @@ def test_a_choice_is_that_of_rank(found: Frontier) -> None:
     assert point.total_s == pytest.approx(whole.chosen.total_s)
 
 
+def test_direct_naming_of_all_icons_is_that_of_rank() -> None:
+    """By itself, as a choice and on a frontier, a set has one proportion correct."""
+    icons, rig = parse(THREE), Rig.load("thenar")
+    whole = rank(icons, rig, people=8, parameters=0, norm="naming", choosing=Selection(3))
+    assert whole.chosen is not None
+    assert whole.chosen.at_own_range.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
+    assert whole.chosen.at_own_range.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
+    point = frontier(icons, rig, people=8, parameters=0, norm="naming").points[-1]
+    assert point.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
+    assert point.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
+
+
 def test_as_a_table_and_a_picture(found: Frontier) -> None:
     frame = found.to_frame()
     assert list(frame["icons"]) == [2, 3, 4, 5]
@@ -60,7 +76,11 @@ def test_total_time_ends_the_curve() -> None:
     )
     assert [len(point.icons) for point in short.points] == [2]
     assert short.points[0].total_s <= 17.0
-    assert steps[0][0] == 1
+    assert steps == [(k, 6) for k in range(1, 7)]
+    with pytest.raises(
+        ChoiceError, match=r"no 2 of the 6 icons stay within a total of 9 s \(the 2 shortest last 16 s\)"
+    ):
+        frontier(load_library("six-icons"), Rig.load("thenar"), people=2, most_s=9.0, parameters=0)
     with pytest.raises(ChoiceError, match="a choice of 1 has no pair"):
         frontier(load_library("six-icons"), Rig.load("thenar"), most=1)
 

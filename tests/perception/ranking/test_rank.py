@@ -7,6 +7,8 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, perceive, rank
+from thermicon.perception.identification.confusion import sampling_error
+from thermicon.perception.identification.naming import SAMPLES as NAMED
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "
@@ -299,3 +301,11 @@ def test_messages(rig: Rig) -> None:
         rank(icons, rig, by="luck")
     with pytest.raises(ValueError, match=r"at least one person"):
         rank(icons, rig, people=0, parameters=0)
+
+
+def test_direct_naming_states_the_error_of_its_own_trials(rig: Rig) -> None:
+    pair = parse("cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow { warm by 3 K at 2 K/s }")
+    named = rank(pair, rig, people=4, parameters=0, norm="naming")
+    assert named.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
+    assert named.person_standard_error > named.standard_error > 0.0
+    assert rank(pair, rig, people=4, parameters=0).standard_error == 0.0
