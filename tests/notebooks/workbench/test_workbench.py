@@ -224,8 +224,12 @@ def test_figures_of_what_cannot_be_say_why() -> None:
     assert "missing unit" in wrong.figure().get_suptitle()
     with pytest.raises(CueErrors, match="missing unit"):
         wrong.figure("set")
-    with pytest.raises(ValueError, match="there is no icon to export"):
+    with pytest.raises(CueErrors, match="missing unit"):
         wrong.figure("export")
+    late = Workbench(DIP)
+    late.text = "cue 1; icon dip { cool by 4 at 2 K/s }"
+    with pytest.raises(CueErrors, match="missing unit"):
+        late.figure("export")
     with pytest.raises(ValueError, match="there is no view 'sets'; there are design, set, export"):
         wrong.figure("sets")  # type: ignore[arg-type]
 
