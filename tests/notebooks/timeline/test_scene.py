@@ -107,7 +107,7 @@ def test_errors_keep_the_last_drawing_and_are_told_where_they_are(dip: Scene, ri
     assert trouble.hint == 'a difference such as "6 °C" or "6 K"'
     assert trouble.suggestion == "cool by 6 °C at 3 °C/s"
     assert (made.badge.colour, made.badge.text) == ("grey", "safety not judged: the text has errors")
-    assert repr(made) == "Scene('dip' of 1 on thenar, grey, 1 errors)"
+    assert repr(made) == "Scene('dip' of 1 on thenar, grey, 1 error)"
 
 
 def test_a_suggestion_taken_mends_its_line_and_no_other() -> None:
