@@ -54,11 +54,6 @@ class Drawing:
     handles: tuple[Handle, ...]
     start: float
 
-    @property
-    def reason(self) -> str | None:
-        """Why the rig cannot play the icon, in one sentence; None where it can."""
-        return self.trace.reason
-
 
 @dataclass(frozen=True, slots=True)
 class Scene:

@@ -59,7 +59,6 @@ class DesignModel:
         self._moving = False
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
         self.history = History(Edited(text, self.scene.icon))
-        self.last_ms = 0.0
         self._tell: list[Callable[[], None]] = []
 
     @property
@@ -167,8 +166,8 @@ class DesignModel:
         if (self.text, self.rig, self.scene.icon) != before:
             for tell in self._tell:
                 tell()
-        self.last_ms = 1e3 * (time.perf_counter() - began)
-        return made.numbered(seq, self.last_ms, shown, self.history.can_undo, self.history.can_redo)
+        took_ms = 1e3 * (time.perf_counter() - began)
+        return made.numbered(seq, took_ms, shown, self.history.can_undo, self.history.can_redo)
 
     def _act(self, message: Message) -> str | None:
         """Do what a message asks; returns the text where the editor is to take it."""

@@ -43,7 +43,7 @@ def test_a_scene_is_what_the_circuit_and_the_observer_say(dip: Scene, rig: Rig) 
     assert drawing.percept.onset_s == perceive(trace).onset_s
     assert (dip.icon, dip.names, dip.count, dip.stale, dip.troubles) == ("dip", ("dip",), 1, False, ())
     assert dip.badge.colour == "green"
-    assert drawing.reason is None
+    assert drawing.trace.reason is None
     assert drawing.missed == ()
 
 
