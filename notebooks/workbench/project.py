@@ -107,15 +107,20 @@ class Project:
         self.offers = [] if own is None else unsaved_texts(own.place, self.design.text, own.path)
 
     def restore(self) -> KeptVersion | None:
-        """Put the newest unsaved text into the editor, as a step that can be undone; return the newest version A."""
+        """Put the newest unsaved text into the editor, as a step that can be undone; return the newest version A.
+
+        Other texts are dropped, but for those of editors that are running.
+        """
         offers, self.offers = self.offers, []
         text = next((each.text for each in offers if each.text is not None), None)
         if text is not None:
             self.design.show_text(text)
+        version = next((each.version for each in offers if each.version is not None), None)
         for each in offers:
-            if not each.alive:  # it is kept again by this editor; that of a running one stays its own
+            taken = each.text in (None, text) and each.version in (None, version)
+            if taken or not each.alive:  # what is taken is kept again by this editor
                 each.path.unlink(missing_ok=True)
-        return next((each.version for each in offers if each.version is not None), None)
+        return version
 
     def discard(self) -> None:
         """Drop unsaved texts of editors that are gone; those of running ones stay theirs."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import time
 from base64 import b64decode
 from pathlib import Path
 
@@ -127,17 +128,18 @@ def test_open_panels_follow_the_text_and_the_icon_that_is_shown(path: Path) -> N
     assert b64decode(data[1]).decode() == TYPED
 
 
-def test_restoring_leaves_the_text_of_a_running_editor_with_it(path: Path) -> None:
-    first, _ = opened(path)
-    first.text = TYPED
-    kept = next(path.parent.glob(".alerts.cue.*"))
-    other = kept.with_name(f".alerts.cue.{os.getppid()}-0.unsaved")  # a process that runs
-    kept.rename(other)
+def test_restoring_leaves_another_text_of_a_running_editor_with_it(path: Path) -> None:
+    drafts = [path.with_name(f".alerts.cue.{os.getppid()}-{k}.unsaved") for k in range(2)]  # a process that runs
+    for age_s, draft, text in zip((0, 60), drafts, (TYPED, TEXT + "# other\n"), strict=True):
+        first, _ = opened(path)
+        first.text = text
+        next(path.parent.glob(f".alerts.cue.{os.getpid()}-*")).rename(draft)
+        os.utime(draft, (time.time() - age_s,) * 2)
     second, bar = opened(path)
     assert "in another workbench that is still open" in bar.offered.value
     bar._safely(bar._restore)
     assert second.text == TYPED
-    assert other.exists()
+    assert [draft.exists() for draft in drafts] == [False, True]
 
 
 def test_version_a_stays_kept_when_its_file_is_opened_again(path: Path) -> None:
